@@ -9,7 +9,7 @@ use sightlines::formats::quake::{Bsp, BspFormat};
 use sightlines::pvs::{CellId, ObjectId, Place, Table};
 use sightlines::scenes::world::{QuakeLikeOptions, quake_like};
 use sightlines::scenes::{OfficeOptions, TowerOptions, office, tower};
-use sightlines::viewer::{Figure, Page};
+use sightlines::viewer::{Figure, Line, Page, Reasons};
 use sightlines_testkit::browser::{Opened, chromium};
 use sightlines_testkit::mutate::SplitMix;
 use sightlines_tests::data_folder;
@@ -92,6 +92,22 @@ fn check(browser: &Path, table: &Table, figure: Option<&Figure>) {
     let result = open(browser, &page.html, &eyes, 320);
     assert!(result["wrong"].as_u64() > Some(0), "{result}");
     assert_eq!(result["wide"], true, "at 320 pixels nothing sticks out: {result}");
+}
+
+/// A table that does not fit is refused with its size, and lines give way before that.
+#[test]
+fn tables_that_do_not_fit_are_refused() {
+    let plan: Plan = office(OfficeOptions { seed: 3, ..OfficeOptions::default() }).expect("an office");
+    let table = bake(&plan, &BakeOptions::default()).expect("a table").table;
+    let line = Line { cells: vec![0, 1], portals: vec![0], ends: Some([[0.0; 3], [1.0; 3]]) };
+    let reasons = Reasons { lines: vec![line; 10], hidden: vec![], n_pairs: 10, n_joined: 10 };
+    let page = |max_bytes: usize| Page { max_bytes, reasons: Some(&reasons), ..Page::new("t", "t.pvs", &table) }.html();
+    let whole = page(Page::MAX_BYTES).expect("it fits");
+    assert_eq!(whole.n_lines, 10);
+    let less = page(whole.html.len() - 1).expect("it fits without lines");
+    assert!(less.n_lines == 0 && less.html.len() < whole.html.len());
+    let error = page(less.html.len() - 100).expect_err("it does not fit");
+    assert!(error.to_string().contains("bytes without any triangle, and may have"), "{error}");
 }
 
 #[test]

@@ -90,9 +90,11 @@ type Pair = [u32; 2];
 pub fn lines(table: &Table, options: LineOptions, observer: Option<&dyn Observer>) -> Result<Option<Lines>, Cancelled> {
     let Some(graph) = crate::from_table::graph(table) else { return Ok(None) };
     let Some(engine) = Engine::new(&graph) else { return Ok(None) };
-    let mut visible = visible_pairs(table);
-    let mut found = Lines { n_pairs: visible.len(), ..Lines::default() };
-    let hidden = nearest_hidden(table, options.max_hidden);
+    let n_pairs = n_visible_pairs(table);
+    let step = n_pairs.div_ceil(MOST_PAIRS).max(1);
+    let mut visible = visible_pairs(table, step);
+    let mut found = Lines { n_pairs, ..Lines::default() };
+    let hidden = nearest_hidden(table, options.max_hidden, step);
     visible.sort_by(|a, b| distance(table, *b).total_cmp(&distance(table, *a)).then(a.cmp(b)));
     let mut joined = HashSet::new();
     let (mut at, mut n_asked) = (0, 0);
@@ -122,12 +124,15 @@ pub fn lines(table: &Table, options: LineOptions, observer: Option<&dyn Observer
         let pairs = chunk.iter().zip(answers).filter_map(|(pair, obstacle)| Some((pair, obstacle?)));
         found.hidden.extend(pairs.map(|(pair, obstacle)| HiddenPair { cells: pair.map(CellId), obstacle }));
     }
-    found.n_joined = visible.iter().filter(|pair| joined.contains(*pair)).count();
+    found.n_joined = joined.iter().filter(|[a, b]| table.sees(CellId(*a), CellId(*b))).count();
     Ok(Some(found))
 }
 
 /// Pairs that are asked at once.
 const CHUNK: usize = 64;
+
+/// Of more pairs than these, only those of every second cell are thought of, or of fewer: a list of pairs takes eight bytes for each.
+const MOST_PAIRS: usize = 16_000_000;
 
 fn tell(observer: Option<&dyn Observer>, done: usize, total: usize) -> Result<(), Cancelled> {
     let report =
@@ -139,8 +144,13 @@ fn ordered(a: CellId, b: CellId) -> Pair {
     [a.0.min(b.0), a.0.max(b.0)]
 }
 
-fn visible_pairs(table: &Table) -> Vec<Pair> {
-    let cells = (0..).take(table.n_cells()).map(CellId);
+fn n_visible_pairs(table: &Table) -> usize {
+    (0..).take(table.n_cells()).map(CellId).map(|a| table.visible(a).filter(|b| a < *b).count()).sum()
+}
+
+/// Those of every `step`-th cell.
+fn visible_pairs(table: &Table, step: usize) -> Vec<Pair> {
+    let cells = (0..).take(table.n_cells()).step_by(step).map(CellId);
     cells.flat_map(|a| table.visible(a).filter(move |b| a < *b).map(move |b| ordered(a, b))).collect()
 }
 
@@ -159,8 +169,8 @@ fn distance(table: &Table, [a, b]: Pair) -> f64 {
     (0..3).map(|k| middle(a, k) - middle(b, k)).map(|x| x * x).sum()
 }
 
-/// The nearest pairs that do not see each other, though one adjoins what the other sees.
-fn nearest_hidden(table: &Table, most: usize) -> Vec<Pair> {
+/// The nearest pairs that do not see each other, though one adjoins what the other sees, of every `step`-th cell.
+fn nearest_hidden(table: &Table, most: usize, step: usize) -> Vec<Pair> {
     if most == 0 {
         return Vec::new();
     }
@@ -171,7 +181,7 @@ fn nearest_hidden(table: &Table, most: usize) -> Vec<Pair> {
         neighbours[b.idx()].push(a);
     }
     let mut pairs: Vec<(f64, Pair)> = Vec::new();
-    for a in (0..).take(table.n_cells()).map(CellId) {
+    for a in (0..).take(table.n_cells()).step_by(step).map(CellId) {
         let beside: HashSet<CellId> = table.visible(a).flat_map(|b| neighbours[b.idx()].iter().copied()).collect();
         let hidden = beside.into_iter().filter(|b| !table.sees(a, *b)).map(|b| ordered(a, b));
         pairs.extend(hidden.map(|pair| (distance(table, pair), pair)));
