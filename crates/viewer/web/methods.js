@@ -34,6 +34,11 @@ class View {
     }
     /** Along the edges of the view; and what rounding may move a border by, for vectors of some length. */
     this.share = 2 ** -40;
+    /** The eye is known to within the gap of a frame; what that may move a side by grows with what is looked at. */
+    const { min, max } = boundsOf(table);
+    const reach = [0, 1, 2].reduce((sum, k) => sum + Math.max(Math.abs(min[k] - eye[k]), Math.abs(max[k] - eye[k])), 0);
+    this.slack = 4 * (table.frame?.gap ?? 0) * reach;
+    for (const side of this.sides) side.slack = ((table.frame?.gap ?? 0) * (Math.abs(side[0]) + Math.abs(side[1]) + Math.abs(side[2]))) || 0;
   }
 
   vector(p) {
@@ -43,7 +48,7 @@ class View {
   /** Whether a side certainly keeps none of these vectors. */
   excludes(side, vectors) {
     const size = Math.hypot(...side);
-    return vectors.every((v) => dot3(side, v) < -this.share * size * Math.hypot(...v));
+    return vectors.every((v) => dot3(side, v) < -this.share * size * Math.hypot(...v) - side.slack);
   }
 
   meets(points) {
@@ -94,7 +99,8 @@ class Query {
     const normal = table.dimension === 2 ? [points[0][1] - points[1][1], points[1][0] - points[0][0], 0] : normalOf(points);
     // Corners are counter-clockwise, or from left to right, as seen on the way from the first cell to the second.
     const ahead = dot3(normal, v) * (table.dimension === 2 ? 1 : -1) * (forward ? 1 : -1);
-    return ahead < -view.share * Math.hypot(...normal) * Math.hypot(...v);
+    const size = Math.hypot(...normal);
+    return ahead < -size * (view.share * Math.hypot(...v) + 2 * (table.frame?.gap ?? 0));
   }
 
   wayInView(way) {
@@ -132,7 +138,7 @@ class Query {
     let steps = 0;
     const follow = (cell, sides) => {
       for (const way of this.ways(cell)) {
-        if (onWay.has(way.to) || !this.cellInView(way.to) || this.isBehind(way)) continue;
+        if (onWay.has(way.to) || !this.wayInView(way)) continue;
         steps += 1;
         if (steps > MOST_STEPS) return false;
         const left = clip(view, way.points, sides);
@@ -163,7 +169,7 @@ function clip(view, points, sides) {
   let polygon = points.map((p) => view.vector(p));
   for (const side of sides) {
     const size = Math.hypot(...side);
-    const at = polygon.map((v) => dot3(side, v) + view.share * size * Math.hypot(...v));
+    const at = polygon.map((v) => dot3(side, v) + view.share * size * Math.hypot(...v) + side.slack);
     const next = [];
     polygon.forEach((v, i) => {
       const j = (i + 1) % polygon.length;
@@ -189,15 +195,19 @@ function coneOf(view, polygon, dimension) {
     const right = polygon.reduce((a, b) => (turn(a, b) < 0 ? b : a));
     const left = polygon.reduce((a, b) => (turn(a, b) > 0 ? b : a));
     if (Math.abs(turn(right, left)) <= view.share * longest * longest) return null;
-    return [[-right[1], right[0], 0], [left[1], -left[0], 0]];
+    const wide = Math.hypot(left[0] - right[0], left[1] - right[1]);
+    return [[-right[1], right[0], 0], [left[1], -left[0], 0]].map((side) => Object.assign(side, { slack: view.slack * wide }));
   }
   const sides = [];
   polygon.forEach((v, i) => {
-    const normal = cross3(v, polygon[(i + 1) % polygon.length]);
+    const next = polygon[(i + 1) % polygon.length];
+    const normal = cross3(v, next);
     const size = Math.hypot(...normal);
     if (size <= view.share * longest * longest) return;
     const at = dot3(normal, middle);
-    if (Math.abs(at) > view.share * size * Math.hypot(...middle)) sides.push(at > 0 ? normal : normal.map((x) => -x));
+    if (Math.abs(at) <= view.share * size * Math.hypot(...middle)) return;
+    const edge = Math.abs(next[0] - v[0]) + Math.abs(next[1] - v[1]) + Math.abs(next[2] - v[2]);
+    sides.push(Object.assign(at > 0 ? normal : normal.map((x) => -x), { slack: view.slack * edge }));
   });
   return sides.length >= 3 ? sides : null;
 }

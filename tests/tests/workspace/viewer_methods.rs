@@ -107,18 +107,9 @@ fn compare(browser: &Path, name: &str, table: &Table, n: usize) {
         "{name}: {all:?} cells, {more:?} more, {fewer:?} fewer, objects fewer {fewer_objects:?}; {gave_up} gave up"
     );
     assert!(gave_up * 50 <= n, "{name}");
-    // Where a table has a frame, the crate takes the eye as known only to within its gap, and keeps a little more.
-    assert_eq!(
-        (&fewer[..4], &fewer_objects[..4]),
-        (&[0; 4][..], &[0; 4][..]),
-        "{name}: nothing that may be seen is left out"
-    );
-    assert!(
-        fewer[4] * 200 <= all[4] && fewer_objects[4] * 200 <= all[4],
-        "{name}: {fewer:?}, {fewer_objects:?} of {all:?}"
-    );
-    // On the borders of views rounding decides, and towards visible in both.
-    assert!((0..4).all(|k| more[k] * 1000 <= all[k]) && more[4] * 200 <= all[4], "{name}: {more:?} of {all:?}");
+    assert_eq!((fewer, fewer_objects), ([0; 5], [0; 5]), "{name}: nothing that may be seen is left out");
+    // On the borders of views rounding decides, and the gap of a frame, within which the eye is not trusted; towards visible in both.
+    assert!((0..4).all(|k| more[k] * 1000 <= all[k]) && more[4] * 100 <= all[4], "{name}: {more:?} of {all:?}");
     assert!(all[4] < all[0] * 2 / 3, "{name}: a view keeps less than the table");
     // The comparison can fail: by the answer for another direction.
     let (eye, dir) = poses[0];
