@@ -26,6 +26,7 @@ mod place;
 mod progress;
 mod reasons;
 mod region;
+mod same_scene;
 mod sight;
 mod simplification;
 mod surfaces;

@@ -31,7 +31,12 @@ fn what_does_not_belong_together_is_refused() {
     folder.run(&["demo", "tower", "--out", "tower"]).expect(0);
     folder.run(&["generate", "tower", "--floors", "1", "-o", "small.glb"]).expect(0);
     std::fs::write(folder.path("walk.json"), r#"{"frames": [{"eye": [1, 2, 3], "dir": [0, 1]}]}"#).expect("a file");
-    let cases: [(&[&str], &str); 8] = [
+    folder.run(&["demo", "tower", "--out", "tower2", "--seed", "2"]).expect(0);
+    let cases: [(&[&str], &str); 9] = [
+        (
+            &["tower/tower.pvs", "--scene", "tower2/tower.glb"],
+            "tower2/tower.glb: the table was made of another scene: it",
+        ),
         (
             &["office/plan.pvs", "--scene", "other/plan.geojson"],
             "other/plan.geojson: the table was made of another scene: its lines",

@@ -2,6 +2,7 @@
 
 use super::Error;
 use crate::input;
+use crate::same_scene::difference;
 use crate::surfaces::SurfaceArgs;
 use sightlines::cells::Scene;
 use sightlines::formats::quake::Bsp;
@@ -24,20 +25,10 @@ fn other(path: &Path, what: impl Into<String>) -> Error {
     Error::OtherScene { path: path.to_owned(), what: what.into() }
 }
 
-/// Objects are told by their names, and what has changed since by the digests of the table.
 fn of_scene(path: &Path, scene: &Scene, table: &Table) -> Result<Surfaces, Error> {
-    let (found, listed) = (scene.objects(), table.objects());
-    if found.len() != listed.len() {
-        return Err(other(path, format!("it has {} objects, and this file has {}", listed.len(), found.len())));
-    }
-    let mut both = found.iter().zip(listed).enumerate();
-    if let Some((k, (object, record))) = both.find(|(_, (object, record))| object.name != record.name) {
-        let what = format!("its object {k} is {:?}, and that of this file {:?}", record.name, object.name);
-        return Err(other(path, what));
-    }
-    match table.digest().is_some_and(|digest| digest != scene.digest()) {
-        true => Err(other(path, "its triangles differ from those of this file")),
-        false => Ok(Surfaces::of_scene(scene)),
+    match difference(table, scene) {
+        Some(what) => Err(other(path, what)),
+        None => Ok(Surfaces::of_scene(scene)),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::{Error, ViewArgs};
 use crate::input;
+use crate::same_scene::difference;
 use sightlines::bake::Bakeable;
 use sightlines::cells::{Plan, Scene};
 use sightlines::formats::quake::Bsp;
@@ -27,19 +28,12 @@ fn other(path: &Path, what: impl Into<String>) -> Error {
     Error::OtherScene { path: path.to_owned(), what: what.into() }
 }
 
-/// Objects are told by their names.
 fn of_scene(path: &Path, scene: &Scene, table: &Table) -> Result<Figure, Error> {
-    let (found, listed) = (scene.objects(), table.objects());
     if table.dimension() != 3 {
         return Err(other(path, "the table is of a plan"));
     }
-    if found.len() != listed.len() {
-        return Err(other(path, format!("it has {} objects, and this file has {}", listed.len(), found.len())));
-    }
-    match found.iter().zip(listed).enumerate().find(|(_, (object, record))| object.name != record.name) {
-        Some((k, (object, record))) => {
-            Err(other(path, format!("its object {k} is {:?}, and that of this file {:?}", record.name, object.name)))
-        }
+    match difference(table, scene) {
+        Some(what) => Err(other(path, what)),
         None => Ok(Figure::of_scene(scene)),
     }
 }
