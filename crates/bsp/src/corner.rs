@@ -34,7 +34,13 @@ impl Corner {
         }
         let mut corner = Self { planes, x, sizes, is_turned: false, exact: OnceCell::new() };
         let sign = match x[3].abs() > sizes[3] * MINOR_ERROR {
-            true => if x[3] > 0.0 { 1 } else { -1 },
+            true => {
+                if x[3] > 0.0 {
+                    1
+                } else {
+                    -1
+                }
+            }
             false => corner.exact(rows)[3].sign(),
         };
         if sign < 0 {
@@ -134,7 +140,8 @@ mod tests {
     #[test]
     fn sides_are_exact_where_doubles_are_not() {
         let mut rows = Planes::default();
-        let corner = corner_of(&mut rows, [[0.6, 0.8, 0.0, 0.7], [0.1, 0.3, 1.0, 0.9], [0.3, -0.2, 0.1, 0.35]]).unwrap();
+        let corner =
+            corner_of(&mut rows, [[0.6, 0.8, 0.0, 0.7], [0.1, 0.3, 1.0, 0.9], [0.3, -0.2, 0.1, 0.35]]).unwrap();
         let mut n_exact = 0;
         // Sums of the rows go through their point; in doubles their numbers are rounded, so most do not quite.
         for (k, [p, q, r]) in [[1.0, 2.0, 4.0], [0.5, 8.0, -1.0], [3.0, 1.0, 5.0]].into_iter().enumerate() {

@@ -117,7 +117,8 @@ mod tests {
     #[test]
     fn nodes_are_checked() {
         use Child::{Leaf, Node as Below};
-        let of = |nodes: &[Node]| Tree::new(nodes.to_vec()).map(|tree| tree.above(nodes.len().saturating_sub(1)).count());
+        let of =
+            |nodes: &[Node]| Tree::new(nodes.to_vec()).map(|tree| tree.above(nodes.len().saturating_sub(1)).count());
         assert_eq!(of(&[]), Ok(0));
         assert_eq!(of(&[node(Leaf(0), Below(1)), node(Below(2), Leaf(1)), node(Leaf(2), Leaf(2))]), Ok(2));
         assert_eq!(of(&[node(Below(0), Leaf(0))]), Err(TreeError::Child { node: 0, child: 0 }));

@@ -5,12 +5,15 @@
 //! where the clusters are and which faces they have, from the map. All take a search up again where
 //! an earlier one stopped ([`PrtOptions::from`]); [`state`] has the bytes in which that is kept.
 
+mod covered;
 mod error;
+mod portals;
 pub mod state;
 mod table;
 mod world;
 
 pub use error::PrtBakeError;
+pub use portals::{MapPortals, PortalsError, portals_of_map};
 pub use state::{StateError, StateKey, named_counters};
 pub use world::bake_map;
 
