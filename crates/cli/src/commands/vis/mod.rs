@@ -60,6 +60,24 @@ pub(crate) struct VisArgs {
     json: bool,
 }
 
+impl VisArgs {
+    /// For a map with its portal file beside it, in place.
+    pub(crate) fn of_map(map: PathBuf, fast: bool, threads: usize) -> Self {
+        Self {
+            map,
+            prt: None,
+            fast,
+            threads,
+            resume: false,
+            state: None,
+            save_every: 30,
+            certify: None,
+            output: None,
+            json: false,
+        }
+    }
+}
+
 pub(crate) fn run(args: &VisArgs, show_progress: bool, verbose: bool) -> Result<Answer, Error> {
     let start = Instant::now();
     if args.prt.is_none() && args.map.is_file() && input::kind_of(&args.map)? == Some(InputKind::Prt) {
