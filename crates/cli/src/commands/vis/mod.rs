@@ -105,7 +105,11 @@ pub(crate) fn run(args: &VisArgs, show_progress: bool, verbose: bool) -> Result<
     let bar = Bar::new("visibility of clusters", show_progress);
     let mut save = |search: &ConvexSearch| saved.save(search.state());
     let search = ConvexOptions { fast: args.fast, threads: args.threads };
-    let map = vis_map(&bsp, &prt, PrtOptions { search, from, progress: Some(&bar), after_step: Some(&mut save) });
+    let map = vis_map(
+        &bsp,
+        &prt,
+        PrtOptions { search, from, progress: Some(&bar), after_step: Some(&mut save), ..PrtOptions::default() },
+    );
     drop(bar);
     let map = map.map_err(|source| explained(source, args, &prt_path, &saved))?;
     // Before anything is written: a table that is proven wrong should not be.

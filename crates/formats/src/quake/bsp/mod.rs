@@ -19,7 +19,7 @@ mod surfaces;
 mod tree;
 
 pub use error::{BspError, BspLumpId};
-pub use faces::AmbientKind;
+pub use faces::{AmbientKind, AmbientTexture, AmbientTextures};
 pub use leaf::{BspLeaf, LeafRow};
 pub use places::ClusterPlaces;
 pub(in crate::quake) use rewrite::NewVisibility;
