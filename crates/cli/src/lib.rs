@@ -62,16 +62,7 @@ enum Answer {
 pub fn sightlines() -> ExitCode {
     let arguments = Arguments::parse();
     log_to_stderr(&arguments);
-    match run(&arguments) {
-        Ok(Answer::Yes) => ExitCode::SUCCESS,
-        Ok(Answer::No) => ExitCode::FAILURE,
-        Err(error) if is_closed_pipe(&*error) => ExitCode::SUCCESS,
-        Err(error) => {
-            // Nothing is left to do if standard error is closed too.
-            let _ = writeln!(std::io::stderr(), "error: {error}");
-            ExitCode::from(2)
-        }
-    }
+    exit_code(run(&arguments))
 }
 
 /// The program `sightlines-vis`, which takes the place of a map editor's `vis`; otherwise as [`sightlines()`].
@@ -87,6 +78,20 @@ pub fn command() -> clap::Command {
 /// The options of `sightlines-vis`, as long ones. The program takes each with any number of dashes in front, one for example.
 pub fn vis_command() -> clap::Command {
     vis_program::command()
+}
+
+/// The exit code of a program, which prints what went wrong.
+fn exit_code(result: Result<Answer, Box<dyn Error>>) -> ExitCode {
+    match result {
+        Ok(Answer::Yes) => ExitCode::SUCCESS,
+        Ok(Answer::No) => ExitCode::FAILURE,
+        Err(error) if is_closed_pipe(&*error) => ExitCode::SUCCESS,
+        Err(error) => {
+            // Nothing is left to do if standard error is closed too.
+            let _ = writeln!(std::io::stderr(), "error: {error}");
+            ExitCode::from(2)
+        }
+    }
 }
 
 /// Runs a command. Each has its own error; all that is needed here is its text, and whether a pipe was closed.

@@ -109,6 +109,25 @@ pub(super) struct VisProgramArgs {
     #[arg(long, help_heading = "Without effect", visible_alias = "nodefaultpaths")]
     pub(super) defaultpaths: bool,
 
+    /// No effect: belongs to a game
+    #[arg(long, help_heading = "Without effect")]
+    pub(super) q2rtx: bool,
+    /// No effect, as the following of Half-Life's compilers: how long a run takes is printed where there is something to wait for
+    #[arg(long, help_heading = "Without effect", visible_alias = "noestimate")]
+    pub(super) estimate: bool,
+    /// No effect: nothing takes the priority of other programs
+    #[arg(long, help_heading = "Without effect", visible_alias = "normal")]
+    pub(super) high: bool,
+    /// No effect: there are no limits to report
+    #[arg(long, help_heading = "Without effect")]
+    pub(super) chart: bool,
+    /// No effect: settings are not printed
+    #[arg(long, help_heading = "Without effect")]
+    pub(super) noinfo: bool,
+    /// No effect: portal files stay as they are
+    #[arg(long, help_heading = "Without effect")]
+    pub(super) nofixprt: bool,
+
     /// Print help; -h prints a summary
     #[arg(long, help_heading = "General", visible_alias = "h", alias = "?", action = ArgAction::Help)]
     help: Option<bool>,
