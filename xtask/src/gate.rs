@@ -8,14 +8,8 @@ use std::time::{Duration, Instant};
 
 /// Builds the documentation of every crate; a warning is an error.
 pub(crate) fn docs() -> Result<(), Failure> {
-    // The library and the program share a name, and with it a folder: the program first, alone, so that
-    // the library's pages are the ones that stay.
-    doc(&["-p", "sightlines-cli"])?;
-    doc(&["--workspace", "--exclude", "sightlines-cli", "--features", "sightlines/png,sightlines/multifocal-gpu"])
-}
-
-fn doc(packages: &[&str]) -> Result<(), Failure> {
-    step::run(cargo().args(["doc", "--no-deps"]).args(packages).env("RUSTDOCFLAGS", "-D warnings"))
+    let features = ["--features", "sightlines/png,sightlines/multifocal-gpu"];
+    step::run(cargo().args(["doc", "--no-deps", "--workspace"]).args(features).env("RUSTDOCFLAGS", "-D warnings"))
 }
 
 /// Checks each published crate on its own, so that none lives on features that another one turns on.

@@ -13,22 +13,22 @@ use std::time::Duration;
 
 /// What was written.
 #[derive(Debug, Serialize)]
-pub(super) struct Outcome {
+pub(crate) struct Outcome {
     out: String,
     format: &'static str,
     portal_format: &'static str,
     /// Leafs that can be seen.
     n_leafs: usize,
     #[serde(flatten)]
-    clusters: Clusters,
+    pub(crate) clusters: Clusters,
     pub(super) fast: bool,
     /// Whether it resumed an earlier run.
-    pub(super) resumed: bool,
+    pub(crate) resumed: bool,
     /// What was proven, if `--certify` was given.
     pub(super) certified: Option<Certified>,
-    n_bytes: usize,
+    pub(crate) n_bytes: usize,
     /// Reading and writing included.
-    pub(super) seconds: f64,
+    pub(crate) seconds: f64,
     peak_bytes: Option<u64>,
     #[serde(skip)]
     pub(super) verbose: bool,

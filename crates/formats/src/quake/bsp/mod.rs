@@ -22,7 +22,7 @@ mod tree;
 
 pub use covers::FaceCover;
 pub use error::{BspError, BspLumpId};
-pub use faces::AmbientKind;
+pub use faces::{AmbientKind, AmbientTexture, AmbientTextures};
 pub use kind::LeafKind;
 pub use leaf::{BspLeaf, LeafRow};
 pub use places::ClusterPlaces;
