@@ -75,8 +75,7 @@ fn moved(places: &[Place], normal: Point3, largest: f64) -> Option<Vec<Point3>> 
         // At this distance along the bisector the sides of the angle are twice the error away.
         let half_sine = length(difference(a, b)) / 2.0;
         let by = 4.0 * (place.spread + largest * ROUNDING) / half_sine;
-        // Not a number either.
-        if !(by <= largest * SLIVER) {
+        if by.is_nan() || by > largest * SLIVER {
             return None;
         }
         all.push(sum(place.at, scaled(way, by / length(way))));

@@ -20,6 +20,7 @@ mod file_error;
 mod folder;
 mod glb;
 mod input;
+mod map_portals;
 mod memory;
 mod named;
 mod numbers;
@@ -102,6 +103,7 @@ fn run(arguments: &Arguments) -> Result<Answer, Box<dyn Error>> {
         Command::Reject(args) => commands::reject::run(args, show_progress)?,
         Command::Vis(args) => commands::vis::run(args, show_progress, arguments.verbose > 0)?,
         Command::Verify(args) => commands::verify::run(args, show_progress)?,
+        Command::Portals(args) => commands::portals::run(args)?,
         Command::Query(args) => commands::query::run(args)?,
         Command::Walk(args) => commands::walk::run(args, show_progress)?,
         Command::Pack(args) => commands::pack::pack(args)?,

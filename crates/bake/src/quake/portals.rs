@@ -91,7 +91,8 @@ pub fn portals_of_map(bsp: &Bsp) -> Result<MapPortals, PortalsError> {
             prt.push_portal([back, front], &opening.corners)?;
         }
     }
-    if passages.n > 0 && !bsp.format().has_clusters() {
+    // Clusters without leafs; what Quake II calls clusters are the leafs of such a file.
+    if passages.n > 0 {
         prt = prt.with_leafs(LeafList::PerCluster, (0..n_clusters).collect())?;
     }
     Ok(MapPortals { prt, n_passages: passages.n })

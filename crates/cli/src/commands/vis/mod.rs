@@ -15,6 +15,7 @@ use crate::Answer;
 use crate::clusters::warn_of_repeats;
 use crate::error::{InputError, OutputError};
 use crate::input;
+use crate::map_portals::{MapPortals, portal_file, portals_for};
 use crate::output;
 use crate::progress::Bar;
 use certify::certify;
@@ -23,8 +24,7 @@ use sightlines::bake::quake::StateKey;
 use sightlines::bake::{PrtBakeError, PrtOptions, vis_map};
 use sightlines::formats::InputKind;
 use sightlines::formats::quake::visibility::check_portals;
-use sightlines::formats::quake::{Bsp, VisibilityError, graph_of_prt, prt, read_bsp};
-use sightlines::formats::{Prt, ReadError};
+use sightlines::formats::quake::{Bsp, Prt, VisibilityError, graph_of_prt, read_bsp};
 use sightlines::stabtree::{ConvexOptions, ConvexSearch};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -35,7 +35,7 @@ pub(crate) struct VisArgs {
     /// The map: Quake's BSP 29, BSP2 or 2PSB, or Quake II's IBSP 38
     #[arg(value_name = "MAP.bsp")]
     pub(crate) map: PathBuf,
-    /// The portal file that the compiler wrote [default: beside the map]
+    /// The portal file that the compiler wrote [default: beside the map; made from the map if there is none]
     #[arg(long, help_heading = "Input", value_name = "MAP.prt")]
     prt: Option<PathBuf>,
     /// Compute only a coarse bound; fast, and reports much that is hidden as visible
@@ -110,17 +110,20 @@ pub(crate) fn compute(args: &VisArgs, manner: Manner<'_>) -> Result<Outcome, Err
     if args.prt.is_none() && args.map.is_file() && input::kind_of(&args.map)? == Some(InputKind::Prt) {
         return Err(Error::PortalsForMap { path: args.map.clone(), command: "sightlines vis" });
     }
-    let prt_path = args.prt.clone().unwrap_or_else(|| args.map.with_extension("prt"));
+    let file = portal_file(&args.map, args.prt.as_deref());
     let out = args.output.as_ref().unwrap_or(&args.map);
     let state_path = args.state.clone().unwrap_or_else(|| out.with_extension("vis-state"));
     // The map may be replaced. A state that cannot be written is reported when it is needed: the search goes on
     // without.
-    output::check(&[&prt_path, &state_path], &[out])?;
+    let beside = [file.as_ref(), Some(&state_path)];
+    output::check(&beside.into_iter().flatten().map(PathBuf::as_path).collect::<Vec<_>>(), &[out])?;
     let bsp = read_bsp(&args.map)?;
-    if args.prt.is_none() && !prt_path.exists() {
-        return Err(InputError::MapWithoutPortals(args.map.clone()).into());
+    let portals = portals_for(&bsp, &args.map, args.prt.as_deref())?;
+    let format = portals.format();
+    if manner.show_progress {
+        portals.announce();
     }
-    let (prt, text) = read_portals(&prt_path)?;
+    let MapPortals { prt, path: prt_path, text, .. } = portals;
     check_portals(&bsp, &prt).map_err(|source| InputError::of_portals(&prt_path, &args.map, Box::new(source)))?;
     warn_of_repeats(&prt_path, &prt);
     (manner.begin)(&bsp, &prt, &prt_path)?;
@@ -149,18 +152,11 @@ pub(crate) fn compute(args: &VisArgs, manner: Manner<'_>) -> Result<Outcome, Err
     let certified = certified.transpose()?;
     output::save(out, &map.bytes)?;
     saved.remove();
-    let mut outcome = Outcome::new(out, &bsp, &prt, &map);
+    let mut outcome = Outcome::new(out, &bsp, format, &map);
     (outcome.fast, outcome.resumed) = (args.fast, resumed);
     outcome.certified = certified;
     outcome.seconds = start.elapsed().as_secs_f64();
     Ok(outcome)
-}
-
-/// The portals, and the bytes of their file.
-fn read_portals(path: &Path) -> Result<(Prt, Vec<u8>), Error> {
-    let text = std::fs::read(path).map_err(|error| ReadError::new(path, error))?;
-    let prt = prt::parse_prt(&text).map_err(|error| ReadError::new(path, error))?;
-    Ok((prt, text))
 }
 
 /// Puts the name of the file before what is wrong with it.

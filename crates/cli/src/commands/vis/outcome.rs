@@ -6,7 +6,7 @@ use crate::memory;
 use crate::output::{bytes, count, seconds};
 use serde::Serialize;
 use sightlines::bake::VisMap;
-use sightlines::formats::quake::{Bsp, Prt};
+use sightlines::formats::quake::Bsp;
 use std::fmt;
 use std::path::Path;
 use std::time::Duration;
@@ -35,11 +35,11 @@ pub(crate) struct Outcome {
 }
 
 impl Outcome {
-    pub(super) fn new(out: &Path, bsp: &Bsp, prt: &Prt, map: &VisMap) -> Self {
+    pub(super) fn new(out: &Path, bsp: &Bsp, portal_format: &'static str, map: &VisMap) -> Self {
         Self {
             out: out.display().to_string(),
             format: bsp.format().name(),
-            portal_format: prt.dialect().magic(),
+            portal_format,
             n_leafs: bsp.n_visible_leafs(),
             clusters: Clusters::new(&map.clusters),
             fast: false,

@@ -74,7 +74,7 @@ pub fn lump_with_sounds(
 ) -> Result<VisibilityLump, VisibilityError> {
     check_match(bsp, leafs)?;
     match bsp.format() {
-        BspFormat::Quake2 => quake2_lump(seen),
+        BspFormat::Quake2 => quake2_lump(&of_leafs(leafs, seen)?),
         _ => {
             let (bytes, leaf_rows) = quake_lump(leafs, seen)?;
             Ok(VisibilityLump { bytes, leaf_rows, ambient: loudness(bsp, leafs, seen, textures)? })
@@ -126,6 +126,19 @@ fn check_square(seen: &BitMatrix, n_clusters: usize) -> Result<(), VisibilityErr
     let (n_rows, n_cols) = (seen.n_rows(), seen.n_cols());
     let fits = n_rows == n_clusters && n_cols == n_clusters;
     if fits { Ok(()) } else { Err(VisibilityError::Matrix { n_rows, n_cols, n_clusters }) }
+}
+
+/// Which leafs see which: those of clusters that do.
+fn of_leafs(leafs: &LeafClusters, seen: &BitMatrix) -> Result<BitMatrix, VisibilityError> {
+    check_square(seen, leafs.n_clusters())?;
+    let n = leafs.n_leafs();
+    let mut rows = BitMatrix::new(n, n);
+    for (leaf, cluster) in leafs.cluster_of_leaf().iter().enumerate() {
+        for other in seen.iter_ones(*cluster as usize) {
+            leafs.leafs_of(other).iter().for_each(|&other| rows.set(leaf, other as usize, true));
+        }
+    }
+    Ok(rows)
 }
 
 /// Rows of leafs, and where the row of each leaf begins.
