@@ -130,3 +130,126 @@ fn cross(a: Point3, b: Point3) -> Point3 {
 fn length(a: Point3) -> f64 {
     dot(a, a).sqrt()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Plane;
+    use crate::plane::Planes;
+    use crate::polygon::Polygon;
+    use proptest::prelude::*;
+    use sightlines_exact::{BigRational, rational};
+
+    /// Twice the area of a triangle in a view, exactly.
+    fn turn(p: [&BigRational; 2], q: [&BigRational; 2], r: [&BigRational; 2]) -> BigRational {
+        (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
+    }
+
+    /// Three planes as rows of rationals, solved by Cramer's rule.
+    fn solve(rows: [[f64; 4]; 3]) -> Option<[BigRational; 3]> {
+        let rows = rows.map(|row| row.map(|x| rational(x)));
+        let det = |column: usize| {
+            let at = |i: usize, k: usize| if k == column { &rows[i][3] } else { &rows[i][k] };
+            let term = |i: usize, j: usize, k: usize| at(0, i) * at(1, j) * at(2, k);
+            term(0, 1, 2) + term(1, 2, 0) + term(2, 0, 1) - term(0, 2, 1) - term(1, 0, 2) - term(2, 1, 0)
+        };
+        let weight = det(3);
+        (weight != rational(0.0)).then(|| [0, 1, 2].map(|k| det(k) / &weight))
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(300))]
+
+        /// The triangle of three planes in a fourth: its exact corners are within the rounded ones, and these are near. Planes that are nearly
+        /// parallel make slivers.
+        #[test]
+        fn nothing_is_lost(
+            normals in proptest::collection::vec((-1.0..1.0f64, -1.0..1.0f64, -1.0..1.0f64, -900.0..900.0f64), 4),
+            nearly in prop_oneof![Just(None), (0..40i32).prop_map(Some)],
+        ) {
+            let single = |x: f64| f64::from(x as f32);
+            let mut rows: Vec<[f64; 4]> = normals.iter().map(|n| [n.0, n.1, n.2, n.3].map(single)).collect();
+            if let Some(shift) = nearly {
+                let by = single(2f64.powi(-shift));
+                rows[2] = [rows[1][0] + by, rows[1][1], rows[1][2] - by / 3.0, rows[1][3] + by].map(single);
+            }
+            prop_assume!(rows.iter().all(|r| r[..3].iter().any(|x| x.abs() > 0.1)));
+            let mut planes = Planes::default();
+            let ids: Vec<_> = rows.iter().map(|r| planes.add(Plane { normal: [r[0], r[1], r[2]], distance: r[3] })).collect();
+            let walls = [0, 1, 2].map(|axis| [-65536.0, 65536.0].map(|distance| {
+                let mut normal = [0.0; 3];
+                normal[axis] = 1.0;
+                planes.add(Plane { normal, distance }).id
+            }));
+            let whole = Polygon::of_plane(ids[0].id, &walls, &planes).unwrap();
+            // One of the eight parts that three planes can leave.
+            let part = (0..8).find_map(|k: i32| {
+                let sign = |bit: i32| if k >> bit & 1 == 1 { 1 } else { -1 };
+                let part = whole.clone().on_side(ids[1].id, sign(0), &planes)?;
+                part.on_side(ids[2].id, sign(1), &planes)?.on_side(ids[3].id, sign(2), &planes).filter(|p| p.corners().len() == 3)
+            });
+            let Some(part) = part else { return Ok(()) };
+            let normal = planes.row(ids[0].id);
+            let corners: Vec<_> = part.corners().iter().map(|c| c.rounded(&planes)).collect();
+            let rounded = outwards(&corners, [normal[0], normal[1], normal[2]]);
+
+            let axis = (0..3).max_by(|&i, &j| normal[i].abs().total_cmp(&normal[j].abs())).unwrap();
+            let (mut u, mut v) = ((axis + 1) % 3, (axis + 2) % 3);
+            if normal[axis] < 0.0 {
+                (u, v) = (v, u);
+            }
+            // The exact corners are the points of the plane and two of the others; all but three of them are elsewhere.
+            let mut n_known = 0;
+            let all: Vec<[f64; 4]> = rows[1..].to_vec();
+            let largest = corners.iter().flat_map(|(p, _)| p).fold(1.0f64, |m, x| m.max(x.abs()));
+            for (i, j) in [(0, 1), (0, 2), (1, 2)] {
+                let Some(exact) = solve([rows[0], all[i], all[j]]) else { continue };
+                let near = |p: &Point3| (0..3).all(|k| {
+                    let off = &exact[k] - rational(p[k]);
+                    off < rational(1e-9 * largest) && off > rational(-1e-9 * largest)
+                });
+                if !corners.iter().any(|(p, _)| near(p)) {
+                    continue;
+                }
+                n_known += 1;
+                for k in 0..rounded.len() {
+                    let [p, q] = [rounded[k], rounded[(k + 1) % rounded.len()]].map(|p| p.map(|x| rational(x)));
+                    let inside = turn([&p[u], &p[v]], [&q[u], &q[v]], [&exact[u], &exact[v]]);
+                    prop_assert!(inside >= rational(0.0), "corner {i}{j} is outside of {rounded:?}, made of {corners:?}");
+                }
+            }
+            prop_assert!(n_known > 0);
+            // And no wider than it must be.
+            for p in &rounded {
+                let nearest = corners.iter().map(|(q, _)| length(difference(*p, *q))).fold(f64::INFINITY, f64::min);
+                prop_assert!(nearest <= largest * 2.0 * SLIVER || rounded.len() == 4, "{nearest} in {rounded:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn exact_corners_stay() {
+        let square = [[0.0, 0.0, 5.0], [4.0, 0.0, 5.0], [4.0, 4.0, 5.0], [0.0, 4.0, 5.0]];
+        assert_eq!(outwards(&square.map(|p| (p, true)), [0.0, 0.0, 1.0]), square);
+        // One that is not is moved outwards, and only that one.
+        let mut corners = square.map(|p| (p, true));
+        corners[2].1 = false;
+        let moved = outwards(&corners, [0.0, 0.0, 1.0]);
+        assert_eq!((&moved[..2], moved[3]), (&square[..2], square[3]));
+        assert!(moved[2][0] > 4.0 && moved[2][1] > 4.0 && moved[2][0] < 4.0 + 1e-9 && moved[2][2] == 5.0);
+    }
+
+    #[test]
+    fn slivers_become_rectangles() {
+        let thin = [[0.0, 0.0, 5.0], [4000.0, 0.0, 5.0], [4000.0, 1e-12, 5.0]];
+        let around = outwards(&thin.map(|p| (p, false)), [0.0, 0.0, 1.0]);
+        assert_eq!(around.len(), 4);
+        let range = |k: usize| around.iter().fold([0.0f64; 2], |[low, high], p| [low.min(p[k]), high.max(p[k])]);
+        let ([x0, x1], [y0, y1]) = (range(0), range(1));
+        assert!(x0 < 0.0 && x1 > 4000.0 && y0 < 0.0 && y1 > 1e-12);
+        assert!(around.iter().all(|p| p[0] > -1e-6 && p[0] < 4000.0 + 1e-6 && p[1].abs() < 1e-6));
+        // A point becomes a square.
+        let point = [[7.0, 7.0, 5.0]; 3].map(|p| (p, false));
+        assert_eq!(outwards(&point, [0.0, 0.0, 1.0]).len(), 4);
+    }
+}

@@ -23,6 +23,7 @@ mod own;
 mod pack;
 mod region;
 mod reject;
+mod portals;
 mod render;
 
 mod same_bytes;
