@@ -7,6 +7,7 @@ mod common;
 mod doors;
 mod draw;
 mod draw_scene;
+mod engine;
 mod errors;
 mod explain_boxes;
 mod explain_portals;

@@ -1,5 +1,6 @@
 //! Runs the built program on generated files.
 
+pub(crate) mod engine;
 pub(crate) mod levels;
 pub(crate) mod looks;
 pub(crate) mod picture;
