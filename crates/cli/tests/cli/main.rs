@@ -22,6 +22,7 @@ mod multifocal;
 mod outputs;
 mod own;
 mod pack;
+mod places;
 mod progress;
 mod region;
 mod reject;
