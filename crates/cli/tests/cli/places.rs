@@ -29,7 +29,7 @@ fn inputs() -> Folder {
 }
 
 /// Commands with the name of a file that they write last; they write nothing else.
-const COMMANDS: [&[&str]; 15] = [
+const COMMANDS: [&[&str]; 16] = [
     &["build", "office.geojson", "-o", "out.pvs"],
     &["build", "tower.glb", "-o", "out.pvs"],
     &["reject", "maps.wad", "-o", "out.wad"],
@@ -51,6 +51,20 @@ const COMMANDS: [&[&str]; 15] = [
         "5,1,5",
         "--light",
         "4,2,4,5,2.2,5",
+        "--size",
+        "16x16",
+        "-o",
+        "out.png",
+    ],
+    &[
+        "render",
+        "tower.glb",
+        "--eye",
+        "9,1.7,5",
+        "--look-at",
+        "5,1,5",
+        "--method",
+        "zbuffer",
         "--size",
         "16x16",
         "-o",
