@@ -35,20 +35,24 @@ struct Shown {
 struct Lines {
     every: Duration,
     last: Instant,
+    /// The share of the last line, and its phase.
+    share: f64,
+    phase: &'static str,
 }
 
 impl Lines {
     /// From now on, as the environment has it.
     fn begin() -> Self {
         let every = std::env::var(SECONDS).ok().and_then(|text| crate::numbers::duration(&text).ok());
-        Self { every: every.unwrap_or(USUAL), last: Instant::now() }
+        Self { every: every.unwrap_or(USUAL), last: Instant::now(), share: 0.0, phase: "" }
     }
 
-    /// Whether a line is due; if so, it counts as printed.
-    fn is_due(&mut self, now: Instant) -> bool {
-        let is_due = now.saturating_duration_since(self.last) >= self.every;
+    /// Whether a line is due; if so, it counts as printed. A report that another thread has overtaken is not.
+    fn is_due(&mut self, Progress { phase, share, .. }: Progress, now: Instant) -> bool {
+        let is_late = phase == self.phase && share < self.share;
+        let is_due = now.saturating_duration_since(self.last) >= self.every && !is_late;
         if is_due {
-            self.last = now;
+            (self.last, self.share, self.phase) = (now, share, phase);
         }
         is_due
     }
@@ -94,7 +98,7 @@ impl Bar {
         let pace = Pace::after(shown.pace, progress, now);
         shown.pace = Some(pace);
         let left = pace.left(share, pace.took(now)).map(|left| format!("about {} left", rough(left)));
-        if shown.lines.as_mut().is_some_and(|lines| lines.is_due(now)) {
+        if shown.lines.as_mut().is_some_and(|lines| lines.is_due(progress, now)) {
             self.say(&line(self.what, share, phase, left.as_deref()));
         }
         let left = left.unwrap_or_default();
@@ -181,9 +185,13 @@ mod tests {
     #[test]
     fn lines_come_every_few_seconds() {
         let start = Instant::now();
-        let mut lines = Lines { every: Duration::from_secs(5), last: start };
-        let due = [0, 4, 5, 6, 9, 10, 30, 34, 35].map(|s| lines.is_due(start + Duration::from_secs(s)));
+        let mut lines = Lines { every: Duration::from_secs(5), last: start, share: 0.0, phase: "" };
+        let mut due_of = |phase, share, s| {
+            lines.is_due(Progress::new(phase, 0, 0).with_share(share), start + Duration::from_secs(s))
+        };
+        let due = [0, 4, 5, 6, 9, 10, 30, 34, 35].map(|s| due_of("beams", 0.5, s));
         assert_eq!(due, [false, false, true, false, false, true, true, false, true]);
+        assert_eq!([due_of("beams", 0.4, 50), due_of("pairs", 0.1, 50)], [false, true], "another thread was ahead");
         assert_eq!(line("lines", 0.421, "beams", Some("about 9 s left")), "lines: 42 %, beams, about 9 s left");
         assert_eq!(
             [line("lines", 1.5, "", None), line("lines", 0.0, "beams", None)],

@@ -84,7 +84,7 @@ fn see(args: &VisProgramArgs, map: &Path, console: &Console) -> Result<(), Error
     if outcome.resumed {
         console.say(Kind::Progress, "resumed    from where an earlier run was stopped")?;
     }
-    console.say(Kind::Statistics, &format!("visible    {}", outcome.clusters.brief_pairs()))?;
+    console.say(Kind::Statistics, &format!("pairs      {}", outcome.clusters.brief_pairs()))?;
     if args.verbose {
         console.say(Kind::Statistics, outcome.clusters.to_string().trim_end())?;
         let pairs = outcome.clusters.undecided_pairs().to_string();

@@ -1,5 +1,6 @@
 //! Runs the built program on generated files.
 
+pub(crate) mod engine;
 pub(crate) mod levels;
 pub(crate) mod looks;
 pub(crate) mod picture;
@@ -11,6 +12,9 @@ use sightlines::formats::wad::{LumpName, WadBuilder, WadKind};
 use sightlines::scenes::{DoomLike, OfficeOptions, maze, office};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+
+/// The environment variable with the time between two lines of progress.
+pub(crate) const PROGRESS: &str = "SIGHTLINES_PROGRESS_SECONDS";
 
 /// What a run of the program gave.
 pub(crate) struct Run {
@@ -59,11 +63,23 @@ impl Folder {
 
     /// Runs the program in this folder.
     pub(crate) fn run(&self, args: &[&str]) -> Run {
-        let Output { status, stdout, stderr } = Command::new(env!("CARGO_BIN_EXE_sightlines"))
-            .args(args)
-            .current_dir(self.0.path())
-            .output()
-            .expect("the program was built");
+        self.run_command(Command::new(env!("CARGO_BIN_EXE_sightlines")).args(args))
+    }
+
+    /// Runs `sightlines-vis` in this folder.
+    pub(crate) fn run_vis(&self, args: &[&str]) -> Run {
+        self.run_command(Command::new(env!("CARGO_BIN_EXE_sightlines-vis")).args(args))
+    }
+
+    /// Runs a command in this folder.
+    pub(crate) fn run_command(&self, command: &mut Command) -> Run {
+        // However slow a machine is, no line of progress is among what is compared, unless a test asks for it.
+        if command.get_envs().all(|(name, _)| name != PROGRESS) {
+            command.env(PROGRESS, "1h");
+        }
+        let args: Vec<_> = command.get_args().map(ToOwned::to_owned).collect();
+        let Output { status, stdout, stderr } =
+            command.current_dir(self.0.path()).output().expect("the program was built");
         let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("output is text");
         let code = status.code().expect("the program ends by itself");
         let run = Run { code, out: text(stdout), err: text(stderr) };
