@@ -6,10 +6,14 @@
 mod bevy;
 mod circles;
 mod debian;
+mod deny;
 mod freedoom;
 mod gate;
 mod gpu;
 mod lab;
+mod metadata;
+mod package;
+mod spdx;
 mod step;
 mod tally;
 mod tidy;
@@ -74,6 +78,10 @@ enum Task {
     Circles,
     /// Checks that each published crate compiles on its own.
     Alone,
+    /// Checks the licences and sources of all dependencies, and with cargo-deny, if it is installed, their advisories.
+    Deny,
+    /// Packs the published crates, and compiles them from what is in the packages.
+    Package,
     /// Runs everything that a change has to pass, and ends with the tests.
     Ci {
         /// Which GPU the tests that need one run on.
@@ -132,6 +140,8 @@ fn run(task: Task) -> Result<(), Failure> {
         Task::Tidy => tidy::tidy(),
         Task::Circles => circles::refuse(),
         Task::Alone => gate::alone(),
+        Task::Deny => deny::check(),
+        Task::Package => package::check(),
         Task::Ci { gpu } => gate::ci(gpu),
         Task::Gpu { gpu } => {
             for (name, value) in gpu::environment(gpu)? {
