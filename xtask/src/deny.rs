@@ -48,12 +48,12 @@ fn cargo_deny() -> Result<(), Failure> {
         eprintln!("!! cargo-deny is not installed: advisories and yanked versions WILL NOT be checked");
         return Ok(());
     }
-    step::run(cargo().args(["deny", "check", "bans", "licenses", "sources"]))?;
+    step::run(cargo().args(["deny", "--workspace", "check", "bans", "licenses", "sources"]))?;
     if step::run(cargo().args(["deny", "fetch", "db"])).is_err() {
         eprintln!("!! the database of advisories is out of reach: advisories and yanked versions WILL NOT be checked");
         return Ok(());
     }
-    step::run(cargo().args(["deny", "check", "advisories"]))
+    step::run(cargo().args(["deny", "--workspace", "check", "advisories"]))
 }
 
 /// Whether a program can be started.
