@@ -7,6 +7,7 @@ mod bevy;
 mod circles;
 mod debian;
 mod deny;
+mod dist;
 mod freedoom;
 mod gate;
 mod gpu;
@@ -19,6 +20,7 @@ mod tally;
 mod tidy;
 
 use clap::{Parser, Subcommand};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use step::{Failure, cargo};
 
@@ -82,6 +84,18 @@ enum Task {
     Deny,
     /// Packs the published crates, and compiles them from what is in the packages.
     Package,
+    /// Writes the manual pages and completions of the programs.
+    Man {
+        /// The folder to write into [default: target/manuals].
+        #[arg(long)]
+        out: Option<PathBuf>,
+    },
+    /// Makes what a release offers for download: an archive, a package for Debian, a bill of materials, checksums.
+    Dist {
+        /// The folder to work and write in [default: target/dist].
+        #[arg(long)]
+        out: Option<PathBuf>,
+    },
     /// Runs everything that a change has to pass, and ends with the tests.
     Ci {
         /// Which GPU the tests that need one run on.
@@ -142,6 +156,11 @@ fn run(task: Task) -> Result<(), Failure> {
         Task::Alone => gate::alone(),
         Task::Deny => deny::check(),
         Task::Package => package::check(),
+        Task::Man { out } => {
+            let out = out.unwrap_or_else(|| package::target().join("manuals"));
+            step::run(cargo().args(["run", "--quiet", "-p", "sightlines-manuals", "--"]).arg(out))
+        }
+        Task::Dist { out } => dist::make(out).map(|files| println!("in {}", files.display())),
         Task::Ci { gpu } => gate::ci(gpu),
         Task::Gpu { gpu } => {
             for (name, value) in gpu::environment(gpu)? {
