@@ -11,9 +11,11 @@ mod dist;
 mod freedoom;
 mod gate;
 mod gpu;
+mod install;
 mod lab;
 mod metadata;
 mod package;
+mod semver;
 mod spdx;
 mod step;
 mod tally;
@@ -84,6 +86,14 @@ enum Task {
     Deny,
     /// Packs the published crates, and compiles them from what is in the packages.
     Package,
+    /// Compares public items with those of the last tag, by cargo-semver-checks.
+    Semver,
+    /// Installs a release in an empty Debian, in two ways, and follows the guides there; needs root, debootstrap and the network.
+    InstallCheck {
+        /// The folder with the files of a release; they are made first if it is not given.
+        #[arg(long)]
+        dist: Option<PathBuf>,
+    },
     /// Writes the manual pages and completions of the programs.
     Man {
         /// The folder to write into [default: target/manuals].
@@ -156,6 +166,8 @@ fn run(task: Task) -> Result<(), Failure> {
         Task::Alone => gate::alone(),
         Task::Deny => deny::check(),
         Task::Package => package::check(),
+        Task::Semver => semver::check(),
+        Task::InstallCheck { dist } => install::check(dist),
         Task::Man { out } => {
             let out = out.unwrap_or_else(|| package::target().join("manuals"));
             step::run(cargo().args(["run", "--quiet", "-p", "sightlines-manuals", "--"]).arg(out))
