@@ -68,7 +68,8 @@ impl Debian {
         let mut command = Command::new("unshare");
         command.args(["--mount", "/bin/sh", "-euc"]);
         command.arg(
-            "[ -z \"$2\" ] || { mkdir -p \"$1/opt/rust\"; mount --bind -o ro \"$2\" \"$1/opt/rust\"; }\n\
+            "mount --bind /proc \"$1/proc\"\n\
+             [ -z \"$2\" ] || { mkdir -p \"$1/opt/rust\"; mount --bind -o ro \"$2\" \"$1/opt/rust\"; }\n\
              exec chroot \"$1\" /usr/bin/env -i HOME=/root PATH=/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin:/opt/rust/bin \
              DEBIAN_FRONTEND=noninteractive /bin/sh -euxc \"$3\"",
         );
@@ -88,14 +89,20 @@ impl Debian {
     /// Runs the demo, and the tests that follow the guides with the program that is installed here.
     fn try_program(&self) -> Result<(), Failure> {
         self.shell("sightlines --version; sightlines-vis --version; cd /tmp; sightlines demo -q; ls sightlines-demo; rm -r sightlines-demo")?;
-        let program = self.inside("/run/installed-sightlines");
-        in_file(&program, fs::write(&program, wrapper(&self.root)))?;
-        step::run(Command::new("chmod").arg("+x").arg(&program))?;
+        let program = self.wrapper()?;
         let mut tests = cargo();
         tests.args(["test", "-p", "sightlines-cli", "--test", "cli", "--", "guides::"]);
         // The folders of the tests are to lie inside; real data lies outside.
         tests.env("TMPDIR", self.inside("/tmp")).env("SIGHTLINES_PROGRAM", &program).env_remove("SIGHTLINES_DATA");
         step::run(&mut tests)
+    }
+
+    /// A program outside that runs the one that is installed here.
+    fn wrapper(&self) -> Result<PathBuf, Failure> {
+        let program = self.inside("/run/installed-sightlines");
+        in_file(&program, fs::write(&program, wrapper(&self.root)))?;
+        step::run(Command::new("chmod").arg("+x").arg(&program))?;
+        Ok(program)
     }
 }
 
@@ -117,7 +124,13 @@ fn by_package(debian: &Debian, dist: &Path) -> Result<(), Failure> {
     debian.bring(deb, "/tmp/sightlines.deb")?;
     debian.shell("dpkg -i /tmp/sightlines.deb; dpkg -L sightlines | grep -c /man1/")?;
     debian.try_program()?;
-    debian.shell("dpkg -r sightlines; ! command -v sightlines")
+    debian.shell("dpkg -r sightlines; ! command -v sightlines")?;
+    // The impostor: what the guides were followed with was that one, for it is gone.
+    match step::run(Command::new(debian.wrapper()?).arg("--version").current_dir(debian.inside("/tmp"))) {
+        Err(Failure::Status { .. }) => Ok(()),
+        Ok(()) => Err(Failure::Found { what: "programs left after their package was removed", n: 1 }),
+        other => other,
+    }
 }
 
 /// `cargo install` of the program's package with what Cargo finds newest of everything else, but for our own crates, which it takes from
