@@ -170,6 +170,14 @@ mod tests {
     }
 
     #[test]
+    fn the_citation_and_the_changelog_have_the_version() {
+        let version = &metadata::published().expect("the workspace is readable")[0].version;
+        let text = |name: &str| fs::read_to_string(root().join(name)).expect("it is readable");
+        assert!(text("CITATION.cff").lines().any(|l| l == format!("version: {version}")), "{version}");
+        assert!(text("CHANGELOG.md").contains(version.as_str()), "{version}");
+    }
+
+    #[test]
     fn impostor_a_package_without_licences_is_caught() {
         let package = complete();
         assert_eq!(lacking(&package, &root().join("docs")).expect("our licences are readable"), LICENCES.len() + 1);
