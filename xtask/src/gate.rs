@@ -1,9 +1,8 @@
 //! What a change has to pass, in order.
 
 use crate::gpu::Wish;
-use crate::step::{self, Failure, cargo, root};
-use crate::{bevy, lab, tally, tidy};
-use std::fs;
+use crate::step::{self, Failure, cargo};
+use crate::{bevy, deny, lab, metadata, package, tally, tidy};
 use std::time::{Duration, Instant};
 
 /// Builds the documentation of every crate; a warning is an error.
@@ -14,12 +13,8 @@ pub(crate) fn docs() -> Result<(), Failure> {
 
 /// Checks each published crate on its own, so that none lives on features that another one turns on.
 pub(crate) fn alone() -> Result<(), Failure> {
-    let names = published()?;
-    if names.is_empty() {
-        return Err(Failure::Found { what: "published crates", n: 0 });
-    }
-    for name in names {
-        step::run(cargo().args(["check", "-p", &name, "--all-features"]))?;
+    for package in metadata::published()? {
+        step::run(cargo().args(["check", "-p", &package.name, "--all-features"]))?;
     }
     // Those with features that are off by default, or that can be left out: without them, and the program with each alone.
     for options in [
@@ -37,28 +32,6 @@ pub(crate) fn alone() -> Result<(), Failure> {
         step::run(cargo().args(["check", "-p"]).args(options))?;
     }
     Ok(())
-}
-
-/// Names of the published packages below `crates/`, and of that of the shaders, sorted.
-fn published() -> Result<Vec<String>, Failure> {
-    let folder = root().join("crates");
-    let failure = |error| Failure::File { path: folder.clone(), error };
-    let mut names = Vec::new();
-    let entries = fs::read_dir(&folder).map_err(failure)?.map(|entry| entry.map(|e| e.path()));
-    for package in entries.chain([Ok(root().join("shaders"))]) {
-        let path = package.map_err(failure)?.join("Cargo.toml");
-        let manifest = fs::read_to_string(&path).map_err(|error| Failure::File { path, error })?;
-        names.extend(published_name(&manifest).map(str::to_owned));
-    }
-    names.sort();
-    Ok(names)
-}
-
-/// The name in a manifest, unless it says that it is not published.
-fn published_name(manifest: &str) -> Option<&str> {
-    let unpublished = manifest.lines().any(|l| l.replace(' ', "") == "publish=false");
-    let name = manifest.lines().find_map(|l| l.strip_prefix("name = \"")?.strip_suffix('"'));
-    name.filter(|_| !unpublished)
 }
 
 /// Runs a bench of each kind once: that it runs, and that its answer is right.
@@ -82,10 +55,12 @@ fn default_program() -> Result<(), Failure> {
 /// * `gpu`: which device the tests on one are run on
 pub(crate) fn ci(gpu: Wish) -> Result<(), Failure> {
     type Step = (&'static str, fn() -> Result<(), Failure>);
-    let steps: [Step; 8] = [
+    let steps: [Step; 10] = [
         ("tidy", tidy::tidy),
+        ("deny", deny::check),
         ("docs", docs),
         ("alone", alone),
+        ("package", package::check),
         ("demo", demo),
         ("program", default_program),
         ("benches", benches_once),
@@ -121,18 +96,6 @@ fn timed<T>(
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn published_crates_are_recognised_by_their_manifests() {
-        let names = published().expect("manifests are readable");
-        assert!(
-            ["sightlines", "sightlines-shaders"].iter().all(|n| names.iter().any(|m| m == n)) && names.len() >= 13,
-            "{names:?}"
-        );
-        assert!(!names.iter().any(|n| n == "sightlines-testkit"));
-        assert_eq!(published_name("[package]\nname = \"a\"\npublish = false\n"), None);
-        assert_eq!(published_name("[package]\nname = \"a\"\n"), Some("a"));
-    }
 
     #[test]
     fn steps_are_timed_whether_they_pass_or_not() {

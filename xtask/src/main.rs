@@ -6,15 +6,23 @@
 mod bevy;
 mod circles;
 mod debian;
+mod deny;
+mod dist;
 mod freedoom;
 mod gate;
 mod gpu;
+mod install;
 mod lab;
+mod metadata;
+mod package;
+mod semver;
+mod spdx;
 mod step;
 mod tally;
 mod tidy;
 
 use clap::{Parser, Subcommand};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use step::{Failure, cargo};
 
@@ -74,6 +82,30 @@ enum Task {
     Circles,
     /// Checks that each published crate compiles on its own.
     Alone,
+    /// Checks the licences and sources of all dependencies, and with cargo-deny, if it is installed, their advisories.
+    Deny,
+    /// Packs the published crates, and compiles them from what is in the packages.
+    Package,
+    /// Compares public items with those of the last tag, by cargo-semver-checks.
+    Semver,
+    /// Installs a release in an empty Debian, in two ways, and follows the guides there; needs root, debootstrap and the network.
+    InstallCheck {
+        /// The folder with the files of a release; they are made first if it is not given.
+        #[arg(long)]
+        dist: Option<PathBuf>,
+    },
+    /// Writes the manual pages and completions of the programs.
+    Man {
+        /// The folder to write into [default: target/manuals].
+        #[arg(long)]
+        out: Option<PathBuf>,
+    },
+    /// Makes what a release offers for download: an archive, a package for Debian, a bill of materials, checksums.
+    Dist {
+        /// The folder to work and write in [default: target/dist].
+        #[arg(long)]
+        out: Option<PathBuf>,
+    },
     /// Runs everything that a change has to pass, and ends with the tests.
     Ci {
         /// Which GPU the tests that need one run on.
@@ -132,6 +164,15 @@ fn run(task: Task) -> Result<(), Failure> {
         Task::Tidy => tidy::tidy(),
         Task::Circles => circles::refuse(),
         Task::Alone => gate::alone(),
+        Task::Deny => deny::check(),
+        Task::Package => package::check(),
+        Task::Semver => semver::check(),
+        Task::InstallCheck { dist } => install::check(dist),
+        Task::Man { out } => {
+            let out = out.unwrap_or_else(|| package::target().join("manuals"));
+            step::run(cargo().args(["run", "--quiet", "-p", "sightlines-manuals", "--"]).arg(out))
+        }
+        Task::Dist { out } => dist::make(out).map(|files| println!("in {}", files.display())),
         Task::Ci { gpu } => gate::ci(gpu),
         Task::Gpu { gpu } => {
             for (name, value) in gpu::environment(gpu)? {

@@ -67,6 +67,11 @@ pub(crate) fn announce(command: &Command) {
 /// Runs a command to its end, with this program's input and output.
 pub(crate) fn run(command: &mut Command) -> Result<(), Failure> {
     announce(command);
+    run_silently(command)
+}
+
+/// Runs a command to its end without saying so: one of many.
+pub(crate) fn run_silently(command: &mut Command) -> Result<(), Failure> {
     let status = command.status().map_err(|error| start_failure(command, error))?;
     if status.success() { Ok(()) } else { Err(Failure::Status { command: typed(command), status }) }
 }

@@ -1,3 +1,5 @@
+// Features beside the items that need them, where the documentation is built with a nightly compiler, as on docs.rs.
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![doc = include_str!("../README.md")]
 //!
 //! # Scope

@@ -18,7 +18,7 @@ fn files_of_workspace() -> Vec<PathBuf> {
         for entry in fs::read_dir(&folder).expect("a folder is readable") {
             let path = entry.expect("an entry is readable").path();
             let name = path.file_name().expect("an entry has a name").to_string_lossy().into_owned();
-            let hidden = name.starts_with('.') && ![".ci", ".cargo", ".gitignore"].contains(&name.as_str());
+            let hidden = name.starts_with('.') && ![".ci", ".cargo", ".github", ".gitignore"].contains(&name.as_str());
             if hidden || outputs.contains(&path) {
                 continue;
             }

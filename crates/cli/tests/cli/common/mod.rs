@@ -61,9 +61,10 @@ impl Folder {
         names(self.0.path())
     }
 
-    /// Runs the program in this folder.
+    /// Runs the program in this folder: the one that was built with the tests, or the one that `SIGHTLINES_PROGRAM` names.
     pub(crate) fn run(&self, args: &[&str]) -> Run {
-        self.run_command(Command::new(env!("CARGO_BIN_EXE_sightlines")).args(args))
+        let program = std::env::var_os("SIGHTLINES_PROGRAM").unwrap_or_else(|| env!("CARGO_BIN_EXE_sightlines").into());
+        self.run_command(Command::new(program).args(args))
     }
 
     /// Runs `sightlines-vis` in this folder.
@@ -79,7 +80,7 @@ impl Folder {
         }
         let args: Vec<_> = command.get_args().map(ToOwned::to_owned).collect();
         let Output { status, stdout, stderr } =
-            command.current_dir(self.0.path()).output().expect("the program was built");
+            command.current_dir(self.0.path()).output().expect("the program is there");
         let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("output is text");
         let code = status.code().expect("the program ends by itself");
         let run = Run { code, out: text(stdout), err: text(stderr) };
