@@ -13,7 +13,8 @@
 //! * an *unclosed* sector shares its region with whatever it leaks into;
 //! * a two-sided line with a *missing side* lets sight through like any other, into a region that other
 //!   lines may name;
-//! * a sector without lines has no region: it sees itself and nothing else.
+//! * a sector without lines has no region: it sees itself and nothing else;
+//! * a line whose ends are one point is no line, and is counted.
 //!
 //! # Effects made by hand
 //! A table that is not symmetric, or that rejects a sector from itself, was not computed: mappers build
@@ -35,6 +36,8 @@ pub struct RejectOptions<'a> {
     pub maps: Vec<String>,
     /// Replace tables with effects made by hand too.
     pub force: bool,
+    /// One map that cannot be done is an error; otherwise the others are done.
+    pub strict: bool,
     /// Number of threads; 0 for one for each core. Changes nothing but the time.
     pub threads: usize,
     /// Called with the number of finished zones and their total, separately for each map.
@@ -46,6 +49,7 @@ impl std::fmt::Debug for RejectOptions<'_> {
         f.debug_struct("RejectOptions")
             .field("maps", &self.maps)
             .field("force", &self.force)
+            .field("strict", &self.strict)
             .field("threads", &self.threads)
             .finish_non_exhaustive()
     }
@@ -79,7 +83,7 @@ pub enum RejectError {
 }
 
 /// What became of the file.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct RejectOutcome {
     /// The new file.
     pub bytes: Vec<u8>,
@@ -88,7 +92,7 @@ pub struct RejectOutcome {
 }
 
 /// What became of one map.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct MapOutcome {
     /// Its name.
     pub name: LumpName,
@@ -101,7 +105,7 @@ pub struct MapOutcome {
 }
 
 /// What was done with one map.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum MapStatus {
     /// Its table was built and written.
@@ -110,6 +114,8 @@ pub enum MapStatus {
     KeptHandMade,
     /// Its format is not read; its lumps were kept.
     SkippedUnsupported,
+    /// It cannot be done; its lumps were kept.
+    Failed(Box<RejectError>),
 }
 
 /// A table in numbers.
@@ -119,6 +125,8 @@ pub struct RejectSummary {
     pub n_rejected: u64,
     /// Cells in regions whose lines disagree about the sector.
     pub n_disputed_cells: usize,
+    /// Lines without length, which were left out.
+    pub n_lines_without_length: usize,
     /// Crossings of lines that had to be rounded.
     pub n_rounded_crossings: usize,
     /// Pieces of one-sided lines that do not block, because rounding could have closed a gap with them.
@@ -139,6 +147,7 @@ pub fn reject_table(map: &DoomMap, options: &RejectOptions<'_>) -> Result<(Rejec
     let summary = RejectSummary {
         n_rejected: table.n_rejected(),
         n_disputed_cells: cut.n_disputed_cells,
+        n_lines_without_length: map.n_lines_without_length(),
         n_rounded_crossings: cut.n_rounded_crossings,
         n_dropped_pieces: cut.n_dropped_pieces,
     };
@@ -150,26 +159,42 @@ fn table_of(seen: &BitMatrix, n_sectors: u32) -> RejectTable {
 }
 
 /// Builds the REJECT lump of every map of a WAD, or of those named, and leaves every other lump as it
-/// was.
+/// was. A map that cannot be done keeps its lumps, and the others are done.
 ///
 /// # Errors
-/// [`RejectError`]; then nothing is to be written. A map in an unsupported format is an error if it was
-/// named, or if the file has no others.
+/// [`RejectError`]; then nothing is to be written. A map that cannot be done, or in an unsupported format, is an error if it was
+/// named, or if the file has no others that can. With [`RejectOptions::strict`] a map that cannot be done always is.
 pub fn reject_wad(wad: &Wad, options: &RejectOptions<'_>) -> Result<RejectOutcome, RejectError> {
     let all = list_maps(wad);
     let chosen = choose(&all, &options.maps)?;
-    let readable = |m: &&MapLumps| matches!(m.format(), MapFormat::Doom | MapFormat::Hexen);
+    let is_named = !options.maps.is_empty();
     // A map may be skipped among others, but to do nothing at all is an error.
-    let insist = !options.maps.is_empty() || !chosen.iter().any(readable);
+    let insist = is_named || !chosen.iter().any(|m| is_readable(m));
     let mut maps = Vec::with_capacity(chosen.len());
     let mut lumps = Vec::new();
     for map in chosen {
         let start = Instant::now();
-        let (n_sectors, status, bytes) = do_map(wad, map, insist, options)?;
+        let (n_sectors, status, bytes) = match do_map(wad, map, insist, options) {
+            Err(error) if insist || options.strict => return Err(error),
+            Err(error) => (0, MapStatus::Failed(Box::new(error)), None),
+            Ok(done) => done,
+        };
         lumps.extend(bytes.map(|b| (map, b)));
         maps.push(MapOutcome { name: map.name(), n_sectors, status, time: start.elapsed() });
     }
-    Ok(RejectOutcome { bytes: wad.with_rejects(&lumps)?, maps })
+    let is_done = |m: &MapOutcome| matches!(m.status, MapStatus::Written(_) | MapStatus::KeptHandMade);
+    let first_failure = maps.iter().find_map(|m| match &m.status {
+        MapStatus::Failed(error) => Some(error),
+        _ => None,
+    });
+    match first_failure {
+        Some(error) if !maps.iter().any(is_done) => Err(RejectError::clone(error)),
+        _ => Ok(RejectOutcome { bytes: wad.with_rejects(&lumps)?, maps }),
+    }
+}
+
+fn is_readable(map: &MapLumps) -> bool {
+    map.format() != MapFormat::Console
 }
 
 /// The requested maps, in file order.
@@ -194,8 +219,7 @@ type Done = (u32, MapStatus, Option<Vec<u8>>);
 
 /// Does one map; with `insist`, one in a format that is not read is an error.
 fn do_map(wad: &Wad, lumps: &MapLumps, insist: bool, options: &RejectOptions<'_>) -> Result<Done, RejectError> {
-    let supported = matches!(lumps.format(), MapFormat::Doom | MapFormat::Hexen);
-    if !supported && !insist {
+    if !is_readable(lumps) && !insist {
         return Ok((0, MapStatus::SkippedUnsupported, None));
     }
     let map = DoomMap::parse(wad, lumps)?;

@@ -9,7 +9,7 @@ use sightlines::bake::quake::{StateKey, state};
 use sightlines::bake::reject::{RejectOptions, reject_wad};
 use sightlines::bake::{PlanBakeOptions, PortalMode, PrtOptions, SceneBakeOptions, bake_plan, bake_prt, bake_scene};
 use sightlines::cells::Scene;
-use sightlines::formats::doom::{DoomMap, DoomMapSource, ML_TWOSIDED, SourceLine, Thing, list_maps};
+use sightlines::formats::doom::{DoomMap, DoomMapSource, ML_TWOSIDED, SourceLine, SourceThing, list_maps};
 use sightlines::formats::geojson::{parse_plan, write_plan};
 use sightlines::formats::input::{FORMATS, Source, detect};
 use sightlines::formats::levels::{LevelFile, LevelsIndex, parse_levels_index, write_levels_index};
@@ -122,7 +122,7 @@ fn source(hexen: bool) -> DoomMapSource {
             line(1, 4, 1, Some(0)),
         ],
         n_sectors: 2,
-        things: vec![Thing { x: 32, y: 32, kind: 1 }],
+        things: vec![SourceThing { x: 32, y: 32, kind: 1 }],
         reject: Some(vec![0]),
         hexen,
     }

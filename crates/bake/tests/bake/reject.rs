@@ -363,7 +363,7 @@ fn hand_made_effects_are_kept_unless_forced() {
     for by_hand in [BLIND, DEAF] {
         let wad = three_maps(&by_hand);
         let outcome = build(&wad, &[], false).unwrap();
-        let status: Vec<MapStatus> = outcome.maps.iter().map(|m| m.status).collect();
+        let status: Vec<MapStatus> = outcome.maps.iter().map(|m| m.status.clone()).collect();
         assert!(matches!(status[..], [MapStatus::Written(_), MapStatus::KeptHandMade, MapStatus::Written(_)]));
         let built = rejects(&Wad::parse(outcome.bytes).unwrap());
         assert_eq!(built[..2], [Some(vec![0b0110]), Some(by_hand.to_vec())]);
@@ -372,7 +372,7 @@ fn hand_made_effects_are_kept_unless_forced() {
         assert_eq!(rejects(&Wad::parse(outcome.bytes).unwrap())[1], Some(vec![0b0110]));
         // Asked for by name, it is kept as well, and then nothing changes at all.
         let outcome = build(&wad, &["MAP02"], false).unwrap();
-        assert_eq!((outcome.maps[0].status, &outcome.bytes[..]), (MapStatus::KeptHandMade, wad.as_bytes()));
+        assert_eq!((&outcome.maps[0].status, &outcome.bytes[..]), (&MapStatus::KeptHandMade, wad.as_bytes()));
         assert_eq!((outcome.maps[0].name, outcome.maps[0].n_sectors), (name("MAP02"), 2));
     }
 }
@@ -462,7 +462,7 @@ fn maps_in_other_formats_are_skipped_or_refused_by_name() {
     let wad = Wad::parse(builder.finish().unwrap()).unwrap();
 
     let outcome = build(&wad, &[], false).unwrap();
-    let status: Vec<MapStatus> = outcome.maps.iter().map(|m| m.status).collect();
+    let status: Vec<MapStatus> = outcome.maps.iter().map(|m| m.status.clone()).collect();
     let skipped = MapStatus::SkippedUnsupported;
     assert!(status[0] == skipped && matches!(status[1], MapStatus::Written(_)) && status[2] == skipped);
     let built = Wad::parse(outcome.bytes).unwrap();
