@@ -2,7 +2,9 @@
 
 use crate::common::{difference_besides_reject, small_wad, two_rooms};
 use proptest::prelude::*;
-use sightlines_formats::doom::{DoomErrorKind, DoomMapSource, MapLump, SourceLine, SourceThing, Thing, list_maps, write_doom_map};
+use sightlines_formats::doom::{
+    DoomErrorKind, DoomMapSource, MapLump, SourceLine, SourceThing, Thing, list_maps, write_doom_map,
+};
 use sightlines_formats::wad::{WadBuilder, WadError, WadKind};
 use sightlines_formats::{DoomError, DoomMap, LumpName, ReadError, Wad};
 
@@ -279,9 +281,7 @@ pub(crate) fn sources() -> impl Strategy<Value = DoomMapSource> {
 fn sound(source: &DoomMapSource) -> bool {
     let vertex = |v: u16| source.vertices.get(usize::from(v));
     let sector = |s: Option<u16>| s.is_none_or(|s| s < source.n_sectors);
-    let line = |l: &SourceLine| {
-        vertex(l.v1).zip(vertex(l.v2)).is_some() && sector(l.right) && sector(l.left)
-    };
+    let line = |l: &SourceLine| vertex(l.v1).zip(vertex(l.v2)).is_some() && sector(l.right) && sector(l.left);
     let long = |l: &SourceLine| vertex(l.v1) != vertex(l.v2);
     source.n_sectors > 0 && source.lines.iter().all(line) && source.lines.iter().any(long)
 }

@@ -73,7 +73,9 @@ fn fractions_are_the_doubles_nearest_to_them() {
     let map = read(text.as_bytes()).unwrap();
     assert_eq!(map.vertices()[3..], [[0.1, -12345.6789], [0.5, 100.0]]);
     // Numbers so close that they are one double make no line.
-    let text = triangle("linedef { v1 = 3; v2 = 4; } vertex { x = 0.1; y = 1; } vertex { x = 0.10000000000000000001; y = 1; }");
+    let text = triangle(
+        "linedef { v1 = 3; v2 = 4; } vertex { x = 0.1; y = 1; } vertex { x = 0.10000000000000000001; y = 1; }",
+    );
     let map = read(text.as_bytes()).unwrap();
     assert_eq!((map.lines().len(), map.n_lines_without_length(), map.plan().unwrap().lines().len()), (3, 1, 2));
 }
@@ -92,8 +94,14 @@ fn what_the_text_does_not_say_has_its_default() {
 #[test]
 fn what_is_wrong_is_named_with_its_line_and_column() {
     let cases = [
-        ("vertex { x = 0; y = 0; }\n  linedef { v1 = 0; v2 = 9; }", "line 2, column 3: linedef 0: vertex 9 is not among the 1 there are"),
-        ("linedef { v1 = 0; v2 = 0; sidefront = 3; } vertex { x = 0; y = 0; }", "line 1, column 1: linedef 0: sidedef 3 is not among the 0 there are"),
+        (
+            "vertex { x = 0; y = 0; }\n  linedef { v1 = 0; v2 = 9; }",
+            "line 2, column 3: linedef 0: vertex 9 is not among the 1 there are",
+        ),
+        (
+            "linedef { v1 = 0; v2 = 0; sidefront = 3; } vertex { x = 0; y = 0; }",
+            "line 1, column 1: linedef 0: sidedef 3 is not among the 0 there are",
+        ),
         ("\nsidedef { sector = 1; } sector {}", "line 2, column 1: sidedef 0: sector 1 is not among the 1 there are"),
         ("vertex { x = 1; }", "line 1, column 1: vertex 0 has no y"),
         ("sector {} sidedef {}", "line 1, column 11: sidedef 0 has no sector"),
@@ -102,16 +110,31 @@ fn what_is_wrong_is_named_with_its_line_and_column() {
         ("vertex { x = \"1\"; y = 0; }", "line 1, column 14: x is a string, but it takes a number"),
         ("vertex { x = inf; y = 0; }", "line 1, column 14: x is inf, but it takes a number"),
         ("vertex { x = 1e400; y = 0; }", "line 1, column 14: x: coordinate inf is not a finite number"),
-        ("vertex { x = 0;\ny = 1e-100; }", "line 2, column 5: y: coordinate 1e-100 is neither 0 nor between 2^-140 and 2^200 in magnitude"),
+        (
+            "vertex { x = 0;\ny = 1e-100; }",
+            "line 2, column 5: y: coordinate 1e-100 is neither 0 nor between 2^-140 and 2^200 in magnitude",
+        ),
         ("linedef { v1 = -1; v2 = 0; }", "line 1, column 16: v1 is -1, but it takes the number of a block"),
         ("linedef { v1 = 1.0; v2 = 0; }", "line 1, column 16: v1 is 1.0, but it takes the number of a block"),
         ("linedef { v1 = 010; v2 = 0; }", "line 1, column 16: v1 is 010, but it takes the number of a block"),
-        ("linedef { v1 = 99999999999999999999; v2 = 0; }", "line 1, column 16: v1 is 99999999999999999999, but it takes the number of a block"),
-        ("linedef { v1 = 4294967296; v2 = 0; }", "line 1, column 16: v1 is 4294967296, but it takes the number of a block"),
+        (
+            "linedef { v1 = 99999999999999999999; v2 = 0; }",
+            "line 1, column 16: v1 is 99999999999999999999, but it takes the number of a block",
+        ),
+        (
+            "linedef { v1 = 4294967296; v2 = 0; }",
+            "line 1, column 16: v1 is 4294967296, but it takes the number of a block",
+        ),
         ("linedef { v1 = 0x; v2 = 0; }", "line 1, column 16: v1 is 0x, but it takes the number of a block"),
-        ("linedef { v1 = 0; v2 = 0; sideback = -2; }", "line 1, column 38: sideback is -2, but it takes the number of a block"),
+        (
+            "linedef { v1 = 0; v2 = 0; sideback = -2; }",
+            "line 1, column 38: sideback is -2, but it takes the number of a block",
+        ),
         ("linedef { v1 = 0; v2 = 0; twosided = 1; }", "line 1, column 38: twosided is 1, but it takes true or false"),
-        ("thing { x = 0; y = 0; type = 2147483648; }", "line 1, column 30: type is 2147483648, but it takes a whole number"),
+        (
+            "thing { x = 0; y = 0; type = 2147483648; }",
+            "line 1, column 30: type is 2147483648, but it takes a whole number",
+        ),
         ("vertex { x = 1; y = 2 }", "line 1, column 23: ; is expected, not }"),
         ("vertex { inner { } }", "line 1, column 16: = is expected, not {"),
         ("vertex { x = { } }", "line 1, column 14: a value is expected, not {"),
@@ -161,8 +184,14 @@ fn hostile_texts_are_refused() {
         ("{".repeat(n), "line 1, column 1: a name is expected, not {"),
         ("/* ".repeat(n), "line 1, column 1: this comment has no end"),
         ("\\\"".repeat(n), "line 1, column 1: a name is expected, not \\\\"),
-        (format!("vertex {{ x = {}; y = e; }}", "9".repeat(n)), "line 1, column 14: x: coordinate inf is not a finite number"),
-        (format!("vertex {{ x = 0.{}; y = e; }}", "1".repeat(n)), "line 1, column 100022: y is e, but it takes a number"),
+        (
+            format!("vertex {{ x = {}; y = e; }}", "9".repeat(n)),
+            "line 1, column 14: x: coordinate inf is not a finite number",
+        ),
+        (
+            format!("vertex {{ x = 0.{}; y = e; }}", "1".repeat(n)),
+            "line 1, column 100022: y is e, but it takes a number",
+        ),
         ("linedef { v1 = 1; v2 = 2; }".repeat(n), "line 1, column 1: linedef 0: vertex 1 is not among the 0 there are"),
     ] {
         assert_eq!(refused(&text), error, "{}", &text[..20]);

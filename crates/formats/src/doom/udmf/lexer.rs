@@ -162,8 +162,19 @@ mod tests {
     fn pieces_are_found_where_they_are() {
         let text = "a=1;// x = {\n\t/* \" \n */b{ c = \"}\\\"\n\";}\r\n-1.5e+3/**/z/y//";
         let expected = [
-            "1:1 a", "1:2 =", "1:3 1", "1:4 ;", "3:4 b", "3:5 {", "3:7 c", "3:9 =", "3:11 a string", "4:2 ;", "4:3 }",
-            "5:1 -1.5e+3", "5:12 z/y",
+            "1:1 a",
+            "1:2 =",
+            "1:3 1",
+            "1:4 ;",
+            "3:4 b",
+            "3:5 {",
+            "3:7 c",
+            "3:9 =",
+            "3:11 a string",
+            "4:2 ;",
+            "4:3 }",
+            "5:1 -1.5e+3",
+            "5:12 z/y",
         ];
         assert_eq!(pieces(text).unwrap(), expected);
         assert_eq!(pieces(" \n ").unwrap(), [""; 0]);

@@ -71,8 +71,7 @@ impl<'t> Reader<'t> {
             }
             b"linedef" => {
                 let index = content.lines.len();
-                let block =
-                    self.block(("linedef", index, place), ["v1", "v2", "sidefront", "sideback", "twosided"])?;
+                let block = self.block(("linedef", index, place), ["v1", "v2", "sidefront", "sideback", "twosided"])?;
                 let flags = if block.flag(4)? { ML_TWOSIDED } else { 0 };
                 let (right, left) = (block.optional_index(2)?, block.optional_index(3)?);
                 let line = LineDef { v1: block.index(0)?, v2: block.index(1)?, flags, right, left };

@@ -17,11 +17,12 @@ fn number(x: f64, way: usize) -> String {
 
 /// The text of a map. Coordinates, flags, comments and the order of blocks are written in turns as the grammar allows; coordinates
 /// must be multiples of 1/8.
-pub fn text_of(map: &DoomMap) -> String {
+pub(crate) fn text_of(map: &DoomMap) -> String {
     let mut text = "namespace = \"zdoom\"; // a map\n".to_owned();
     for (k, thing) in map.things().iter().enumerate() {
         let [x, y] = [thing.x, thing.y].map(|x| number(x, k));
-        writeln!(text, "thing {{ x = {x}; y = {y}; type = {}; skill1 = true; comment = \"}}\"; }}", thing.kind).unwrap();
+        writeln!(text, "thing {{ x = {x}; y = {y}; type = {}; skill1 = true; comment = \"}}\"; }}", thing.kind)
+            .unwrap();
     }
     for (k, &[x, y]) in map.vertices().iter().enumerate() {
         writeln!(text, "vertex // {k}\n{{\ny = {};\nx = {};\n}}", number(y, k / 2), number(x, k)).unwrap();
@@ -57,7 +58,7 @@ fn line_text(line: &LineDef, k: usize) -> String {
 }
 
 /// A WAD with one map as text between two lumps, with the lumps that stand around the text.
-pub fn wad_of_text(text: &[u8], others: &[(&str, &[u8])]) -> Vec<u8> {
+pub(crate) fn wad_of_text(text: &[u8], others: &[(&str, &[u8])]) -> Vec<u8> {
     let mut builder = WadBuilder::new(WadKind::Patch);
     let mut lump = |name: &str, bytes: &[u8]| _ = builder.lump(name, bytes).unwrap();
     lump("BEFORE", b"before");
@@ -70,7 +71,7 @@ pub fn wad_of_text(text: &[u8], others: &[(&str, &[u8])]) -> Vec<u8> {
 }
 
 /// The same WAD with each map in a binary format as text, without REJECT lumps.
-pub fn as_text(wad: &Wad) -> Vec<u8> {
+pub(crate) fn as_text(wad: &Wad) -> Vec<u8> {
     let mut builder = WadBuilder::new(wad.kind());
     for lumps in sightlines_formats::doom::list_maps(wad) {
         let map = DoomMap::parse(wad, &lumps).unwrap();
