@@ -5,6 +5,8 @@ pub(crate) mod levels;
 pub(crate) mod looks;
 pub(crate) mod picture;
 pub(crate) mod quake;
+#[path = "../../../../formats/tests/formats/common/udmf.rs"]
+pub(crate) mod udmf;
 
 use sightlines::formats::doom::{DoomMapSource, ML_TWOSIDED, SourceLine};
 use sightlines::formats::geojson;
