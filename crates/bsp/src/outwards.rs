@@ -147,7 +147,7 @@ mod tests {
 
     /// Three planes as rows of rationals, solved by Cramer's rule.
     fn solve(rows: [[f64; 4]; 3]) -> Option<[BigRational; 3]> {
-        let rows = rows.map(|row| row.map(|x| rational(x)));
+        let rows = rows.map(|row| row.map(rational));
         let det = |column: usize| {
             let at = |i: usize, k: usize| if k == column { &rows[i][3] } else { &rows[i][k] };
             let term = |i: usize, j: usize, k: usize| at(0, i) * at(1, j) * at(2, k);
@@ -213,7 +213,7 @@ mod tests {
                 }
                 n_known += 1;
                 for k in 0..rounded.len() {
-                    let [p, q] = [rounded[k], rounded[(k + 1) % rounded.len()]].map(|p| p.map(|x| rational(x)));
+                    let [p, q] = [rounded[k], rounded[(k + 1) % rounded.len()]].map(|p| p.map(rational));
                     let inside = turn([&p[u], &p[v]], [&q[u], &q[v]], [&exact[u], &exact[v]]);
                     prop_assert!(inside >= rational(0.0), "corner {i}{j} is outside of {rounded:?}, made of {corners:?}");
                 }
