@@ -3,10 +3,11 @@
 use crate::common::Folder;
 
 /// All commands, with those that have others below them.
-const COMMANDS: [&str; 20] = [
+const COMMANDS: [&str; 21] = [
     "build",
     "reject",
     "vis",
+    "portals",
     "verify",
     "query",
     "walk",

@@ -272,6 +272,7 @@ fn maps(all: &mut Results) {
     let map = row_of_leafs(BspFormat::Bsp29);
     folder.write("map.bsp", &map.bsp);
     folder.write("map.prt", &map.prt);
+    all.line(&folder, "portals", "portals map.bsp -o made.prt");
     folder.run(&["vis", "map.bsp", "-o", "seen.bsp"]).expect(0);
     let mut add = |heading, line: &str| all.line(&folder, heading, line);
     add("verify", "verify seen.bsp map.bsp --rays 100 --pairs 10");

@@ -23,7 +23,7 @@ pub fn check_match(bsp: &Bsp, leafs: &LeafClusters) -> Result<(), VisibilityErro
 ///
 /// Portals do stick out where a cluster has solid detail, which is not in its leafs: one in twenty sides on the maps
 /// that were examined, none on maps without detail, and all of them with the portals of another map. So the limit is
-/// half of them. It catches mistakes and does not affect visibility.
+/// half of them. Of what is beyond all leafs, the nearest point that is not counts. It catches mistakes and does not affect visibility.
 ///
 /// # Errors
 /// [`VisibilityError::Leafs`], [`VisibilityError::Clusters`], [`VisibilityError::OtherMap`]; [`VisibilityError::InsideOut`] for the first portal whose
@@ -32,12 +32,18 @@ pub fn check_portals(bsp: &Bsp, prt: &Prt) -> Result<(), VisibilityError> {
     let leafs = prt.leaf_clusters();
     check_match(bsp, &leafs)?;
     let boxes = cluster_boxes(bsp, &leafs);
+    // Where nothing closes a leaf, as in a leaking map, its portals may go on beyond all of them.
+    let all = boxes.iter().fold(([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]), |(low, high), (l, h)| {
+        (std::array::from_fn(|k| low[k].min(l[k])), std::array::from_fn(|k| high[k].max(h[k])))
+    });
     let (mut n_outside, mut n_sides) = (0, 0);
     for portal in prt.portals() {
         for cluster in portal.clusters {
             let (low, high) = boxes[cluster as usize];
             // Bounds are whole numbers in most formats, and may have been rounded.
-            let is_inside = |p: &[f64; 3]| (0..3).all(|k| low[k] - 1.0 <= p[k] && p[k] <= high[k] + 1.0);
+            let is_inside = |p: &[f64; 3]| {
+                (0..3).map(|k| (k, p[k].max(all.0[k]).min(all.1[k]))).all(|(k, x)| low[k] - 1.0 <= x && x <= high[k] + 1.0)
+            };
             n_sides += 1;
             n_outside += usize::from(!portal.points.iter().all(is_inside));
         }
