@@ -3,8 +3,8 @@
 use super::console::{Console, Kind};
 use super::error::Error;
 use crate::output::{self, bytes};
-use sightlines::formats::quake::read_bsp;
 use sightlines::formats::quake::visibility::lump_with_new_hearing;
+use sightlines::formats::quake::{BspFormat, read_bsp};
 use std::path::Path;
 
 /// Writes anew what is heard in a map, and leaves what is visible as it is.
@@ -12,7 +12,7 @@ pub(super) fn renew(map: &Path, console: &Console) -> Result<(), Error> {
     output::check(&[], &[map])?;
     let bsp = read_bsp(map)?;
     let path = map.to_owned();
-    if !bsp.format().has_clusters() {
+    if bsp.format() != BspFormat::Quake2 {
         return Err(Error::NoHearing { path, format: bsp.format().name() });
     }
     console.say(Kind::Progress, &format!("map        {}: {}", map.display(), bsp.format().name()))?;

@@ -10,13 +10,12 @@ mod hearing;
 mod priority;
 
 use crate::Answer;
-use crate::commands::vis::{Manner, Sound, StateUse, VisArgs, compute};
+use crate::commands::vis::{Beginning, Manner, Sound, StateUse, VisArgs, compute};
 use crate::output::{bytes, count};
 use arguments::VisProgramArgs;
 use clap::CommandFactory;
 use console::{Console, Kind};
 use error::Error;
-use sightlines::formats::quake::{Bsp, Prt};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -65,13 +64,16 @@ fn see(args: &VisProgramArgs, map: &Path, console: &Console) -> Result<(), Error
     (vis.fast, vis.threads, vis.save_every) = (args.fast, args.threads, args.save_every);
     vis.silence = args.silenced();
     let how = if args.fast { "a coarse bound of the visibility" } else { "the exact visibility" };
-    let mut begin = |bsp: &Bsp, prt: &Prt, portals: &Path| {
+    let mut begin = |&Beginning { bsp, prt, prt_path, resumed }: &Beginning<'_>| {
         let leafs = count(bsp.n_visible_leafs() as u64, "leaf");
         let clusters = count(prt.n_clusters(), "cluster");
         let all = count(prt.n_portals() as u64, "portal");
         console.say(Kind::Progress, &format!("map        {}: {}", map.display(), bsp.format().name()))?;
-        console.say(Kind::Progress, &format!("portals    {}: {}", portals.display(), prt.dialect()))?;
+        console.say(Kind::Progress, &format!("portals    {}: {}", prt_path.display(), prt.dialect()))?;
         console.say(Kind::Statistics, &format!("counts     {leafs}, {clusters}, {all}"))?;
+        if resumed {
+            console.say(Kind::Progress, "resumed    from where an earlier run was stopped")?;
+        }
         console.say(Kind::Progress, &format!("computing  {how}"))
     };
     let manner = Manner {
@@ -81,9 +83,6 @@ fn see(args: &VisProgramArgs, map: &Path, console: &Console) -> Result<(), Error
         begin: &mut begin,
     };
     let outcome = compute(&vis, manner)?;
-    if outcome.resumed {
-        console.say(Kind::Progress, "resumed    from where an earlier run was stopped")?;
-    }
     console.say(Kind::Statistics, &format!("pairs      {}", outcome.clusters.brief_pairs()))?;
     if args.verbose {
         console.say(Kind::Statistics, outcome.clusters.to_string().trim_end())?;

@@ -92,13 +92,22 @@ pub(crate) struct Manner<'a> {
     pub(crate) states: StateUse,
     /// Whether the state is kept after the end.
     pub(crate) keep_state: bool,
-    /// Called with map, portals and their file before the search.
-    pub(crate) begin: &'a mut dyn FnMut(&Bsp, &Prt, &Path) -> Result<(), OutputError>,
+    /// Called before the search.
+    pub(crate) begin: &'a mut dyn FnMut(&Beginning<'_>) -> Result<(), OutputError>,
+}
+
+/// What a search begins with.
+pub(crate) struct Beginning<'a> {
+    pub(crate) bsp: &'a Bsp,
+    pub(crate) prt: &'a Prt,
+    pub(crate) prt_path: &'a Path,
+    /// Whether an earlier run is resumed.
+    pub(crate) resumed: bool,
 }
 
 pub(crate) fn run(args: &VisArgs, show_progress: bool, verbose: bool) -> Result<Answer, Error> {
     let states = if args.resume { StateUse::Resume } else { StateUse::Anew };
-    let mut outcome = compute(args, Manner { show_progress, states, keep_state: false, begin: &mut |_, _, _| Ok(()) })?;
+    let mut outcome = compute(args, Manner { show_progress, states, keep_state: false, begin: &mut |_| Ok(()) })?;
     outcome.verbose = verbose;
     output::print(args.json, &outcome)?;
     Ok(Answer::Yes)
@@ -126,7 +135,6 @@ pub(crate) fn compute(args: &VisArgs, manner: Manner<'_>) -> Result<Outcome, Err
     let MapPortals { prt, path: prt_path, text, .. } = portals;
     check_portals(&bsp, &prt).map_err(|source| InputError::of_portals(&prt_path, &args.map, Box::new(source)))?;
     warn_of_repeats(&prt_path, &prt);
-    (manner.begin)(&bsp, &prt, &prt_path)?;
 
     let key = StateKey::new(&text, args.fast);
     drop(text);
@@ -136,6 +144,7 @@ pub(crate) fn compute(args: &VisArgs, manner: Manner<'_>) -> Result<Outcome, Err
         saved.keep();
     }
     let resumed = from.is_some();
+    (manner.begin)(&Beginning { bsp: &bsp, prt: &prt, prt_path: &prt_path, resumed })?;
     let bar = Bar::new("visibility of clusters", manner.show_progress);
     let mut save = |search: &ConvexSearch| saved.save(search);
     let sounds = sounds::all_but(&args.silence);

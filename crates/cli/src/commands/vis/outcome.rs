@@ -23,7 +23,7 @@ pub(crate) struct Outcome {
     pub(crate) clusters: Clusters,
     pub(super) fast: bool,
     /// Whether it resumed an earlier run.
-    pub(crate) resumed: bool,
+    pub(super) resumed: bool,
     /// What was proven, if `--certify` was given.
     pub(super) certified: Option<Certified>,
     pub(crate) n_bytes: usize,

@@ -118,7 +118,7 @@ fn loudness(
 /// # Errors
 /// [`VisibilityError`] with the cluster whose row is wrong, or if the lump would be too large.
 pub fn lump_with_new_hearing(bsp: &Bsp) -> Result<Option<VisibilityLump>, VisibilityError> {
-    let has_rows = bsp.format().has_clusters() && !bsp.visibility().is_empty();
+    let has_rows = bsp.format() == BspFormat::Quake2 && !bsp.visibility().is_empty();
     has_rows.then(|| quake2_lump(&quake2_rows(bsp, 0)?)).transpose()
 }
 
