@@ -60,11 +60,8 @@ impl Folder {
     /// Runs the program in this folder: the one that was built with the tests, or the one that `SIGHTLINES_PROGRAM` names.
     pub(crate) fn run(&self, args: &[&str]) -> Run {
         let program = std::env::var_os("SIGHTLINES_PROGRAM").unwrap_or_else(|| env!("CARGO_BIN_EXE_sightlines").into());
-        let Output { status, stdout, stderr } = Command::new(program)
-            .args(args)
-            .current_dir(self.0.path())
-            .output()
-            .expect("the program is there");
+        let Output { status, stdout, stderr } =
+            Command::new(program).args(args).current_dir(self.0.path()).output().expect("the program is there");
         let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("output is text");
         let code = status.code().expect("the program ends by itself");
         let run = Run { code, out: text(stdout), err: text(stderr) };
