@@ -1,6 +1,7 @@
 //! From what a file holds to the input of a bake.
 
 use crate::input::BakeInput;
+use crate::quake::{PortalsError, portals_of_map};
 use sightlines_cells::{Plan, PlanError};
 use sightlines_formats::doom::{MapChoiceError, choose_map, list_maps};
 use sightlines_formats::quake::{Bsp, Prt};
@@ -51,13 +52,14 @@ pub enum BakeableError {
     /// A simplified scene whose triangles were moved. It may hide what can be seen, so no table is made of it.
     #[error("the triangles of the scene were moved when it was simplified, so it may hide what can be seen")]
     Moved,
-    /// A Quake map without the portal file that its compiler wrote.
-    #[error("a Quake map needs the portal file that its compiler wrote")]
-    NoPortals,
+    /// A Quake map without a portal file, of which no portals can be made either.
+    #[error("the map has no portal file, and no portals can be made from it: {0}")]
+    Portals(#[from] PortalsError),
 }
 
 impl Bakeable {
-    /// Detects the format of a source, reads it, and the portal file beside it if it is a Quake map.
+    /// Detects the format of a source, reads it, and the portal file beside it if it is a Quake map; without one, portals are made
+    /// from the map.
     ///
     /// * `map`: which map of a WAD; may be left out if there is only one. Other files ignore it.
     ///
@@ -72,7 +74,7 @@ impl Bakeable {
     /// Makes of an input, and what belongs to it, what can be baked.
     ///
     /// * `map`: as for [`Bakeable::read`]
-    /// * `portals`: those of a Quake map; other inputs ignore them
+    /// * `portals`: those of a Quake map, which are made from the map if there are none; other inputs ignore them
     ///
     /// # Errors
     /// [`BakeableError`]
@@ -85,7 +87,10 @@ impl Bakeable {
                 _ => Ok(Self::Scene(file)),
             },
             Input::Prt(prt) => Ok(Self::Portals(prt)),
-            Input::Bsp(bsp) => Ok(Self::Map(bsp, portals.ok_or(BakeableError::NoPortals)?)),
+            Input::Bsp(bsp) => {
+                let portals = portals.map_or_else(|| Ok(portals_of_map(&bsp)?.prt), Ok::<_, PortalsError>)?;
+                Ok(Self::Map(bsp, portals))
+            }
             _ => Err(BakeableError::Kind),
         }
     }

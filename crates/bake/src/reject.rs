@@ -13,15 +13,17 @@
 //! * an *unclosed* sector shares its region with whatever it leaks into;
 //! * a two-sided line with a *missing side* lets sight through like any other, into a region that other
 //!   lines may name;
-//! * a sector without lines has no region: it sees itself and nothing else.
+//! * a sector without lines has no region: it sees itself and nothing else;
+//! * a line whose ends are one point is no line, and is counted.
 //!
 //! # Effects made by hand
 //! A table that is not symmetric, or that rejects a sector from itself, was not computed: mappers build
-//! blind or deaf monsters that way. Such a table is kept unless the caller insists.
+//! blind or deaf monsters that way. Such a table is kept unless the caller insists, or says itself which effects there are
+//! ([`RejectOptions::rmb`]).
 
 use crate::error::BakeError;
 use crate::sectors::see_groups;
-use sightlines_formats::doom::{DoomMap, MapFormat, MapLumps, list_maps};
+use sightlines_formats::doom::{DoomMap, MapFormat, MapLumps, RmbError, RmbFile, list_maps};
 use sightlines_formats::{DoomError, LumpName, RejectTable, Wad, WadError};
 use sightlines_progress::Observer;
 use sightlines_pvs::BitMatrix;
@@ -35,6 +37,10 @@ pub struct RejectOptions<'a> {
     pub maps: Vec<String>,
     /// Replace tables with effects made by hand too.
     pub force: bool,
+    /// One map that cannot be done is an error; otherwise the others are done.
+    pub strict: bool,
+    /// Effects to make in the tables that are built. The tables of maps that it has effects on are replaced, whatever they are.
+    pub rmb: Option<&'a RmbFile>,
     /// Number of threads; 0 for one for each core. Changes nothing but the time.
     pub threads: usize,
     /// Called with the number of finished zones and their total, separately for each map.
@@ -46,6 +52,8 @@ impl std::fmt::Debug for RejectOptions<'_> {
         f.debug_struct("RejectOptions")
             .field("maps", &self.maps)
             .field("force", &self.force)
+            .field("strict", &self.strict)
+            .field("rmb", &self.rmb)
             .field("threads", &self.threads)
             .finish_non_exhaustive()
     }
@@ -73,13 +81,16 @@ pub enum RejectError {
         #[source]
         kind: BakeError,
     },
+    /// An effect names a sector that is not there.
+    #[error(transparent)]
+    Rmb(#[from] RmbError),
     /// The new file cannot be laid out.
     #[error(transparent)]
     Write(#[from] WadError),
 }
 
 /// What became of the file.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct RejectOutcome {
     /// The new file.
     pub bytes: Vec<u8>,
@@ -88,7 +99,7 @@ pub struct RejectOutcome {
 }
 
 /// What became of one map.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct MapOutcome {
     /// Its name.
     pub name: LumpName,
@@ -101,7 +112,7 @@ pub struct MapOutcome {
 }
 
 /// What was done with one map.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum MapStatus {
     /// Its table was built and written.
@@ -110,6 +121,8 @@ pub enum MapStatus {
     KeptHandMade,
     /// Its format is not read; its lumps were kept.
     SkippedUnsupported,
+    /// It cannot be done; its lumps were kept.
+    Failed(Box<RejectError>),
 }
 
 /// A table in numbers.
@@ -117,8 +130,12 @@ pub enum MapStatus {
 pub struct RejectSummary {
     /// Ordered pairs of sectors that are rejected.
     pub n_rejected: u64,
+    /// Ordered pairs of sectors whose answer effects have changed ([`RejectOptions::rmb`]).
+    pub n_effects: u64,
     /// Cells in regions whose lines disagree about the sector.
     pub n_disputed_cells: usize,
+    /// Lines without length, which were left out.
+    pub n_lines_without_length: usize,
     /// Crossings of lines that had to be rounded.
     pub n_rounded_crossings: usize,
     /// Pieces of one-sided lines that do not block, because rounding could have closed a gap with them.
@@ -126,7 +143,7 @@ pub struct RejectSummary {
 }
 
 /// Builds the REJECT table of one map. Symmetric; no sector is rejected from itself. Exact in the flat
-/// model of this [module](self) but for rounded crossings, which err towards visible.
+/// model of this [module](self) but for rounded crossings, which err towards visible. Makes no effects.
 ///
 /// # Errors
 /// [`RejectError::Bake`] if the map has no lines.
@@ -138,7 +155,9 @@ pub fn reject_table(map: &DoomMap, options: &RejectOptions<'_>) -> Result<(Rejec
     let table = table_of(&seen, map.n_sectors());
     let summary = RejectSummary {
         n_rejected: table.n_rejected(),
+        n_effects: 0,
         n_disputed_cells: cut.n_disputed_cells,
+        n_lines_without_length: map.n_lines_without_length(),
         n_rounded_crossings: cut.n_rounded_crossings,
         n_dropped_pieces: cut.n_dropped_pieces,
     };
@@ -150,26 +169,43 @@ fn table_of(seen: &BitMatrix, n_sectors: u32) -> RejectTable {
 }
 
 /// Builds the REJECT lump of every map of a WAD, or of those named, and leaves every other lump as it
-/// was.
+/// was. A map that cannot be done keeps its lumps, and the others are done.
 ///
 /// # Errors
-/// [`RejectError`]; then nothing is to be written. A map in an unsupported format is an error if it was
-/// named, or if the file has no others.
+/// [`RejectError`]; then nothing is to be written. A map that cannot be done, or in an unsupported format, is an error if it was
+/// named, or if the file has no others that can. With [`RejectOptions::strict`] a map that cannot be done always is; so is an effect
+/// on a sector that is not there.
 pub fn reject_wad(wad: &Wad, options: &RejectOptions<'_>) -> Result<RejectOutcome, RejectError> {
     let all = list_maps(wad);
     let chosen = choose(&all, &options.maps)?;
-    let readable = |m: &&MapLumps| matches!(m.format(), MapFormat::Doom | MapFormat::Hexen);
+    let is_named = !options.maps.is_empty();
     // A map may be skipped among others, but to do nothing at all is an error.
-    let insist = !options.maps.is_empty() || !chosen.iter().any(readable);
+    let insist = is_named || !chosen.iter().any(|m| is_readable(m));
     let mut maps = Vec::with_capacity(chosen.len());
     let mut lumps = Vec::new();
     for map in chosen {
         let start = Instant::now();
-        let (n_sectors, status, bytes) = do_map(wad, map, insist, options)?;
+        let (n_sectors, status, bytes) = match do_map(wad, map, insist, options) {
+            Err(error) if insist || options.strict || matches!(error, RejectError::Rmb(_)) => return Err(error),
+            Err(error) => (0, MapStatus::Failed(Box::new(error)), None),
+            Ok(done) => done,
+        };
         lumps.extend(bytes.map(|b| (map, b)));
         maps.push(MapOutcome { name: map.name(), n_sectors, status, time: start.elapsed() });
     }
-    Ok(RejectOutcome { bytes: wad.with_rejects(&lumps)?, maps })
+    let is_done = |m: &MapOutcome| matches!(m.status, MapStatus::Written(_) | MapStatus::KeptHandMade);
+    let first_failure = maps.iter().find_map(|m| match &m.status {
+        MapStatus::Failed(error) => Some(error),
+        _ => None,
+    });
+    match first_failure {
+        Some(error) if !maps.iter().any(is_done) => Err(RejectError::clone(error)),
+        _ => Ok(RejectOutcome { bytes: wad.with_rejects(&lumps)?, maps }),
+    }
+}
+
+fn is_readable(map: &MapLumps) -> bool {
+    map.format() != MapFormat::Console
 }
 
 /// The requested maps, in file order.
@@ -194,16 +230,20 @@ type Done = (u32, MapStatus, Option<Vec<u8>>);
 
 /// Does one map; with `insist`, one in a format that is not read is an error.
 fn do_map(wad: &Wad, lumps: &MapLumps, insist: bool, options: &RejectOptions<'_>) -> Result<Done, RejectError> {
-    let supported = matches!(lumps.format(), MapFormat::Doom | MapFormat::Hexen);
-    if !supported && !insist {
+    if !is_readable(lumps) && !insist {
         return Ok((0, MapStatus::SkippedUnsupported, None));
     }
     let map = DoomMap::parse(wad, lumps)?;
     let n = map.n_sectors();
     let old = map.reject().and_then(|bytes| old_table(n, bytes));
-    if !options.force && old.is_some_and(|table| table.has_hand_made_effects()) {
+    let rmb = options.rmb.filter(|rmb| rmb.is_for(lumps.name()));
+    if !options.force && rmb.is_none() && old.is_some_and(|table| table.has_hand_made_effects()) {
         return Ok((n, MapStatus::KeptHandMade, None));
     }
-    let (table, summary) = reject_table(&map, options)?;
+    let (mut table, mut summary) = reject_table(&map, options)?;
+    if let Some(rmb) = rmb {
+        summary.n_effects = rmb.apply(lumps.name(), &mut table)?;
+        summary.n_rejected = table.n_rejected();
+    }
     Ok((n, MapStatus::Written(summary), Some(table.into_bytes())))
 }

@@ -12,6 +12,7 @@ use crate::commands::{
     light::LightArgs,
     multifocal::MultifocalArgs,
     pack::{PackArgs, UnpackArgs},
+    portals::PortalsArgs,
     query::QueryArgs,
     reject::RejectArgs,
     render::RenderArgs,
@@ -54,6 +55,8 @@ pub(crate) enum Command {
     Reject(RejectArgs),
     /// Write the visibility of a Quake or Quake II map; everything else stays as it is
     Vis(VisArgs),
+    /// Write the portal file of a Quake map, made from its tree of planes
+    Portals(PortalsArgs),
     /// Check a table, or the visibility in a Quake or Doom map, against its scene; exit code 1 for a violation
     Verify(VerifyArgs),
     /// List the cells and objects visible from a point, or in a view from there

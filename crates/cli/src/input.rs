@@ -8,13 +8,13 @@ use sightlines::bake::{Bakeable, BakeableError};
 use sightlines::cells::{CellGraph, Planar};
 use sightlines::formats::doom::{DoomMap, MapChoiceError, choose_map, list_maps};
 use sightlines::formats::input::HEAD;
-use sightlines::formats::quake::{Prt, portals_beside};
+use sightlines::formats::quake::Prt;
 use sightlines::formats::scene::{SceneReadOptions, Simplified, read_scene_with};
 use sightlines::formats::{Input, InputKind, ReadError, SceneFile, Source, Wad, detect_file};
 use sightlines::pvs::Table;
 use std::fs::File;
 use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// What a file holds, as [`formats::input`](sightlines::formats::input) recognises it; `None` if no format does.
 pub(crate) fn kind_of(path: &Path) -> Result<Option<InputKind>, InputError> {
@@ -99,15 +99,9 @@ pub(crate) fn bakeable(
             InputError::Plan { path: path.to_owned(), map: Some(map.to_string()), source }
         }
         BakeableError::Moved => InputError::NoOccluder(path.to_owned()),
-        BakeableError::NoPortals => InputError::MapWithoutPortals(path.to_owned()),
+        BakeableError::Portals(source) => InputError::MadePortals { path: path.to_owned(), source: Box::new(source) },
         _ => InputError::Kind { path: path.to_owned(), expected: BUILDABLE },
     })
-}
-
-/// The portal file of a Quake map: the one that was named, or the one beside the map.
-pub(crate) fn portal_file(map: &Path, named: Option<&Path>) -> Result<PathBuf, InputError> {
-    let path = named.map_or_else(|| portals_beside(map), Path::to_owned);
-    if named.is_some() || path.exists() { Ok(path) } else { Err(InputError::MapWithoutPortals(map.to_owned())) }
 }
 
 /// Refuses a file that is not a scene in space.

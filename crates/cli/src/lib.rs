@@ -20,6 +20,7 @@ mod file_error;
 mod folder;
 mod glb;
 mod input;
+mod map_portals;
 mod memory;
 mod named;
 mod numbers;
@@ -62,16 +63,7 @@ enum Answer {
 pub fn sightlines() -> ExitCode {
     let arguments = Arguments::parse();
     log_to_stderr(&arguments);
-    match run(&arguments) {
-        Ok(Answer::Yes) => ExitCode::SUCCESS,
-        Ok(Answer::No) => ExitCode::FAILURE,
-        Err(error) if is_closed_pipe(&*error) => ExitCode::SUCCESS,
-        Err(error) => {
-            // Nothing is left to do if standard error is closed too.
-            let _ = writeln!(std::io::stderr(), "error: {error}");
-            ExitCode::from(2)
-        }
-    }
+    exit_code(run(&arguments))
 }
 
 /// The program `sightlines-vis`, which takes the place of a map editor's `vis`; otherwise as [`sightlines()`].
@@ -89,6 +81,20 @@ pub fn vis_command() -> clap::Command {
     vis_program::command()
 }
 
+/// The exit code of a program, which prints what went wrong.
+fn exit_code(result: Result<Answer, Box<dyn Error>>) -> ExitCode {
+    match result {
+        Ok(Answer::Yes) => ExitCode::SUCCESS,
+        Ok(Answer::No) => ExitCode::FAILURE,
+        Err(error) if is_closed_pipe(&*error) => ExitCode::SUCCESS,
+        Err(error) => {
+            // Nothing is left to do if standard error is closed too.
+            let _ = writeln!(std::io::stderr(), "error: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
 /// Runs a command. Each has its own error; all that is needed here is its text, and whether a pipe was closed.
 fn run(arguments: &Arguments) -> Result<Answer, Box<dyn Error>> {
     let show_progress = !arguments.quiet;
@@ -97,6 +103,7 @@ fn run(arguments: &Arguments) -> Result<Answer, Box<dyn Error>> {
         Command::Reject(args) => commands::reject::run(args, show_progress)?,
         Command::Vis(args) => commands::vis::run(args, show_progress, arguments.verbose > 0)?,
         Command::Verify(args) => commands::verify::run(args, show_progress)?,
+        Command::Portals(args) => commands::portals::run(args)?,
         Command::Query(args) => commands::query::run(args)?,
         Command::Walk(args) => commands::walk::run(args, show_progress)?,
         Command::Pack(args) => commands::pack::pack(args)?,

@@ -14,6 +14,8 @@
 pub use sightlines_area_light as area_light;
 #[cfg(feature = "bake")]
 pub use sightlines_bake as bake;
+#[cfg(feature = "bsp")]
+pub use sightlines_bsp as bsp;
 #[cfg(feature = "cells")]
 pub use sightlines_cells as cells;
 #[cfg(feature = "certificates")]

@@ -9,7 +9,7 @@ use sightlines::bake::quake::{StateKey, state};
 use sightlines::bake::reject::{RejectOptions, reject_wad};
 use sightlines::bake::{PlanBakeOptions, PortalMode, PrtOptions, SceneBakeOptions, bake_plan, bake_prt, bake_scene};
 use sightlines::cells::Scene;
-use sightlines::formats::doom::{DoomMap, DoomMapSource, ML_TWOSIDED, SourceLine, Thing, list_maps};
+use sightlines::formats::doom::{DoomMap, DoomMapSource, ML_TWOSIDED, SourceLine, SourceThing, list_maps};
 use sightlines::formats::geojson::{parse_plan, write_plan};
 use sightlines::formats::input::{FORMATS, Source, detect};
 use sightlines::formats::levels::{LevelFile, LevelsIndex, parse_levels_index, write_levels_index};
@@ -36,6 +36,8 @@ use std::time::{Duration, Instant};
 
 #[path = "../../../crates/formats/tests/formats/common/quake.rs"]
 mod quake_files;
+#[path = "../../../crates/formats/tests/formats/common/udmf.rs"]
+mod udmf_files;
 
 /// What is broken and how it is checked; `true` if the broken file was read.
 struct Target {
@@ -44,9 +46,10 @@ struct Target {
     check: fn(&[u8]) -> bool,
 }
 
-const TARGETS: [Target; 20] = [
+const TARGETS: [Target; 21] = [
     Target { name: "wad", seeds: wads, check: check_wad },
     Target { name: "reject", seeds: wads, check: check_reject },
+    Target { name: "textmap", seeds: texts, check: check_text },
     Target { name: "geojson", seeds: plans, check: check_geojson },
     Target { name: "glb", seeds: glbs, check: check_glb },
     Target { name: "obj", seeds: objs, check: check_obj },
@@ -122,7 +125,7 @@ fn source(hexen: bool) -> DoomMapSource {
             line(1, 4, 1, Some(0)),
         ],
         n_sectors: 2,
-        things: vec![Thing { x: 32, y: 32, kind: 1 }],
+        things: vec![SourceThing { x: 32, y: 32, kind: 1 }],
         reject: Some(vec![0]),
         hexen,
     }
@@ -263,6 +266,25 @@ fn vis_states() -> Vec<Vec<u8>> {
 
 fn garbage() -> Vec<Vec<u8>> {
     vec![vec![], b"PWAD".to_vec(), b"{\"type\":".to_vec(), (0..=255).collect()]
+}
+
+/// TEXTMAP lumps of small maps.
+fn texts() -> Vec<Vec<u8>> {
+    let text = |bytes| {
+        let wad = Wad::parse(udmf_files::as_text(&Wad::parse(bytes).expect("a sound WAD"))).expect("a sound WAD");
+        wad.lump_bytes(1).to_vec()
+    };
+    wads().into_iter().map(text).collect()
+}
+
+/// A damaged text is refused, or its map has a REJECT lump that stays what it is; every other lump is as it was.
+fn check_text(bytes: &[u8]) -> bool {
+    let file = udmf_files::wad_of_text(bytes, &[("ZNODES", b"XGLN")]);
+    let wad = Wad::parse(file.clone()).expect("a sound WAD around the text");
+    let Ok(map) = DoomMap::parse(&wad, &list_maps(&wad)[0]) else { return false };
+    let plan = map.plan().expect("a checked map has a plan");
+    assert_eq!(plan.lines().len() + map.n_lines_without_length(), map.lines().len());
+    check_reject(&file)
 }
 
 fn check_wad(bytes: &[u8]) -> bool {
@@ -469,6 +491,7 @@ fn check_anything(bytes: &[u8]) -> bool {
     let text = check_prt(bytes) | check_map(bytes) | check_vis_state(bytes);
     text | certificates::check(bytes)
         | check_reject(bytes)
+        | check_text(bytes)
         | check_bake(bytes)
         | check_pvs(bytes)
         | check_packed(bytes)

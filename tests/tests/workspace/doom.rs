@@ -7,6 +7,9 @@ use sightlines_testkit::sampled_sector_visibility;
 use sightlines_tests::{Comparison, data_folder, files};
 use std::path::Path;
 
+#[path = "../../../crates/formats/tests/formats/common/udmf.rs"]
+mod udmf;
+
 /// Rejected over not seen that the pooled tables must reach.
 const TIGHT: f64 = 0.9997;
 
@@ -88,6 +91,32 @@ fn freedoom_maps_reject_nothing_that_chords_join() {
     // flat model shows because two sectors share a region; it shows 46 that nothing sees.
     assert_eq!((only_shipped, only_ours), (672, 46), "entries rejected by one of the two builders only");
     eprintln!("{n_maps} maps: {n_seen} entries seen");
+}
+
+/// Invariant: a real map as text has the table of the binary one, byte for byte.
+#[test]
+fn real_maps_as_text_have_the_same_tables() {
+    let Some(folder) = data_folder("SIGHTLINES_DATA") else { return };
+    let mut n_maps = 0;
+    for path in files(&folder.join("doom"), "wad") {
+        let (wad, n_sectors, reject) = reject_of(&path, 1);
+        let text = Wad::parse(udmf::as_text(&wad)).expect("a sound WAD");
+        let map = DoomMap::parse(&text, &list_maps(&text)[0]).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+        assert_eq!(map.n_sectors(), n_sectors);
+        let options = RejectOptions { threads: 1, ..RejectOptions::default() };
+        let (table, _) = reject_table(&map, &options).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+        assert!(table.as_bytes() == reject, "{}", path.display());
+        // The impostor: the other hand of each line.
+        let swapped = udmf::text_of(&map).replace("sidefront", "side").replace("sideback", "sidefront");
+        let swapped = swapped.replace("side =", "sideback =");
+        let swapped = Wad::parse(udmf::wad_of_text(swapped.as_bytes(), &[])).expect("a sound WAD");
+        let other = DoomMap::parse(&swapped, &list_maps(&swapped)[0]).unwrap_or_else(|e| panic!("{e}"));
+        let (other, _) = reject_table(&other, &options).unwrap_or_else(|e| panic!("{e}"));
+        assert!(other != table, "{}", path.display());
+        n_maps += 1;
+    }
+    assert!(n_maps >= 18, "{n_maps} maps");
+    eprintln!("{n_maps} maps as text");
 }
 
 /// Known traps: a sector all of whose lines have it on both sides, and a slit of 0.06 units.

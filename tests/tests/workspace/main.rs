@@ -10,6 +10,7 @@ mod frames;
 mod from_region;
 mod layers;
 mod lines;
+mod made_portals;
 mod materials;
 mod oracles;
 mod quake_tables;

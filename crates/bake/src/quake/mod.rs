@@ -5,19 +5,23 @@
 //! where the clusters are and which faces they have, from the map. All take a search up again where
 //! an earlier one stopped ([`PrtOptions::from`]); [`state`] has the bytes in which that is kept.
 
+mod covered;
 mod error;
+mod portals;
 pub mod state;
 mod table;
 mod world;
 
 pub use error::PrtBakeError;
+pub use portals::{MapPortals, PortalsError, portals_of_map};
 pub use state::{StateError, StateKey, named_counters};
 pub use world::bake_map;
 
 use crate::baked::{Baked, BakedPrt};
 use crate::reports::ClusterVisibility;
 use sightlines_cells::{CellGraph, Convex};
-use sightlines_formats::quake::visibility::{check_portals, lump};
+use sightlines_formats::quake::bsp::AmbientTextures;
+use sightlines_formats::quake::visibility::{check_portals, lump_with_sounds};
 use sightlines_formats::quake::{Bsp, Prt, graph_of_prt};
 use sightlines_progress::Observer;
 use sightlines_pvs::Table;
@@ -36,6 +40,8 @@ pub struct PrtOptions<'a> {
     pub progress: Option<&'a dyn Observer>,
     /// Called after each step, for example to store [`ConvexSearch::state`].
     pub after_step: Option<&'a mut dyn FnMut(&ConvexSearch)>,
+    /// Which textures make sounds in a map of Quake; of no use for a table.
+    pub sounds: AmbientTextures,
 }
 
 impl fmt::Debug for PrtOptions<'_> {
@@ -62,15 +68,17 @@ pub struct VisMap {
 /// leafs say of it. Everything else stays as it is; visibility that was there is replaced.
 ///
 /// # Errors
-/// [`PrtBakeError`], before the search, for portals of another map, for several clusters without a portal, and
-/// for a state that cannot be one of these portals; after it, for a map that cannot hold the answer.
+/// [`PrtBakeError`], before the search, for portals of another map, for several clusters without a portal, for a map whose leafs lie under another
+/// lump, and for a state that cannot be one of these portals; after it, for an answer that is too large for the map.
 pub fn vis_map(bsp: &Bsp, prt: &Prt, options: PrtOptions<'_>) -> Result<VisMap, PrtBakeError> {
     check_portals(bsp, prt)?;
-    // What only the sounds of the leafs need is looked up before the search too: it may take hours.
+    // What would be refused at the end is refused before the search too: that may take hours.
     bsp.leaf_sounds()?;
+    bsp.check_leafs()?;
     let graph = graph(prt)?;
+    let sounds = options.sounds;
     let clusters = see(&graph, options)?;
-    let lump = lump(bsp, &prt.leaf_clusters(), &clusters.seen.cells)?;
+    let lump = lump_with_sounds(bsp, &prt.leaf_clusters(), &clusters.seen.cells, sounds)?;
     Ok(VisMap { bytes: bsp.with_visibility(&lump)?, clusters, graph })
 }
 
@@ -99,7 +107,7 @@ fn graph(prt: &Prt) -> Result<CellGraph<Convex>, PrtBakeError> {
 }
 
 fn see(graph: &CellGraph<Convex>, options: PrtOptions<'_>) -> Result<ClusterVisibility, PrtBakeError> {
-    let PrtOptions { search, from, progress, after_step } = options;
+    let PrtOptions { search, from, progress, after_step, sounds: _ } = options;
     let start = Instant::now();
     let mut running = match from {
         None => ConvexSearch::new(graph, search),

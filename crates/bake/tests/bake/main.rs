@@ -10,5 +10,6 @@ mod places;
 mod plan;
 mod quake;
 mod reject;
+mod reject_text;
 mod space;
 mod stab;

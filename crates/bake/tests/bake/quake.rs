@@ -7,7 +7,7 @@ use sightlines_bake::quake::{StateError, StateKey};
 use sightlines_bake::{PrtBakeError, PrtOptions, bake_prt, bake_scene, vis_map};
 use sightlines_cells::{CellGraph, CellId, Convex, Portal3};
 use sightlines_formats::quake::visibility::{VisibilityError, read_visibility};
-use sightlines_formats::quake::{Bsp, Prt, graph_of_prt, prt::parse_prt};
+use sightlines_formats::quake::{Bsp, BspError, BspFormat, Prt, graph_of_prt, prt::parse_prt};
 use sightlines_pvs::{BitMatrix, Table};
 use sightlines_scenes::{TowerOptions, tower};
 use sightlines_stabtree::{ConvexCounters, ConvexOptions, ConvexSearch, ConvexState, ConvexVisibility};
@@ -142,6 +142,36 @@ fn maps_get_their_visibility() {
         }
     }
     assert_eq!(n_written, 3 * 2 * 2 + 2 * 3);
+}
+
+/// Leafs under another lump cannot change: found before the search, not after it.
+#[test]
+fn leafs_under_another_lump_are_found_before_the_search() {
+    let prt = parse_prt(SMALL_PRTS[1].as_bytes()).unwrap();
+    let mut n_refused = 0;
+    for mut bytes in small_bsps() {
+        let bsp = Bsp::parse(bytes.clone()).unwrap();
+        if bsp.format() == BspFormat::Quake2 {
+            continue;
+        }
+        let mut n_steps = 0;
+        let mut run = |bytes: &[u8]| {
+            let mut count = |_: &ConvexSearch| n_steps += 1;
+            let options = PrtOptions { after_step: Some(&mut count), ..PrtOptions::default() };
+            let done = vis_map(&Bsp::parse(bytes.to_vec()).unwrap(), &prt, options);
+            (done, n_steps)
+        };
+        let (done, n_before) = run(&bytes);
+        assert!(done.is_ok() && n_before > 0);
+        // The entities begin in the second leaf.
+        let start = bsp.lumps()[bsp.format().leaf_lump()].start as u32 + 50;
+        bytes[4..8].copy_from_slice(&start.to_le_bytes());
+        let (refused, n_after) = run(&bytes);
+        assert!(matches!(refused, Err(PrtBakeError::Bsp(BspError::Shared { .. }))), "{refused:?}");
+        assert_eq!(n_after, n_before, "no step was taken");
+        n_refused += 1;
+    }
+    assert_eq!(n_refused, 6);
 }
 
 #[test]

@@ -17,7 +17,7 @@ type Corner = [i16; 2];
 
 /// A map, drawn line by line.
 #[derive(Debug, Clone)]
-struct Sketch(DoomMapSource);
+pub(crate) struct Sketch(DoomMapSource);
 
 impl Sketch {
     fn new(n_sectors: u16) -> Self {
@@ -79,11 +79,11 @@ fn name(text: &str) -> LumpName {
     LumpName::new(text).unwrap()
 }
 
-fn wad_of(map: &Sketch) -> Wad {
+pub(crate) fn wad_of(map: &Sketch) -> Wad {
     Wad::parse(write_doom_map(name("MAP01"), &map.0).unwrap()).unwrap()
 }
 
-fn read(wad: &Wad) -> DoomMap {
+pub(crate) fn read(wad: &Wad) -> DoomMap {
     DoomMap::parse(wad, &list_maps(wad)[0]).unwrap()
 }
 
@@ -234,7 +234,7 @@ fn a_crossing_of_a_wall_and_an_open_line_hides_and_shows_what_it_should() {
 
 /// Rooms 0 and 1 on both sides of a slanted line, and lines across them that cross it and each other,
 /// opaque or not, naming any of four sectors or none.
-fn crossing_map() -> impl Strategy<Value = Sketch> {
+pub(crate) fn crossing_map() -> impl Strategy<Value = Sketch> {
     let point = || (0i16..8, 0i16..8).prop_map(|(x, y)| [x, y]);
     let sector = || prop::option::of(0u16..4);
     let line = (point(), point(), any::<bool>(), sector(), sector()).prop_filter("of some length", |l| l.0 != l.1);
@@ -323,7 +323,7 @@ fn crossing_lines_reject_nearly_all_that_is_hidden() {
 // --- The file around the tables ----------------------------------------------------------------------
 
 /// A file with lumps before, between and behind three maps; the second has a table made by hand.
-fn three_maps(by_hand: &[u8]) -> Wad {
+pub(crate) fn three_maps(by_hand: &[u8]) -> Wad {
     let mut builder = WadBuilder::new(WadKind::Patch);
     builder.lump("BEFORE", b"before").unwrap();
     let mut add = |text: &str, map: Sketch, reject: Option<&[u8]>| {
@@ -338,22 +338,22 @@ fn three_maps(by_hand: &[u8]) -> Wad {
 }
 
 /// Asymmetric: 0 does not see 1, but 1 sees 0.
-const BLIND: [u8; 1] = [0b0010];
+pub(crate) const BLIND: [u8; 1] = [0b0010];
 /// Sector 1 is rejected from itself.
 const DEAF: [u8; 1] = [0b1000];
 
-fn build(wad: &Wad, maps: &[&str], force: bool) -> Result<RejectOutcome, RejectError> {
+pub(crate) fn build(wad: &Wad, maps: &[&str], force: bool) -> Result<RejectOutcome, RejectError> {
     let maps = maps.iter().map(|&m| m.to_owned()).collect();
     reject_wad(wad, &RejectOptions { maps, force, threads: 1, ..RejectOptions::default() })
 }
 
 /// Names and bytes of all lumps but REJECT, in their order.
-fn other_lumps(wad: &Wad) -> Vec<(String, Vec<u8>)> {
+pub(crate) fn other_lumps(wad: &Wad) -> Vec<(String, Vec<u8>)> {
     let lumps = wad.lumps().iter().enumerate().filter(|(_, lump)| !lump.name.is("REJECT"));
     lumps.map(|(k, lump)| (lump.name.to_string(), wad.lump_bytes(k).to_vec())).collect()
 }
 
-fn rejects(wad: &Wad) -> Vec<Option<Vec<u8>>> {
+pub(crate) fn rejects(wad: &Wad) -> Vec<Option<Vec<u8>>> {
     let map = |lumps| DoomMap::parse(wad, lumps).unwrap().reject().map(<[u8]>::to_vec);
     list_maps(wad).iter().map(map).collect()
 }
@@ -363,7 +363,7 @@ fn hand_made_effects_are_kept_unless_forced() {
     for by_hand in [BLIND, DEAF] {
         let wad = three_maps(&by_hand);
         let outcome = build(&wad, &[], false).unwrap();
-        let status: Vec<MapStatus> = outcome.maps.iter().map(|m| m.status).collect();
+        let status: Vec<MapStatus> = outcome.maps.iter().map(|m| m.status.clone()).collect();
         assert!(matches!(status[..], [MapStatus::Written(_), MapStatus::KeptHandMade, MapStatus::Written(_)]));
         let built = rejects(&Wad::parse(outcome.bytes).unwrap());
         assert_eq!(built[..2], [Some(vec![0b0110]), Some(by_hand.to_vec())]);
@@ -372,7 +372,7 @@ fn hand_made_effects_are_kept_unless_forced() {
         assert_eq!(rejects(&Wad::parse(outcome.bytes).unwrap())[1], Some(vec![0b0110]));
         // Asked for by name, it is kept as well, and then nothing changes at all.
         let outcome = build(&wad, &["MAP02"], false).unwrap();
-        assert_eq!((outcome.maps[0].status, &outcome.bytes[..]), (MapStatus::KeptHandMade, wad.as_bytes()));
+        assert_eq!((&outcome.maps[0].status, &outcome.bytes[..]), (&MapStatus::KeptHandMade, wad.as_bytes()));
         assert_eq!((outcome.maps[0].name, outcome.maps[0].n_sectors), (name("MAP02"), 2));
     }
 }
@@ -451,37 +451,30 @@ fn files_without_maps_and_unknown_names_are_errors() {
     assert_eq!(error.to_string(), "map MAP07 is not in the file");
 }
 
-/// A map as text is passed through, unless it was asked for.
+/// A map of the consoles is passed through, unless it was asked for.
 #[test]
 fn maps_in_other_formats_are_skipped_or_refused_by_name() {
     let mut builder = WadBuilder::new(WadKind::Patch);
-    builder.lump("MAP01", b"").unwrap().lump("TEXTMAP", b"namespace = \"doom\";").unwrap();
-    builder.lump("ENDMAP", b"").unwrap();
     with_wall(2).0.add_to(&mut builder, name("MAP02")).unwrap();
     builder.lump("MAP03", b"").unwrap().lump("LINEDEFS", b"").unwrap().lump("LEAFS", b"").unwrap();
     let wad = Wad::parse(builder.finish().unwrap()).unwrap();
 
-    let outcome = build(&wad, &[], false).unwrap();
-    let status: Vec<MapStatus> = outcome.maps.iter().map(|m| m.status).collect();
-    let skipped = MapStatus::SkippedUnsupported;
-    assert!(status[0] == skipped && matches!(status[1], MapStatus::Written(_)) && status[2] == skipped);
-    let built = Wad::parse(outcome.bytes).unwrap();
-    assert_eq!(other_lumps(&built), other_lumps(&wad));
-
-    assert!(build(&wad, &["MAP02"], false).is_ok());
-    for text in ["MAP01", "MAP03"] {
-        let error = build(&wad, &["MAP02", text], false).unwrap_err();
-        assert!(matches!(error, RejectError::Map(_)), "{error:?}");
-        assert!(error.to_string().starts_with(&format!("map {text}: ")), "{error}");
+    for strict in [false, true] {
+        let outcome = reject_wad(&wad, &RejectOptions { strict, ..RejectOptions::default() }).unwrap();
+        let status: Vec<MapStatus> = outcome.maps.iter().map(|m| m.status.clone()).collect();
+        assert!(matches!(status[..], [MapStatus::Written(_), MapStatus::SkippedUnsupported]));
+        assert_eq!(other_lumps(&Wad::parse(outcome.bytes).unwrap()), other_lumps(&wad));
     }
+    assert!(build(&wad, &["MAP02"], false).is_ok());
+    let error = build(&wad, &["MAP02", "MAP03"], false).unwrap_err();
+    assert_eq!(error.to_string(), "map MAP03: maps in console format are not supported");
 }
 
 /// A file of which nothing can be read is an error, asked for by name or not.
 #[test]
 fn a_file_of_other_formats_only_is_refused() {
     let mut builder = WadBuilder::new(WadKind::Patch);
-    builder.lump("MAP01", b"").unwrap().lump("TEXTMAP", b"namespace = \"doom\";").unwrap();
-    builder.lump("ENDMAP", b"").unwrap();
+    builder.lump("MAP01", b"").unwrap().lump("LINEDEFS", b"").unwrap().lump("LEAFS", b"").unwrap();
     let wad = Wad::parse(builder.finish().unwrap()).unwrap();
     let error = build(&wad, &[], false).unwrap_err();
     assert!(error.to_string().starts_with("map MAP01: "), "{error}");
@@ -496,23 +489,43 @@ fn padded_tables_made_by_hand_are_kept() {
     map.0.add_to(&mut builder, name("MAP01")).unwrap();
     let wad = Wad::parse(builder.finish().unwrap()).unwrap();
     let kept = build(&wad, &[], false).unwrap();
-    assert_eq!((kept.maps[0].status, &kept.bytes[..]), (MapStatus::KeptHandMade, wad.as_bytes()));
+    assert_eq!((&kept.maps[0].status, &kept.bytes[..]), (&MapStatus::KeptHandMade, wad.as_bytes()));
     assert!(matches!(build(&wad, &[], true).unwrap().maps[0].status, MapStatus::Written(_)));
 }
 
-/// A damaged map is an error with its name and place; not, if another map was asked for.
+/// Three maps, of which the second is damaged: the others are done, and it keeps its lumps. Asked for by name, or where one such map is
+/// too many, or if there is no other, it is an error with its name and place.
 #[test]
-fn damaged_maps_are_errors() {
-    let mut builder = WadBuilder::new(WadKind::Patch);
-    with_wall(2).0.add_to(&mut builder, name("MAP01")).unwrap();
+fn damaged_maps_do_not_stop_the_others() {
     let mut damaged = with_wall(2);
     damaged.0.lines[3].v2 = 99;
-    damaged.0.add_to(&mut builder, name("MAP02")).unwrap();
-    let wad = Wad::parse(builder.finish().unwrap()).unwrap();
-    for maps in [&[][..], &["MAP02"]] {
-        let error = build(&wad, maps, false).unwrap_err();
+    damaged.0.reject = Some(vec![7; 3]);
+    let place = "map MAP02: LINEDEFS 3: vertex 99 is not among the ";
+    let file = |maps: [(&str, &Sketch); 3]| {
+        let mut builder = WadBuilder::new(WadKind::Patch);
+        maps.iter().for_each(|(text, map)| map.0.add_to(&mut builder, name(text)).unwrap());
+        Wad::parse(builder.finish().unwrap()).unwrap()
+    };
+    let wad = file([("MAP01", &with_wall(2)), ("MAP02", &damaged), ("MAP03", &with_door(2))]);
+    let outcome = build(&wad, &[], false).unwrap();
+    let [MapStatus::Written(_), MapStatus::Failed(error), MapStatus::Written(_)] =
+        [0, 1, 2].map(|k: usize| outcome.maps[k].status.clone())
+    else {
+        panic!("{:?}", outcome.maps)
+    };
+    assert!(error.to_string().starts_with(place), "{error}");
+    let built = Wad::parse(outcome.bytes).unwrap();
+    assert_eq!(other_lumps(&built), other_lumps(&wad));
+    let lumps: Vec<&[u8]> =
+        (0..built.lumps().len()).filter(|&k| built.lumps()[k].name.is("REJECT")).map(|k| built.lump_bytes(k)).collect();
+    assert_eq!(lumps, [&[0b0110][..], &[7; 3], &[0]]);
+
+    assert!(build(&wad, &["MAP01", "MAP03"], false).is_ok());
+    let strict = RejectOptions { strict: true, ..RejectOptions::default() };
+    let all_damaged = file([("MAP02", &damaged), ("MAP05", &damaged), ("MAP06", &damaged)]);
+    for error in [build(&wad, &["MAP02", "MAP03"], false), reject_wad(&wad, &strict), build(&all_damaged, &[], false)] {
+        let error = error.unwrap_err();
         assert!(matches!(error, RejectError::Map(_)), "{error:?}");
-        assert_eq!(error.to_string(), "map MAP02: LINEDEFS 3: vertex 99 is not among the 6 there are");
+        assert!(error.to_string().starts_with(place), "{error}");
     }
-    assert!(build(&wad, &["MAP01"], false).is_ok());
 }

@@ -5,11 +5,11 @@ use crate::file_error::{FileError, from_file_error};
 use crate::output::{self, count, percent, seconds};
 use crate::progress::Bar;
 use serde::Serialize;
-use sightlines::bake::RejectError;
-use sightlines::bake::{MapOutcome, MapStatus, RejectOptions, reject_wad};
+use sightlines::bake::{MapOutcome, MapStatus, RejectError, RejectOptions, RejectSummary, reject_wad};
 use sightlines::formats::Wad;
+use sightlines::formats::doom::RmbFile;
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Why `reject` fails; exit code 2.
@@ -37,6 +37,12 @@ pub(crate) struct RejectArgs {
     /// Also replace tables with hand-made effects (asymmetric, or a sector rejected from itself)
     #[arg(long, help_heading = "Method")]
     force: bool,
+    /// Make the effects of this option file of RMB: BLIND and SAFE 0 and 1, INCLUDE, EXCLUDE
+    #[arg(long, help_heading = "Method", value_name = "FILE.rej")]
+    rmb: Option<PathBuf>,
+    /// Stop at a map that cannot be done and write nothing, instead of doing the others
+    #[arg(long, help_heading = "Method")]
+    strict: bool,
     /// Number of threads; 0 uses every core
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::numbers::threads)]
     threads: usize,
@@ -52,16 +58,44 @@ pub(crate) fn run(args: &RejectArgs, show_progress: bool) -> Result<Answer, Erro
     // It may be the WAD that is read.
     output::check(&[], &[&args.output])?;
     let wad = Wad::read(&args.input)?;
+    let rmb = args.rmb.as_ref().map(RmbFile::read).transpose()?;
     let bar = Bar::new("visibility of sectors", show_progress);
-    let options =
-        RejectOptions { maps: args.map.clone(), force: args.force, threads: args.threads, progress: Some(&bar) };
+    let options = RejectOptions {
+        maps: args.map.clone(),
+        force: args.force,
+        strict: args.strict,
+        rmb: rmb.as_ref(),
+        threads: args.threads,
+        progress: Some(&bar),
+    };
     let outcome = reject_wad(&wad, &options);
     drop(bar);
-    let outcome = outcome.map_err(|source| Error::Reject { path: args.input.clone(), source: Box::new(source) })?;
+    let outcome = outcome.map_err(|source| {
+        let path = match (&source, &args.rmb) {
+            (RejectError::Rmb(_), Some(options)) => options,
+            _ => &args.input,
+        };
+        Error::Reject { path: path.clone(), source: Box::new(source) }
+    })?;
     output::save(&args.output, &outcome.bytes)?;
+    warn(&args.input, &outcome.maps);
     let maps = outcome.maps.iter().map(Map::from).collect();
     output::print(args.json, &Outcome { out: args.output.display().to_string(), maps })?;
     Ok(Answer::Yes)
+}
+
+/// Names the maps that could not be done, and those that had lines without length.
+fn warn(path: &Path, maps: &[MapOutcome]) {
+    for map in maps {
+        match &map.status {
+            MapStatus::Failed(reason) => tracing::warn!("{}: not done: {reason}", path.display()),
+            MapStatus::Written(RejectSummary { n_lines_without_length: n @ 1.., .. }) => {
+                let lines = count(*n as u64, "line");
+                tracing::warn!("{}: map {}: {lines} without length left out", path.display(), map.name);
+            }
+            _ => {}
+        }
+    }
 }
 
 /// What became of a WAD.
@@ -75,12 +109,16 @@ struct Outcome {
 #[derive(Debug, Serialize)]
 struct Map {
     name: String,
-    /// `written`, `kept` (effects made by hand) or `skipped` (a format that is not read).
+    /// `written`, `kept` (effects made by hand), `skipped` (a format that is not read) or `failed`.
     status: &'static str,
+    /// Why it failed; null unless it did.
+    reason: Option<String>,
     n_sectors: u32,
     /// Ordered pairs; null unless written.
     n_rejected: Option<u64>,
+    n_effects: Option<u64>,
     n_disputed_cells: Option<usize>,
+    n_lines_without_length: Option<usize>,
     n_rounded_crossings: Option<usize>,
     n_dropped_pieces: Option<usize>,
     seconds: f64,
@@ -88,17 +126,25 @@ struct Map {
 
 impl From<&MapOutcome> for Map {
     fn from(outcome: &MapOutcome) -> Self {
-        let (status, did) = match outcome.status {
+        let (status, did) = match &outcome.status {
             MapStatus::Written(did) => ("written", Some(did)),
             MapStatus::KeptHandMade => ("kept", None),
+            MapStatus::Failed(_) => ("failed", None),
             _ => ("skipped", None),
+        };
+        let reason = match &outcome.status {
+            MapStatus::Failed(reason) => Some(reason.to_string()),
+            _ => None,
         };
         Self {
             name: outcome.name.to_string(),
             status,
+            reason,
             n_sectors: outcome.n_sectors,
             n_rejected: did.map(|d| d.n_rejected),
+            n_effects: did.map(|d| d.n_effects),
             n_disputed_cells: did.map(|d| d.n_disputed_cells),
+            n_lines_without_length: did.map(|d| d.n_lines_without_length),
             n_rounded_crossings: did.map(|d| d.n_rounded_crossings),
             n_dropped_pieces: did.map(|d| d.n_dropped_pieces),
             seconds: outcome.time.as_secs_f64(),
@@ -123,8 +169,13 @@ impl fmt::Display for Map {
             (_, Some(n)) => {
                 let pairs = (f64::from(self.n_sectors) * f64::from(self.n_sectors)).max(1.0);
                 let time = seconds(Duration::from_secs_f64(self.seconds));
-                write!(f, "{:>5} sectors, {:>7} of pairs rejected, {time}", self.n_sectors, percent(n as f64 / pairs))
+                write!(f, "{:>5} sectors, {:>7} of pairs rejected, {time}", self.n_sectors, percent(n as f64 / pairs))?;
+                match self.n_effects {
+                    Some(n @ 1..) => write!(f, ", {} changed by effects", count(n, "pair")),
+                    _ => Ok(()),
+                }
             }
+            ("failed", _) => write!(f, "failed: {}", self.reason.as_deref().unwrap_or_default()),
             ("kept", _) => f.write_str("kept: its table has effects made by hand (--force replaces it)"),
             _ => f.write_str("skipped: its format is not supported"),
         }

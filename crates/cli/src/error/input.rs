@@ -1,5 +1,6 @@
 //! What can be wrong with a file that a command reads.
 
+use sightlines::bake::quake::PortalsError;
 use sightlines::cells::PlanError;
 use sightlines::formats::ReadError;
 use sightlines::formats::quake::VisibilityError;
@@ -62,10 +63,9 @@ pub(crate) enum InputError {
     #[error("{}: the scene was simplified and its triangles were moved, so that it may hide what can be seen: use the original \
              that it was made from", .0.display())]
     NoOccluder(PathBuf),
-    /// A Quake map where its portals are needed, without a portal file beside it.
-    #[error("{}: a map does not have its portals, and there is no {} beside it: qbsp writes that file with the map, unless the map leaks; \
-             one elsewhere is named with --prt FILE.prt", .0.display(), name_with(.0, "prt"))]
-    MapWithoutPortals(PathBuf),
+    /// A Quake map without a portal file beside it, of which no portals can be made either.
+    #[error("{}: there is no {} beside it, and no portals can be made from the map: {source}", path.display(), name_with(path, "prt"))]
+    MadePortals { path: PathBuf, source: Box<PortalsError> },
     /// A portal file of another map.
     #[error("{}: does not go with {}: {source}", prt.display(), bsp.display())]
     OtherMap { prt: PathBuf, bsp: PathBuf, source: Box<VisibilityError> },

@@ -1,5 +1,6 @@
 //! The arguments of `sightlines-vis`: those of the compilers' `vis`, which have any number of dashes.
 
+use clap::error::ErrorKind;
 use clap::{ArgAction, CommandFactory, FromArgMatches, Parser};
 use std::ffi::{OsStr, OsString};
 use std::path::PathBuf;
@@ -109,6 +110,25 @@ pub(super) struct VisProgramArgs {
     #[arg(long, help_heading = "Without effect", visible_alias = "nodefaultpaths")]
     pub(super) defaultpaths: bool,
 
+    /// No effect: belongs to a game
+    #[arg(long, help_heading = "Without effect")]
+    pub(super) q2rtx: bool,
+    /// No effect, as the following of Half-Life's compilers: how long a run takes is printed where there is something to wait for
+    #[arg(long, help_heading = "Without effect", visible_alias = "noestimate")]
+    pub(super) estimate: bool,
+    /// No effect: nothing takes the priority of other programs
+    #[arg(long, help_heading = "Without effect", visible_alias = "normal")]
+    pub(super) high: bool,
+    /// No effect: there are no limits to report
+    #[arg(long, help_heading = "Without effect")]
+    pub(super) chart: bool,
+    /// No effect: settings are not printed
+    #[arg(long, help_heading = "Without effect")]
+    pub(super) noinfo: bool,
+    /// No effect: portal files stay as they are
+    #[arg(long, help_heading = "Without effect")]
+    pub(super) nofixprt: bool,
+
     /// Print help; -h prints a summary
     #[arg(long, help_heading = "General", visible_alias = "h", alias = "?", action = ArgAction::Help)]
     help: Option<bool>,
@@ -122,14 +142,16 @@ impl VisProgramArgs {
     pub(super) fn parse(line: impl IntoIterator<Item = OsString>) -> Result<Self, clap::Error> {
         let mut command = Self::command();
         command.build();
-        let matches = command.clone().try_get_matches_from(with_two_dashes(&command, line))?;
-        Self::from_arg_matches(&matches)
+        match with_two_dashes(&command, line) {
+            Ok(line) => Self::from_arg_matches(&command.try_get_matches_from(line)?),
+            Err(option) => Err(command.error(ErrorKind::UnknownArgument, format!("there is no option {option}"))),
+        }
     }
 }
 
 /// A command line with options as `clap` takes them: with two dashes, in small letters, joined with their values; flags that a 0 turns off are
-/// left out.
-fn with_two_dashes(command: &clap::Command, line: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
+/// left out. Fails with an option that there is not, as it was given.
+fn with_two_dashes(command: &clap::Command, line: impl IntoIterator<Item = OsString>) -> Result<Vec<OsString>, String> {
     let mut line = line.into_iter();
     let mut found: Vec<OsString> = line.next().into_iter().collect();
     let mut line = line.peekable();
@@ -143,16 +165,17 @@ fn with_two_dashes(command: &clap::Command, line: impl IntoIterator<Item = OsStr
             None => (name.to_ascii_lowercase(), None),
         };
         let known = command.get_arguments().find(|known| is_named(known, &name));
-        let takes_value = known.is_some_and(|known| known.get_action().takes_values());
+        let takes_value = known.ok_or_else(|| argument.to_string_lossy().into_owned())?.get_action().takes_values();
+        let is_switch = |value: &OsStr| SWITCHES.iter().any(|switch| value == *switch);
         let value = match value {
             None if takes_value => line.next(),
-            None if known.is_some() => line.next_if(|next| ["0", "1", "-1"].iter().any(|digit| next == digit)),
+            None => line.next_if(|next| is_switch(next)),
             value => value,
         };
         let mut option = OsString::from(format!("--{name}"));
         match value {
-            Some(value) if !takes_value && known.is_some() && value == "0" => continue,
-            Some(value) if takes_value || !(known.is_some() && (value == "1" || value == "-1")) => {
+            Some(value) if !takes_value && value == OFF => continue,
+            Some(value) if takes_value || !is_switch(&value) => {
                 option.push("=");
                 option.push(value);
             }
@@ -160,8 +183,12 @@ fn with_two_dashes(command: &clap::Command, line: impl IntoIterator<Item = OsStr
         }
         found.push(option);
     }
-    found
+    Ok(found)
 }
+
+/// What may be behind a flag, and turns it on or off.
+const SWITCHES: [&str; 3] = [OFF, "1", "-1"];
+const OFF: &str = "0";
 
 /// What is behind the dashes of an option.
 fn option_name(argument: &OsStr) -> Option<&str> {
@@ -211,7 +238,8 @@ mod tests {
     #[test]
     fn what_is_unknown_or_missing_is_refused() {
         for (line, what) in [
-            ("-nosuch a", "unexpected argument '--nosuch'"),
+            ("-nosuch a", "error: there is no option -nosuch\n"),
+            ("a ---NoSuch=3", "error: there is no option ---NoSuch=3\n"),
             ("-level 5 a", "invalid value '5' for '--level <N>'"),
             ("-threads many a", "invalid value 'many' for '--threads <N>'"),
             ("a -level", "a value is required for '--level <N>'"),

@@ -33,7 +33,7 @@ fn guide(name: &str) -> String {
 fn follow(folder: &Folder, name: &str) -> usize {
     let mut n_commands = 0;
     for (kind, text) in blocks(&guide(name)) {
-        if let Some(file) = kind.strip_prefix("json ") {
+        if let Some(file) = kind.strip_prefix("json ").or(kind.strip_prefix("rej ")) {
             folder.write(file, &text);
         }
         if kind != "sh" {
@@ -42,10 +42,14 @@ fn follow(folder: &Folder, name: &str) -> usize {
         for line in text.lines().filter(|line| !line.trim().is_empty() && !line.starts_with("cargo ")) {
             // What stands behind `#` is a comment, as for a shell.
             let mut words = line.split_whitespace().take_while(|word| *word != "#");
-            assert_eq!(words.next(), Some("sightlines"), "{name}: {line}");
+            let program = words.next();
             // Quotes keep patterns from the shell.
             let args: Vec<&str> = words.map(|word| word.trim_matches('\'')).collect();
-            let run = folder.run(&args);
+            let run = match program {
+                Some("sightlines") => folder.run(&args),
+                Some("sightlines-vis") => folder.run_vis(&args),
+                _ => panic!("{name}: {line}"),
+            };
             // The answer may be no: two cells that do not see each other.
             let may_say_no = args[0] == "explain";
             assert!(
@@ -199,7 +203,19 @@ fn the_guide_for_quake_works() {
     let (folder, map) = (Folder::new(), row_of_leafs(BspFormat::Bsp29));
     folder.write("map.bsp", &map.bsp);
     folder.write("map.prt", &map.prt);
-    assert!(follow(&folder, "quake.md") >= 6);
+    assert!(follow(&folder, "quake.md") >= 8);
+    // Every option of the guide is one of the program.
+    let text = guide("quake.md");
+    let (_, section) = text.split_once("## Swap one path").expect("a section");
+    let (section, _) = section.split_once("\n## ").expect("another section");
+    let words =
+        section.split('`').filter(|word| word.starts_with('-')).map(|word| word.split(' ').next().unwrap_or(word));
+    let options: Vec<&str> = words.collect();
+    let help = folder.run_vis(&["-help"]).expect(0).out;
+    assert!(options.len() > 25, "{options:?}");
+    for option in options {
+        assert!(help.contains(&format!(" -{option}")), "{option}");
+    }
 }
 
 #[test]

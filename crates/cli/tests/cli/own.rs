@@ -151,7 +151,7 @@ fn maps_that_cannot_be_checked_are_refused() {
     );
     let error = refused(&["seen.bsp", "seen.bsp"]);
     assert!(
-        error.starts_with("seen.bsp: a map does not have its portals, and there is no seen.prt beside it"),
+        error.starts_with("seen.bsp: there is no seen.prt beside it, and no portals can be made from the map: "),
         "{error}"
     );
     folder.write("plan.geojson", crate::common::maze_text(1));

@@ -1,10 +1,10 @@
 //! What can be wrong with a Doom map.
 
-use super::{MAX_SECTORS, MapFormat, MapLump};
+use super::{MAX_SECTORS, MapFormat, MapLump, TextError};
 use crate::wad::{LumpName, WadError};
 
 /// A map that cannot be used, shown as `map MAP01: LINEDEFS 12: ...`.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("map {map}: {kind}")]
 pub struct DoomError {
     /// The map's marker.
@@ -15,7 +15,7 @@ pub struct DoomError {
 }
 
 /// What is wrong with a map.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DoomErrorKind {
     /// A format that is recognised but not read.
@@ -44,11 +44,17 @@ pub enum DoomErrorKind {
         /// Index of the record that is cut short.
         index: usize,
     },
-    /// The map has no lines or no sectors.
+    /// The text of a map is wrong somewhere.
+    #[error("TEXTMAP: {0}")]
+    Text(#[from] TextError),
+    /// A map as text has no last lump.
+    #[error("ENDMAP: there is no such lump behind TEXTMAP")]
+    NoEnd,
+    /// The map has no lines of any length, or no sectors.
     #[error("{0}: the map is empty")]
     Empty(MapLump),
-    /// More sectors than a side can name.
-    #[error("SECTORS: {0} sectors are more than the {MAX_SECTORS} that sides can name")]
+    /// More sectors than binary maps can name.
+    #[error("SECTORS: {0} sectors are more than the {MAX_SECTORS} that a map can have")]
     TooManySectors(usize),
     /// A line ends at a vertex that is not there.
     #[error("LINEDEFS {line}: vertex {vertex} is not among the {n_vertices} there are")]
@@ -79,16 +85,6 @@ pub enum DoomErrorKind {
         sector: u32,
         /// How many there are.
         n_sectors: u32,
-    },
-    /// Start and end of a line are one point.
-    #[error("LINEDEFS {line}: length zero at ({x}, {y})")]
-    ZeroLength {
-        /// Index of the line.
-        line: usize,
-        /// Where.
-        x: i16,
-        /// Where.
-        y: i16,
     },
     /// More sides than lines can name, when writing.
     #[error("SIDEDEFS: {0} sides are more than lines can name")]

@@ -12,6 +12,7 @@ pub struct MapLumps {
     end: usize,
     format: MapFormat,
     lumps: [Option<usize>; MapLump::ALL.len()],
+    endmap: Option<usize>,
     repeated: Option<(MapLump, [usize; 2])>,
 }
 
@@ -41,6 +42,20 @@ impl MapLumps {
         self.lumps[lump as usize]
     }
 
+    /// Index of the map as text, if it is stored so.
+    pub fn text(&self) -> Option<usize> {
+        (self.format == MapFormat::Udmf).then_some(self.marker + 1)
+    }
+
+    /// Index of the lump behind which a REJECT lump is looked for: SECTORS; of a map as text the one before its ENDMAP, because the
+    /// text has to be the first lump and ENDMAP the last.
+    pub(super) fn before_reject(&self) -> Option<usize> {
+        match self.format {
+            MapFormat::Udmf => self.endmap.map(|k| k - 1),
+            _ => self.lump(MapLump::Sectors),
+        }
+    }
+
     pub(super) fn error(&self, kind: impl Into<DoomErrorKind>) -> DoomError {
         DoomError { map: self.name, kind: kind.into() }
     }
@@ -52,8 +67,9 @@ impl MapLumps {
     /// Refuses formats that are not read here, and maps with a lump twice.
     pub(super) fn check_readable(&self) -> Result<(), DoomError> {
         match (self.format, self.repeated) {
-            (MapFormat::Udmf | MapFormat::Console, _) => Err(self.error(DoomErrorKind::Unsupported(self.format))),
+            (MapFormat::Console, _) => Err(self.error(DoomErrorKind::Unsupported(self.format))),
             (_, Some((lump, indices))) => Err(self.error(DoomErrorKind::RepeatedLump { lump, indices })),
+            (MapFormat::Udmf, _) if self.endmap.is_none() => Err(self.error(DoomErrorKind::NoEnd)),
             _ => Ok(()),
         }
     }
@@ -90,7 +106,8 @@ fn map_at(wad: &Wad, marker: usize) -> Option<MapLumps> {
         let binary = if with("BEHAVIOR") { MapFormat::Hexen } else { MapFormat::Doom };
         (end, if with("LEAFS") { MapFormat::Console } else { binary })
     };
-    let mut map = MapLumps { name, marker, end, format, lumps: Default::default(), repeated: None };
+    let endmap = (format == MapFormat::Udmf && end > marker + 2).then(|| end - 1);
+    let mut map = MapLumps { name, marker, end, format, lumps: Default::default(), endmap, repeated: None };
     for lump in MapLump::ALL {
         let mut found = (marker + 1..end).filter(|&k| named(k, lump.name()));
         map.lumps[lump as usize] = found.next();
@@ -121,7 +138,7 @@ fn is_member(name: &LumpName) -> bool {
 }
 
 /// `MAP` and digits, or `E`, digits, `M`, digits.
-fn is_doom_map_name(name: &[u8]) -> bool {
+pub(super) fn is_doom_map_name(name: &[u8]) -> bool {
     let name = name.to_ascii_uppercase();
     let number = |text: &[u8]| !text.is_empty() && text.iter().all(u8::is_ascii_digit);
     let episode = |text: &[u8]| {

@@ -1,6 +1,6 @@
 //! Writing maps: from lines and sectors to lumps, for generators and tests.
 
-use super::{DoomError, DoomErrorKind, MapFormat, Thing};
+use super::{DoomError, DoomErrorKind, MapFormat};
 use crate::wad::{LumpName, WadBuilder, WadKind};
 
 /// A line of a map to be written.
@@ -18,6 +18,17 @@ pub struct SourceLine {
     pub left: Option<u16>,
 }
 
+/// A thing of a map to be written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SourceThing {
+    /// Where it stands, in map units.
+    pub x: i16,
+    /// Where it stands, in map units.
+    pub y: i16,
+    /// Its number among the things of its game.
+    pub kind: u16,
+}
+
 /// A map to be written. Nothing is checked: wrong maps can be made as well.
 ///
 /// What sight does not depend on (heights, textures) is written as zeros and dashes, nodes and
@@ -31,7 +42,7 @@ pub struct DoomMapSource {
     /// Number of sectors.
     pub n_sectors: u16,
     /// Things.
-    pub things: Vec<Thing>,
+    pub things: Vec<SourceThing>,
     /// Bytes of the REJECT lump; no lump at all for `None`.
     pub reject: Option<Vec<u8>>,
     /// Whether to write the map as [`MapFormat::Hexen`]; otherwise it is written as [`MapFormat::Doom`].

@@ -98,8 +98,8 @@ pub enum WadError {
         /// How many there are.
         n_lumps: usize,
     },
-    /// A map has neither a REJECT lump to replace nor a SECTORS lump to put one behind.
-    #[error("map {map} has no SECTORS lump behind which REJECT could stand")]
+    /// A map has neither a REJECT lump to replace nor a SECTORS or, as text, ENDMAP lump to put one beside.
+    #[error("map {map} has no SECTORS or ENDMAP lump beside which REJECT could stand")]
     NoPlace {
         /// The map's marker.
         map: LumpName,

@@ -17,3 +17,4 @@ mod scene_mutations;
 mod scene_oracles;
 mod scene_writers;
 mod scenes;
+mod udmf;

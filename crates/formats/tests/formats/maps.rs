@@ -2,7 +2,9 @@
 
 use crate::common::{difference_besides_reject, small_wad, two_rooms};
 use proptest::prelude::*;
-use sightlines_formats::doom::{DoomErrorKind, DoomMapSource, MapLump, SourceLine, Thing, list_maps, write_doom_map};
+use sightlines_formats::doom::{
+    DoomErrorKind, DoomMapSource, MapLump, SourceLine, SourceThing, Thing, list_maps, write_doom_map,
+};
 use sightlines_formats::wad::{WadBuilder, WadError, WadKind};
 use sightlines_formats::{DoomError, DoomMap, LumpName, ReadError, Wad};
 
@@ -24,6 +26,14 @@ fn error(change: impl Fn(&mut DoomMapSource)) -> [String; 2] {
     })
 }
 
+fn vertices(source: &DoomMapSource) -> Vec<[f64; 2]> {
+    source.vertices.iter().map(|v| v.map(f64::from)).collect()
+}
+
+fn things(source: &DoomMapSource) -> Vec<Thing> {
+    source.things.iter().map(|t| Thing { x: t.x.into(), y: t.y.into(), kind: t.kind.into() }).collect()
+}
+
 /// The small map with some lumps left out or with other bytes.
 fn with_lumps(change: impl Fn(&str, &[u8]) -> Option<Vec<u8>>) -> Result<DoomMap, DoomError> {
     let wad = Wad::parse(small_wad(&two_rooms(false))).unwrap();
@@ -42,7 +52,7 @@ fn two_rooms_make_the_flat_plan() {
         let source = two_rooms(hexen);
         let map = read(small_wad(&source)).unwrap();
         assert_eq!((map.n_sectors(), map.format(), map.reject()), (2, source.format(), Some(&[0][..])));
-        assert_eq!((map.things(), map.vertices()), (&source.things[..], &source.vertices[..]));
+        assert_eq!((map.things(), map.vertices()), (&things(&source)[..], &vertices(&source)[..]));
         let plan = map.plan().unwrap();
         let opaque: Vec<bool> = plan.lines().iter().map(|l| l.opaque).collect();
         assert_eq!(opaque, [true, true, true, true, true, true, false]);
@@ -92,10 +102,28 @@ fn indices_out_of_range_are_named() {
     assert_eq!(side.unwrap_err().to_string(), "map MAP01: LINEDEFS 1: side 1 is not among the 1 there are");
 }
 
+/// Lines without length are no lines of the plan; a map of nothing else is empty.
 #[test]
-fn lines_of_length_zero_are_refused() {
-    assert_eq!(error(|s| s.lines[2].v1 = s.lines[2].v2), ["map MAP01: LINEDEFS 2: length zero at (64, 64)"; 2]);
-    assert_eq!(error(|s| s.vertices[5] = [0, 0]), ["map MAP01: LINEDEFS 1: length zero at (0, 0)"; 2]);
+fn lines_of_length_zero_are_left_out() {
+    for (change, left) in [
+        ((|s| s.lines[2].v1 = s.lines[2].v2) as fn(&mut DoomMapSource), vec![0, 1, 3, 4, 5, 6]),
+        (|s| s.vertices[5] = [0, 0], vec![0, 2, 3, 4, 5, 6]),
+    ] {
+        let mut source = two_rooms(false);
+        let whole = read(small_wad(&source)).unwrap();
+        assert_eq!(whole.n_lines_without_length(), 0);
+        change(&mut source);
+        let map = read(small_wad(&source)).unwrap();
+        assert_eq!((map.lines().len(), map.n_lines_without_length()), (7, 1));
+        let plan = map.plan().unwrap();
+        assert_eq!(plan.lines().len(), left.len());
+        for (drawn, &k) in plan.lines().iter().zip(&left) {
+            let ends = [map.lines()[k].v1, map.lines()[k].v2].map(|v| map.vertices()[v as usize]);
+            assert_eq!([drawn.a, drawn.b].map(|p| p.to_array()), ends);
+        }
+    }
+    let points = error(|s| s.vertices.fill([5, 5]));
+    assert_eq!(points, ["map MAP01: LINEDEFS: the map is empty"; 2]);
 }
 
 #[test]
@@ -153,17 +181,11 @@ fn vertices_of_node_builders_are_fine() {
 #[test]
 fn other_formats_are_refused_by_name() {
     let mut builder = WadBuilder::new(WadKind::Patch);
-    builder
-        .lump("MAP03", b"")
-        .unwrap()
-        .lump("TEXTMAP", b"namespace = \"zdoom\";")
-        .unwrap()
-        .lump("ENDMAP", b"")
-        .unwrap();
+    builder.lump("MAP03", b"").unwrap().lump("LINEDEFS", b"").unwrap().lump("LEAFS", b"").unwrap();
     let found = read(builder.finish().unwrap()).unwrap_err();
-    assert_eq!(found.to_string(), "map MAP03: maps in UDMF format are not supported");
+    assert_eq!(found.to_string(), "map MAP03: maps in console format are not supported");
     let shown = ReadError::new("maps/e1m1.wad", found).to_string();
-    assert_eq!(shown, "maps/e1m1.wad: map MAP03: maps in UDMF format are not supported");
+    assert_eq!(shown, "maps/e1m1.wad: map MAP03: maps in console format are not supported");
 }
 
 #[test]
@@ -240,11 +262,11 @@ fn too_many_sides_are_refused() {
     assert!(read(write_doom_map(name("MAP01"), &source).unwrap()).is_ok());
 }
 
-fn sources() -> impl Strategy<Value = DoomMapSource> {
+pub(crate) fn sources() -> impl Strategy<Value = DoomMapSource> {
     let vertices = prop::collection::vec([-3i16..4, -3i16..4], 1..7);
     let sector = || prop::option::of(0u16..4);
     let line = (0u16..7, 0u16..7, 0u16..16, sector(), sector());
-    let thing = (any::<i16>(), any::<i16>(), any::<u16>()).prop_map(|(x, y, kind)| Thing { x, y, kind });
+    let thing = (any::<i16>(), any::<i16>(), any::<u16>()).prop_map(|(x, y, kind)| SourceThing { x, y, kind });
     let reject = prop::option::of(prop::collection::vec(any::<u8>(), 0..4));
     let lines = prop::collection::vec(line, 0..8);
     (vertices, lines, 0u16..5, prop::collection::vec(thing, 0..3), reject, any::<bool>()).prop_map(
@@ -259,11 +281,9 @@ fn sources() -> impl Strategy<Value = DoomMapSource> {
 fn sound(source: &DoomMapSource) -> bool {
     let vertex = |v: u16| source.vertices.get(usize::from(v));
     let sector = |s: Option<u16>| s.is_none_or(|s| s < source.n_sectors);
-    let line = |l: &SourceLine| {
-        let ends = vertex(l.v1).zip(vertex(l.v2));
-        ends.is_some_and(|(a, b)| a != b) && sector(l.right) && sector(l.left)
-    };
-    source.n_sectors > 0 && !source.lines.is_empty() && source.lines.iter().all(line)
+    let line = |l: &SourceLine| vertex(l.v1).zip(vertex(l.v2)).is_some() && sector(l.right) && sector(l.left);
+    let long = |l: &SourceLine| vertex(l.v1) != vertex(l.v2);
+    source.n_sectors > 0 && source.lines.iter().all(line) && source.lines.iter().any(long)
 }
 
 proptest! {
@@ -273,20 +293,27 @@ proptest! {
         let map = read(write_doom_map(name("MAP01"), &source).unwrap());
         prop_assert_eq!(map.is_ok(), sound(&source), "{:?}", map);
         let Ok(map) = map else { return Ok(()) };
-        prop_assert_eq!(map.vertices(), &source.vertices[..]);
-        prop_assert_eq!(map.things(), &source.things[..]);
+        prop_assert_eq!(map.vertices(), &vertices(&source)[..]);
+        prop_assert_eq!(map.things(), &things(&source)[..]);
         prop_assert_eq!(map.reject(), source.reject.as_deref());
         prop_assert_eq!((map.n_sectors(), map.format()), (u32::from(source.n_sectors), source.format()));
         let plan = map.plan().unwrap();
-        for ((line, written), drawn) in map.lines().iter().zip(&source.lines).zip(plan.lines()) {
+        let mut all_drawn = plan.lines().iter();
+        for (line, written) in map.lines().iter().zip(&source.lines) {
             let sectors = [written.right, written.left].map(|s| s.map(u32::from));
             prop_assert_eq!((line.v1, line.v2, line.flags), (written.v1.into(), written.v2.into(), written.flags));
             prop_assert_eq!(map.sectors_of(line), sectors);
+            let [start, end] = [written.v1, written.v2].map(|v| source.vertices[usize::from(v)].map(f64::from));
+            if start == end {
+                continue;
+            }
+            let drawn = all_drawn.next().expect("each line with length");
             prop_assert_eq!([drawn.right, drawn.left], sectors);
             prop_assert_eq!(drawn.opaque, written.flags & 4 == 0);
-            let end = source.vertices[usize::from(written.v2)].map(f64::from);
-            prop_assert_eq!(drawn.b.to_array(), end);
+            prop_assert_eq!([drawn.a.to_array(), drawn.b.to_array()], [start, end]);
         }
+        prop_assert_eq!(all_drawn.next(), None);
+        prop_assert_eq!(plan.lines().len() + map.n_lines_without_length(), map.lines().len());
     }
 
     /// Invariant: new tables change the tables and nothing else.

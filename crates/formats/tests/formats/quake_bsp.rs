@@ -2,9 +2,10 @@
 
 use crate::common::quake::{SmallBsp, check_bsp, difference_besides_visibility, small_bsps};
 use proptest::prelude::*;
-use sightlines_formats::quake::bsp::{BspError, BspLumpId, LeafRow};
+use sightlines_formats::quake::bsp::{AmbientTexture, AmbientTextures, BspError, BspLumpId, LeafRow};
 use sightlines_formats::quake::visibility::{
-    self, VisibilityLump, ambient, check_match, check_portals, read_hearing, read_visibility,
+    self, VisibilityLump, ambient, check_match, check_portals, lump_with_new_hearing, lump_with_sounds, read_hearing,
+    read_visibility,
 };
 use sightlines_formats::quake::{Bsp, BspFormat, LeafClusters, Prt, VisibilityError, read_bsp};
 use sightlines_pvs::BitMatrix;
@@ -168,6 +169,53 @@ fn visibility_is_written_as_engines_load_it() {
     assert_eq!(read_hearing(&bsp), Ok(None));
 }
 
+/// Hearing is made anew from what is visible, whatever was heard; visibility is left as it is.
+#[test]
+fn hearing_is_made_from_visibility() {
+    let mut map = SmallBsp::new(BspFormat::Quake2);
+    let places: Vec<u8> = [3u32, 28, 28, 29, 28, 30, 28].iter().flat_map(|n| n.to_le_bytes()).collect();
+    map.visibility = [&places[..], &[3, 7, 6]].concat();
+    let before = Bsp::parse(map.file(false)).unwrap();
+    assert_eq!(read_hearing(&before).unwrap().unwrap().count_ones(), 6, "too little");
+    let made = lump_with_new_hearing(&before).unwrap().unwrap();
+    let leafs = three_clusters(BspFormat::Quake2);
+    assert_eq!(made, visibility::lump(&before, &leafs, &chain()).unwrap());
+    let after = Bsp::parse(before.with_visibility(&made).unwrap()).unwrap();
+    assert_eq!(read_visibility(&after, &leafs), read_visibility(&before, &leafs));
+    assert_eq!(read_hearing(&after).unwrap().unwrap().count_ones(), 9);
+    // A row that is not there; and maps in which nothing is heard, or seen yet.
+    map.visibility.truncate(30);
+    let text = lump_with_new_hearing(&Bsp::parse(map.file(false)).unwrap()).unwrap_err().to_string();
+    assert_eq!(text, "cluster 2: its row begins at byte 30 of the 30 bytes of the visibility lump");
+    let none = |file: &[u8]| lump_with_new_hearing(&Bsp::parse(file.to_vec()).unwrap()).unwrap().is_none();
+    assert_eq!(small_bsps().iter().filter(|file| none(file)).count(), 7);
+}
+
+/// Each kind of texture is silent when it is turned off, and no other.
+#[test]
+fn textures_are_silenced_one_by_one() {
+    for format in [BspFormat::Bsp29, BspFormat::Bsp2, BspFormat::Bsp2Psb] {
+        let mut map = SmallBsp::new(format);
+        map.leafs = vec![vec!["*water1"], vec!["*slime"], vec!["SKY1", "*04water"], vec!["*lava", "brick"]];
+        let bsp = Bsp::parse(map.file(false)).unwrap();
+        let all = [0b0001, 0b0001, 0b0011, 0b1000];
+        assert_eq!(bsp.leaf_sounds().unwrap(), all);
+        for (texture, left) in [
+            (AmbientTexture::Water, [0, 1, 0b0010, 0b1000]),
+            (AmbientTexture::Slime, [1, 0, 0b0011, 0b1000]),
+            (AmbientTexture::Sky, [1, 1, 0b0001, 0b1000]),
+            (AmbientTexture::Lava, [1, 1, 0b0011, 0]),
+        ] {
+            let loud = AmbientTextures::ALL.without(texture);
+            assert_eq!(bsp.leaf_sounds_of(loud).unwrap(), left, "{texture:?}");
+            let leafs = LeafClusters::identity(4).unwrap();
+            let made = lump_with_sounds(&bsp, &leafs, &BitMatrix::identity(4), loud).unwrap();
+            let bits = |levels: &[u8; 4]| (0..4).fold(0, |bits, k| bits | u8::from(levels[k] == 255) << k);
+            assert_eq!(made.ambient.iter().map(bits).collect::<Vec<_>>(), left, "{texture:?}");
+        }
+    }
+}
+
 #[test]
 fn another_lump_changes_nothing_else() {
     for file in small_bsps() {
@@ -242,7 +290,10 @@ fn lumps_that_share_bytes_are_not_torn() {
     bytes[4..8].copy_from_slice(&start.to_le_bytes());
     let id = |index, name| BspLumpId { index, name };
     let shared = BspError::Shared { lump: id(10, "leafs"), other: id(0, "entities") };
-    assert_eq!(Bsp::parse(bytes).unwrap().with_visibility(&lump), Err(shared));
+    let under = Bsp::parse(bytes).unwrap();
+    assert_eq!(under.with_visibility(&lump), Err(shared.clone()));
+    assert_eq!(under.check_leafs(), Err(shared), "known before there is a lump");
+    assert_eq!(bsp.check_leafs(), Ok(()));
     let few = VisibilityLump { leaf_rows: vec![0; 3], ..lump };
     assert_eq!(bsp.with_visibility(&few), Err(BspError::RowCount { found: 3, n_leafs: 4 }));
 }

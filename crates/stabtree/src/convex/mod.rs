@@ -180,6 +180,11 @@ impl ConvexSearch {
         Ok(())
     }
 
+    /// Whether no step is left.
+    pub fn is_done(&self) -> bool {
+        self.state.stage >= N_STAGES
+    }
+
     /// Takes a step; returns whether more are left.
     pub fn advance(&mut self) -> bool {
         match self.state.stage {
@@ -189,7 +194,7 @@ impl ConvexSearch {
             3 => self.decide_pairs(),
             _ => {}
         }
-        self.state.stage < N_STAGES
+        !self.is_done()
     }
 
     /// The answer.

@@ -26,6 +26,7 @@ pub(crate) use source::bake_visibly;
 use crate::Answer;
 use crate::doors::DoorBox;
 use crate::input::{self, refuse};
+use crate::map_portals::MADE;
 use crate::numbers::duration;
 use crate::output;
 use crate::progress::Bar;
@@ -200,7 +201,8 @@ impl Outcome {
                 Self::Portals(portals::Outcome::new(out, prt, fast, did, n_bytes).verbose(verbose))
             }
             (Bakeable::Map(bsp, prt), Report::Map(did)) => {
-                Self::Map(quake::Outcome::new(out, bsp, prt, fast, did, n_bytes).verbose(verbose))
+                let format = if source.is_made { MADE } else { prt.dialect().magic() };
+                Self::Map(quake::Outcome::new(out, bsp, format, fast, did, n_bytes).verbose(verbose))
             }
             _ => unreachable!("the report of a bake is of the kind of its input"),
         }

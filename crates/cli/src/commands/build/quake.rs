@@ -5,10 +5,10 @@ use super::brief::Brief;
 use super::portals::{of_clusters, write_method};
 use crate::clusters::Clusters;
 use crate::error::InputError;
+use crate::map_portals::MADE;
 use crate::output::{bytes, count};
 use serde::Serialize;
 use sightlines::bake::{MapReport, PrtBakeError, WorldSummary};
-use sightlines::formats::Prt;
 use sightlines::formats::quake::{Bsp, VisibilityError};
 use std::fmt;
 use std::path::Path;
@@ -32,6 +32,7 @@ pub(super) fn failed(map: &Path, portals: &Path, source: PrtBakeError) -> Error 
 pub(crate) struct Outcome {
     out: String,
     format: &'static str,
+    /// Or that there was no portal file.
     portal_format: &'static str,
     fast: bool,
     #[serde(flatten)]
@@ -54,12 +55,19 @@ pub(crate) struct Outcome {
 }
 
 impl Outcome {
-    pub(crate) fn new(out: &Path, bsp: &Bsp, prt: &Prt, fast: bool, report: &MapReport, n_bytes: usize) -> Self {
+    pub(crate) fn new(
+        out: &Path,
+        bsp: &Bsp,
+        portal_format: &'static str,
+        fast: bool,
+        report: &MapReport,
+        n_bytes: usize,
+    ) -> Self {
         let WorldSummary { n_faces, n_unlisted_faces, n_listed, n_reaching, n_planes, slack, .. } = report.world;
         Self {
             out: out.display().to_string(),
             format: bsp.format().name(),
-            portal_format: prt.dialect().magic(),
+            portal_format,
             fast,
             clusters: Clusters::new(&report.clusters),
             n_faces,
@@ -75,8 +83,16 @@ impl Outcome {
 
     pub(super) fn brief(&self) -> Brief {
         let faces = count(self.n_faces as u64, "face");
-        let taken = format!("a {} map with its {} file: {faces} of the world", self.format, self.portal_format);
+        let taken = format!("{}: {faces} of the world", self.taken());
         of_clusters(taken, self.fast, &self.clusters, &self.out, self.n_bytes)
+    }
+
+    /// The map and its portals.
+    fn taken(&self) -> String {
+        match self.portal_format {
+            MADE => format!("a {} map, with portals made from it", self.format),
+            portals => format!("a {} map with its {portals} file", self.format),
+        }
     }
 
     /// Lists pairs that are undecided.
@@ -89,8 +105,8 @@ impl Outcome {
 impl fmt::Display for Outcome {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "wrote {}, {}", self.out, bytes(self.n_bytes as u64))?;
-        let of = format_args!("a {} map with its {} file", self.format, self.portal_format);
-        write_method(f, self.fast, of, &self.clusters, self.verbose)?;
+        let of = self.taken();
+        write_method(f, self.fast, format_args!("{of}"), &self.clusters, self.verbose)?;
         let never = match self.n_unlisted_faces {
             0 => String::new(),
             n => format!(", {n} of them never drawn"),

@@ -5,24 +5,26 @@ use super::{BakeArgs, Error, plan, quake, space};
 use crate::buffers::MethodFailed;
 use crate::clusters::warn_of_repeats;
 use crate::input;
+use crate::map_portals::{portal_file, portals_for};
 use crate::output;
 use crate::progress::Bar;
 use sightlines::bake::{BakeError, BakeInput, BakeOptions, Bakeable, Baked, Report, bake};
 use sightlines::formats::Input;
-use sightlines::formats::quake::read_prt;
 use std::path::{Path, PathBuf};
 
 /// An input with all files that belong to it.
 #[derive(Debug)]
 pub(super) struct Source {
     pub(super) content: Bakeable,
-    /// The portal file of a Quake map.
+    /// The portal file of a Quake map; the map itself, if there is none.
     portals: Option<PathBuf>,
+    /// Whether the portals of a Quake map were made from it.
+    pub(super) is_made: bool,
 }
 
 impl Source {
     /// Completes an input that came from `path`: chooses the map of a WAD, and reads the portal file of a Quake map, which is `prt` or
-    /// beside it. Refuses options that mean nothing for the input.
+    /// beside it, or makes the portals. Refuses options that mean nothing for the input.
     pub(super) fn new(
         path: &Path,
         input: Input,
@@ -30,9 +32,15 @@ impl Source {
         out: &Path,
         args: &BakeArgs,
     ) -> Result<Self, Error> {
-        let portals = if matches!(input, Input::Bsp(_)) { Some(input::portal_file(path, prt)?) } else { None };
-        portals.iter().try_for_each(|portals| output::refuse_same(portals, out))?;
-        let prt = portals.as_ref().map(read_prt).transpose()?;
+        let read = match &input {
+            Input::Bsp(bsp) => {
+                portal_file(path, prt).iter().try_for_each(|file| output::refuse_same(file, out))?;
+                Some(portals_for(bsp, path, prt)?)
+            }
+            _ => None,
+        };
+        let is_made = read.as_ref().is_some_and(|portals| portals.is_made);
+        let (portals, prt) = read.map(|portals| (portals.path, portals.prt)).unzip();
         let content = input::bakeable(path, input, map, prt)?;
         if let Bakeable::Portals(prt) | Bakeable::Map(_, prt) = &content {
             warn_of_repeats(portals.as_deref().unwrap_or(path), prt);
@@ -42,7 +50,7 @@ impl Source {
             Bakeable::Scene(_) => args.check_for_space(path)?,
             Bakeable::Portals(_) | Bakeable::Map(..) => args.check_for_portals(path)?,
         }
-        Ok(Self { content, portals })
+        Ok(Self { content, portals, is_made })
     }
 
     /// The error, with the name of the file that it is about.

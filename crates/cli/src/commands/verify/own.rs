@@ -3,11 +3,12 @@
 use super::Error;
 use crate::error::InputError;
 use crate::input;
+use crate::map_portals::portals_for;
 use crate::output::{bytes, count};
 use serde::Serialize;
 use sightlines::bake::BakeError;
 use sightlines::formats::InputKind;
-use sightlines::formats::quake::{read_bsp, read_prt};
+use sightlines::formats::quake::{Prt, read_bsp, read_prt};
 use sightlines::triangulation::subdivide;
 use sightlines::verify::{OwnError, OwnSummary, OwnVisibility};
 use std::fmt;
@@ -89,8 +90,7 @@ pub(super) fn read(
 /// Reads the lump of a Quake map; the portal file of the scene lists the cluster of each leaf.
 fn of_bsp(path: &Path, scene: &Path, prt: Option<&Path>) -> Result<OwnVisibility, Error> {
     let bsp = read_bsp(path)?;
-    let named = portals_of(path, scene, prt)?;
-    let portals = read_prt(&named)?;
+    let (named, portals) = portals_of(path, scene, prt)?;
     OwnVisibility::of_bsp(&bsp, &portals).map_err(|error| match error {
         OwnError::OtherMap(source) => InputError::of_portals(&named, path, source).into(),
         error => refused(path, None, error),
@@ -131,11 +131,14 @@ fn refused(path: &Path, map: Option<String>, error: OwnError) -> Error {
     }
 }
 
-/// The portal file of the scene, which may be one itself.
-fn portals_of(path: &Path, scene: &Path, prt: Option<&Path>) -> Result<PathBuf, Error> {
+/// The portals of the scene, which may be a portal file itself, with the file that has them.
+fn portals_of(path: &Path, scene: &Path, prt: Option<&Path>) -> Result<(PathBuf, Prt), Error> {
     match (input::kind_of(scene)?, prt) {
-        (Some(InputKind::Prt), _) => Ok(scene.to_owned()),
-        (Some(InputKind::Bsp), prt) => Ok(input::portal_file(scene, prt)?),
+        (Some(InputKind::Prt), _) => Ok((scene.to_owned(), read_prt(scene)?)),
+        (Some(InputKind::Bsp), prt) => {
+            let portals = portals_for(&read_bsp(scene)?, scene, prt)?;
+            Ok((portals.path, portals.prt))
+        }
         _ => Err(Error::OwnScene {
             path: path.to_owned(),
             scene: scene.to_owned(),

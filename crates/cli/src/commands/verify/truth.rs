@@ -3,12 +3,13 @@
 use super::Error;
 use crate::error::InputError;
 use crate::input::{self, refuse};
+use crate::map_portals::portals_for;
 use sightlines::bake::{Bakeable, Gap, PrtBakeError};
 use sightlines::cells::{CellGraph, Convex, Plan, Scene};
 use sightlines::formats::Input;
 use sightlines::formats::quake::bsp::BspError;
+use sightlines::formats::quake::graph_of_prt;
 use sightlines::formats::quake::visibility::check_portals;
-use sightlines::formats::quake::{graph_of_prt, read_prt};
 use sightlines::formats::scene::SceneReadOptions;
 use sightlines::pvs::Table;
 use sightlines::verify::{Truth, VerifyError, WorldTree, along_frame};
@@ -31,14 +32,14 @@ impl Real {
         options: &SceneReadOptions,
     ) -> Result<Self, Error> {
         let input = input::read(path, map, options)?;
-        let file = match input {
-            Input::Bsp(_) => Some(input::portal_file(path, prt)?),
+        let portals = match &input {
+            Input::Bsp(bsp) => Some(portals_for(bsp, path, prt)?),
             _ => None,
         };
-        if file.is_none() {
+        if portals.is_none() {
             refuse(path, &[("--prt", prt.is_some())], "Quake maps", "none")?;
         }
-        let portals = file.as_ref().map(read_prt).transpose()?;
+        let (file, portals) = portals.map(|portals| (portals.path, portals.prt)).unzip();
         Ok(match input::bakeable(path, input, map, portals)? {
             Bakeable::Plan { plan, .. } => Self::Plan(plan),
             Bakeable::Scene(file) => Self::Scene(file.scene),

@@ -33,6 +33,17 @@ pub(crate) enum Error {
 
 from_file_error!(Error);
 
+impl Error {
+    /// What is wrong with the file of a state, without what to do about it.
+    pub(super) fn without_advice(&self) -> String {
+        match self {
+            Self::State { path, source } => format!("{}: {source}", path.display()),
+            Self::NotState(path) => format!("{}: this is no state of a search", path.display()),
+            other => other.to_string(),
+        }
+    }
+}
+
 /// What was found about a pair of clusters that is listed otherwise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Found {

@@ -4,23 +4,27 @@ mod certify;
 mod error;
 mod outcome;
 mod saved;
+mod sounds;
+
+pub(crate) use error::Error;
+pub(crate) use outcome::Outcome;
+pub(crate) use saved::StateUse;
+pub(crate) use sounds::Sound;
 
 use crate::Answer;
 use crate::clusters::warn_of_repeats;
-use crate::error::InputError;
+use crate::error::{InputError, OutputError};
 use crate::input;
+use crate::map_portals::{MapPortals, portal_file, portals_for};
 use crate::output;
 use crate::progress::Bar;
 use certify::certify;
-use error::Error;
-use outcome::Outcome;
 use saved::Saved;
 use sightlines::bake::quake::StateKey;
 use sightlines::bake::{PrtBakeError, PrtOptions, vis_map};
 use sightlines::formats::InputKind;
 use sightlines::formats::quake::visibility::check_portals;
-use sightlines::formats::quake::{VisibilityError, graph_of_prt, prt, read_bsp};
-use sightlines::formats::{Prt, ReadError};
+use sightlines::formats::quake::{Bsp, Prt, VisibilityError, graph_of_prt, read_bsp};
 use sightlines::stabtree::{ConvexOptions, ConvexSearch};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -30,16 +34,16 @@ use std::time::{Duration, Instant};
 pub(crate) struct VisArgs {
     /// The map: Quake's BSP 29, BSP2 or 2PSB, or Quake II's IBSP 38
     #[arg(value_name = "MAP.bsp")]
-    map: PathBuf,
-    /// The portal file that the compiler wrote [default: beside the map]
+    pub(crate) map: PathBuf,
+    /// The portal file that the compiler wrote [default: beside the map; made from the map if there is none]
     #[arg(long, help_heading = "Input", value_name = "MAP.prt")]
     prt: Option<PathBuf>,
     /// Compute only a coarse bound; fast, and reports much that is hidden as visible
     #[arg(long, help_heading = "Method")]
-    fast: bool,
+    pub(crate) fast: bool,
     /// Number of threads; 0 uses every core
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::numbers::threads)]
-    threads: usize,
+    pub(crate) threads: usize,
     /// Resume an interrupted run with the same portals and options
     #[arg(long, help_heading = "Resuming")]
     resume: bool,
@@ -48,10 +52,13 @@ pub(crate) struct VisArgs {
     state: Option<PathBuf>,
     /// Seconds between two savings of the state
     #[arg(long, help_heading = "Resuming", hide = true, value_name = "SECONDS", default_value_t = 30)]
-    save_every: u64,
+    pub(crate) save_every: u64,
     /// Prove this many visible and as many hidden pairs, and check the proofs independently
     #[arg(long, help_heading = "Method", value_name = "N")]
     certify: Option<usize>,
+    /// Make no part of a Quake map sound of these nearby
+    #[arg(long, help_heading = "Output", value_name = "SOUND,…", value_delimiter = ',')]
+    pub(crate) silence: Vec<Sound>,
     /// The map to write [default: the input]
     #[arg(short, long, help_heading = "Output", value_name = "OUT.bsp")]
     output: Option<PathBuf>,
@@ -61,74 +68,95 @@ pub(crate) struct VisArgs {
 }
 
 impl VisArgs {
-    /// For a map with its portal file beside it, in place.
-    pub(crate) fn of_map(map: PathBuf, fast: bool, threads: usize) -> Self {
+    /// For a map with its portal file beside it, which is replaced.
+    pub(crate) fn of_map(map: PathBuf) -> Self {
         Self {
             map,
             prt: None,
-            fast,
-            threads,
+            fast: false,
+            threads: 0,
             resume: false,
             state: None,
             save_every: 30,
             certify: None,
+            silence: Vec::new(),
             output: None,
             json: false,
         }
     }
 }
 
+/// How to go about it, beside what the arguments say.
+pub(crate) struct Manner<'a> {
+    pub(crate) show_progress: bool,
+    pub(crate) states: StateUse,
+    /// Whether the state is kept after the end.
+    pub(crate) keep_state: bool,
+    /// Called with map, portals and their file before the search.
+    pub(crate) begin: &'a mut dyn FnMut(&Bsp, &Prt, &Path) -> Result<(), OutputError>,
+}
+
 pub(crate) fn run(args: &VisArgs, show_progress: bool, verbose: bool) -> Result<Answer, Error> {
+    let states = if args.resume { StateUse::Resume } else { StateUse::Anew };
+    let mut outcome = compute(args, Manner { show_progress, states, keep_state: false, begin: &mut |_, _, _| Ok(()) })?;
+    outcome.verbose = verbose;
+    output::print(args.json, &outcome)?;
+    Ok(Answer::Yes)
+}
+
+/// Writes the map. Prints nothing but progress and warnings.
+pub(crate) fn compute(args: &VisArgs, manner: Manner<'_>) -> Result<Outcome, Error> {
     let start = Instant::now();
     if args.prt.is_none() && args.map.is_file() && input::kind_of(&args.map)? == Some(InputKind::Prt) {
         return Err(Error::PortalsForMap { path: args.map.clone(), command: "sightlines vis" });
     }
-    let prt_path = args.prt.clone().unwrap_or_else(|| args.map.with_extension("prt"));
+    let file = portal_file(&args.map, args.prt.as_deref());
     let out = args.output.as_ref().unwrap_or(&args.map);
     let state_path = args.state.clone().unwrap_or_else(|| out.with_extension("vis-state"));
     // The map may be replaced. A state that cannot be written is reported when it is needed: the search goes on
     // without.
-    output::check(&[&prt_path, &state_path], &[out])?;
+    let beside = [file.as_ref(), Some(&state_path)];
+    output::check(&beside.into_iter().flatten().map(PathBuf::as_path).collect::<Vec<_>>(), &[out])?;
     let bsp = read_bsp(&args.map)?;
-    if args.prt.is_none() && !prt_path.exists() {
-        return Err(InputError::MapWithoutPortals(args.map.clone()).into());
+    let portals = portals_for(&bsp, &args.map, args.prt.as_deref())?;
+    let format = portals.format();
+    if manner.show_progress {
+        portals.announce();
     }
-    let (prt, text) = read_portals(&prt_path)?;
+    let MapPortals { prt, path: prt_path, text, .. } = portals;
     check_portals(&bsp, &prt).map_err(|source| InputError::of_portals(&prt_path, &args.map, Box::new(source)))?;
     warn_of_repeats(&prt_path, &prt);
+    (manner.begin)(&bsp, &prt, &prt_path)?;
 
     let key = StateKey::new(&text, args.fast);
     drop(text);
     let every = Duration::from_secs(args.save_every);
-    let (mut saved, from) = Saved::open(state_path, every, key, &graph_of_prt(&prt), args.resume)?;
+    let (mut saved, from) = Saved::open(state_path, every, key, &graph_of_prt(&prt), manner.states)?;
+    if manner.keep_state {
+        saved.keep();
+    }
     let resumed = from.is_some();
-    let bar = Bar::new("visibility of clusters", show_progress);
-    let mut save = |search: &ConvexSearch| saved.save(search.state());
+    let bar = Bar::new("visibility of clusters", manner.show_progress);
+    let mut save = |search: &ConvexSearch| saved.save(search);
+    let sounds = sounds::all_but(&args.silence);
     let search = ConvexOptions { fast: args.fast, threads: args.threads };
-    let map = vis_map(&bsp, &prt, PrtOptions { search, from, progress: Some(&bar), after_step: Some(&mut save) });
+    let options = PrtOptions { search, from, progress: Some(&bar), after_step: Some(&mut save), sounds };
+    let map = vis_map(&bsp, &prt, options);
     drop(bar);
     let map = map.map_err(|source| explained(source, args, &prt_path, &saved))?;
     // Before anything is written: a table that is proven wrong should not be.
     let certified = args.certify.map(|n| {
-        let bar = Bar::new("proofs", show_progress);
+        let bar = Bar::new("proofs", manner.show_progress);
         certify(&prt_path, &map.graph, &map.clusters.seen, n, args.fast, &bar)
     });
     let certified = certified.transpose()?;
     output::save(out, &map.bytes)?;
     saved.remove();
-    let mut outcome = Outcome::new(out, &bsp, &prt, &map);
-    (outcome.fast, outcome.resumed, outcome.verbose) = (args.fast, resumed, verbose);
+    let mut outcome = Outcome::new(out, &bsp, format, &map);
+    (outcome.fast, outcome.resumed) = (args.fast, resumed);
     outcome.certified = certified;
     outcome.seconds = start.elapsed().as_secs_f64();
-    output::print(args.json, &outcome)?;
-    Ok(Answer::Yes)
-}
-
-/// The portals, and the bytes of their file.
-fn read_portals(path: &Path) -> Result<(Prt, Vec<u8>), Error> {
-    let text = std::fs::read(path).map_err(|error| ReadError::new(path, error))?;
-    let prt = prt::parse_prt(&text).map_err(|error| ReadError::new(path, error))?;
-    Ok((prt, text))
+    Ok(outcome)
 }
 
 /// Puts the name of the file before what is wrong with it.

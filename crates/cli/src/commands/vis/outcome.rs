@@ -6,40 +6,40 @@ use crate::memory;
 use crate::output::{bytes, count, seconds};
 use serde::Serialize;
 use sightlines::bake::VisMap;
-use sightlines::formats::quake::{Bsp, Prt};
+use sightlines::formats::quake::Bsp;
 use std::fmt;
 use std::path::Path;
 use std::time::Duration;
 
 /// What was written.
 #[derive(Debug, Serialize)]
-pub(super) struct Outcome {
+pub(crate) struct Outcome {
     out: String,
     format: &'static str,
     portal_format: &'static str,
     /// Leafs that can be seen.
     n_leafs: usize,
     #[serde(flatten)]
-    clusters: Clusters,
+    pub(crate) clusters: Clusters,
     pub(super) fast: bool,
     /// Whether it resumed an earlier run.
-    pub(super) resumed: bool,
+    pub(crate) resumed: bool,
     /// What was proven, if `--certify` was given.
     pub(super) certified: Option<Certified>,
-    n_bytes: usize,
+    pub(crate) n_bytes: usize,
     /// Reading and writing included.
-    pub(super) seconds: f64,
+    pub(crate) seconds: f64,
     peak_bytes: Option<u64>,
     #[serde(skip)]
     pub(super) verbose: bool,
 }
 
 impl Outcome {
-    pub(super) fn new(out: &Path, bsp: &Bsp, prt: &Prt, map: &VisMap) -> Self {
+    pub(super) fn new(out: &Path, bsp: &Bsp, portal_format: &'static str, map: &VisMap) -> Self {
         Self {
             out: out.display().to_string(),
             format: bsp.format().name(),
-            portal_format: prt.dialect().magic(),
+            portal_format,
             n_leafs: bsp.n_visible_leafs(),
             clusters: Clusters::new(&map.clusters),
             fast: false,

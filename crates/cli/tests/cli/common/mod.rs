@@ -1,9 +1,12 @@
 //! Runs the built program on generated files.
 
+pub(crate) mod engine;
 pub(crate) mod levels;
 pub(crate) mod looks;
 pub(crate) mod picture;
 pub(crate) mod quake;
+#[path = "../../../../formats/tests/formats/common/udmf.rs"]
+pub(crate) mod udmf;
 
 use sightlines::formats::doom::{DoomMapSource, ML_TWOSIDED, SourceLine};
 use sightlines::formats::geojson;
@@ -11,6 +14,9 @@ use sightlines::formats::wad::{LumpName, WadBuilder, WadKind};
 use sightlines::scenes::{DoomLike, OfficeOptions, maze, office};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+
+/// The environment variable with the time between two lines of progress.
+pub(crate) const PROGRESS: &str = "SIGHTLINES_PROGRESS_SECONDS";
 
 /// What a run of the program gave.
 pub(crate) struct Run {
@@ -60,8 +66,23 @@ impl Folder {
     /// Runs the program in this folder: the one that was built with the tests, or the one that `SIGHTLINES_PROGRAM` names.
     pub(crate) fn run(&self, args: &[&str]) -> Run {
         let program = std::env::var_os("SIGHTLINES_PROGRAM").unwrap_or_else(|| env!("CARGO_BIN_EXE_sightlines").into());
+        self.run_command(Command::new(program).args(args))
+    }
+
+    /// Runs `sightlines-vis` in this folder.
+    pub(crate) fn run_vis(&self, args: &[&str]) -> Run {
+        self.run_command(Command::new(env!("CARGO_BIN_EXE_sightlines-vis")).args(args))
+    }
+
+    /// Runs a command in this folder.
+    pub(crate) fn run_command(&self, command: &mut Command) -> Run {
+        // However slow a machine is, no line of progress is among what is compared, unless a test asks for it.
+        if command.get_envs().all(|(name, _)| name != PROGRESS) {
+            command.env(PROGRESS, "1h");
+        }
+        let args: Vec<_> = command.get_args().map(ToOwned::to_owned).collect();
         let Output { status, stdout, stderr } =
-            Command::new(program).args(args).current_dir(self.0.path()).output().expect("the program is there");
+            command.current_dir(self.0.path()).output().expect("the program is there");
         let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("output is text");
         let code = status.code().expect("the program ends by itself");
         let run = Run { code, out: text(stdout), err: text(stderr) };

@@ -9,6 +9,7 @@ use sightlines::formats::LumpName;
 use sightlines::formats::doom::{DoomMapSource, write_doom_map};
 use sightlines::formats::quake::BspFormat;
 use sightlines::formats::scene::{read_scene, write_glb};
+use sightlines::formats::wad::{WadBuilder, WadKind};
 use sightlines::pvs::{CellId, Table};
 
 /// A room of 8 by 5 by 3, turned by the angle whose cosine and sine are 4/5 and 3/5.
@@ -222,10 +223,23 @@ fn scenes(all: &mut Results) {
     add("demo tower", "demo tower --out demo");
 }
 
+/// A WAD of two maps; the second has a line to nowhere.
+fn one_bad_map() -> Vec<u8> {
+    let mut builder = WadBuilder::new(WadKind::Patch);
+    let [good, mut bad] = [1, 2].map(doom_map);
+    bad.lines[0].v2 = 60_000;
+    for (map, name) in [(good, "MAP01"), (bad, "MAP02")] {
+        map.add_to(&mut builder, LumpName::new(name).expect("a short name")).expect("a small map");
+    }
+    builder.finish().expect("a small file")
+}
+
 fn maps(all: &mut Results) {
     let folder = Folder::with_wad();
     all.line(&folder, "reject", "reject maps.wad -o out.wad");
     all.line(&folder, "info of a WAD", "info out.wad");
+    folder.write("some.wad", one_bad_map());
+    all.line(&folder, "reject", "reject some.wad -o others.wad");
     all.line(&folder, "build of a plan", "build maps.wad --map MAP01 -o o.pvs");
     let (name, source) = (LumpName::new("MAP01").expect("a short name"), doom_map(4));
     let n = usize::from(source.n_sectors);

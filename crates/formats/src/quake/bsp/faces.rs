@@ -26,25 +26,81 @@ pub enum AmbientKind {
 impl AmbientKind {
     const ALL: [Self; 3] = [Self::Water, Self::Sky, Self::Lava];
 
-    /// The sound of a texture, by the beginning of its name, in any case of letters.
+    /// The sound of a texture; see [`AmbientTexture::of_name`].
+    pub fn of_texture(name: &[u8]) -> Option<Self> {
+        AmbientTexture::of_name(name).map(AmbientTexture::sound)
+    }
+
+    const fn bit(self) -> u8 {
+        1 << self as u8
+    }
+}
+
+/// A texture that makes a sound.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AmbientTexture {
+    /// Water, which sounds like itself.
+    Water,
+    /// Slime, which sounds like water.
+    Slime,
+    /// Sky, from which wind comes.
+    Sky,
+    /// Lava.
+    Lava,
+}
+
+impl AmbientTexture {
+    /// All that make a sound.
+    pub const ALL: [Self; 4] = [Self::Water, Self::Slime, Self::Sky, Self::Lava];
+
+    /// The kind of a texture, by the beginning of its name, in any case of letters.
     ///
     /// # Source
     /// The manual of ericw-tools' vis (its options that turn sounds off) names the beginnings.
-    pub fn of_texture(name: &[u8]) -> Option<Self> {
+    pub fn of_name(name: &[u8]) -> Option<Self> {
         let begins = |with: &str| name.get(..with.len()).is_some_and(|n| n.eq_ignore_ascii_case(with.as_bytes()));
         if begins("sky") {
             Some(Self::Sky)
         } else if begins("*lava") {
             Some(Self::Lava)
-        } else if ["*water", "*04water", "*slime"].into_iter().any(begins) {
+        } else if begins("*slime") {
+            Some(Self::Slime)
+        } else if ["*water", "*04water"].into_iter().any(begins) {
             Some(Self::Water)
         } else {
             None
         }
     }
 
-    const fn bit(self) -> u8 {
-        1 << self as u8
+    /// What it sounds like.
+    pub const fn sound(self) -> AmbientKind {
+        match self {
+            Self::Water | Self::Slime => AmbientKind::Water,
+            Self::Sky => AmbientKind::Sky,
+            Self::Lava => AmbientKind::Lava,
+        }
+    }
+}
+
+/// Which textures may make sounds; all of them, unless some are turned off.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct AmbientTextures {
+    off: u8,
+}
+
+impl AmbientTextures {
+    /// All.
+    pub const ALL: Self = Self { off: 0 };
+
+    /// The same without one of them.
+    #[must_use]
+    pub const fn without(self, texture: AmbientTexture) -> Self {
+        Self { off: self.off | 1 << texture as u8 }
+    }
+
+    /// Whether a texture may make its sound.
+    pub const fn has(self, texture: AmbientTexture) -> bool {
+        self.off >> texture as u8 & 1 == 0
     }
 }
 
@@ -68,10 +124,18 @@ impl Bsp {
     /// # Errors
     /// [`BspError`] for a list of faces, a face or a texture of a visible leaf that is not there.
     pub fn leaf_sounds(&self) -> Result<Vec<u8>, BspError> {
+        self.leaf_sounds_of(AmbientTextures::ALL)
+    }
+
+    /// As [`Self::leaf_sounds`], by some textures only.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn leaf_sounds_of(&self, textures: AmbientTextures) -> Result<Vec<u8>, BspError> {
         if self.format() == BspFormat::Quake2 {
             return Ok(vec![0; self.n_visible_leafs()]);
         }
-        let faces = self.face_sounds();
+        let faces = self.face_sounds(textures);
         let marks = self.marks();
         let is_sound = |mark: &u32| faces.get(*mark as usize).copied().unwrap_or(Face::Missing);
         let marked: Vec<Face> = marks.iter().map(is_sound).collect();
@@ -123,8 +187,8 @@ impl Bsp {
         }
     }
 
-    fn face_sounds(&self) -> Vec<Face> {
-        let textures = self.texture_sounds();
+    fn face_sounds(&self, textures: AmbientTextures) -> Vec<Face> {
+        let textures = self.texture_sounds(textures);
         let texinfos = self.lump_bytes(TEXINFO).chunks_exact(TEXINFO_LEN);
         let texture = |info: &[u8]| usize::try_from(i32_at(info, TEXINFO_TEXTURE)).ok();
         let of_texinfo: Vec<Face> = texinfos
@@ -142,7 +206,7 @@ impl Bsp {
     }
 
     /// The sounds of all textures; `None` if the map has no lump of them.
-    fn texture_sounds(&self) -> Option<Vec<Face>> {
+    fn texture_sounds(&self, textures: AmbientTextures) -> Option<Vec<Face>> {
         let lump = self.lump_bytes(TEXTURES);
         let count = lump.first_chunk::<4>().map(|&count| i32::from_le_bytes(count))?;
         let places = lump[4..].chunks_exact(4).take(usize::try_from(count).unwrap_or(0));
@@ -152,7 +216,8 @@ impl Bsp {
             start => {
                 let start = usize::try_from(start).ok();
                 let name = start.and_then(|start| lump.get(start..start.checked_add(NAME_LEN)?));
-                name.map_or(Face::NoTexture, |n| Face::Sounds(AmbientKind::of_texture(n).map_or(0, AmbientKind::bit)))
+                let loud = |name| AmbientTexture::of_name(name).filter(|&texture| textures.has(texture));
+                name.map_or(Face::NoTexture, |name| Face::Sounds(loud(name).map_or(0, |texture| texture.sound().bit())))
             }
         };
         Some(places.map(sound).collect())
@@ -207,10 +272,20 @@ mod tests {
         for name in ["*water1", "*WATER", "*04water2", "*slime0", "*Slime"] {
             assert_eq!(kind(name), Some(AmbientKind::Water), "{name}");
         }
+        assert_eq!(AmbientTexture::of_name(b"*slime0"), Some(AmbientTexture::Slime));
         assert_eq!((kind("sky4"), kind("SKY")), (Some(AmbientKind::Sky), Some(AmbientKind::Sky)));
         assert_eq!((kind("*lava"), kind("*lava1")), (Some(AmbientKind::Lava), Some(AmbientKind::Lava)));
         for name in ["", "sk", "water", "*teleport", "*04mwat1", "brick\0*water", "*wate\0"] {
             assert_eq!(kind(name), None, "{name:?}");
+        }
+    }
+
+    #[test]
+    fn textures_are_turned_off_one_by_one() {
+        let mut loud = AmbientTextures::ALL;
+        for (k, texture) in AmbientTexture::ALL.into_iter().enumerate() {
+            loud = loud.without(texture).without(texture);
+            assert_eq!(AmbientTexture::ALL.map(|t| loud.has(t)), std::array::from_fn(|other| other > k));
         }
     }
 }

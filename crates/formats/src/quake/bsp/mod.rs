@@ -10,16 +10,20 @@
 //! | `2PSB` | 15 | 32 bytes, 16-bit bounds, 32-bit indices | 28 bytes | 32 bytes |
 //! | `IBSP`, i32 38 (Quake II) | 19 | 28 bytes, names its cluster | 20 bytes | 28 bytes |
 
+mod covers;
 mod error;
 mod faces;
+mod kind;
 mod leaf;
 mod places;
 mod rewrite;
 mod surfaces;
 mod tree;
 
+pub use covers::FaceCover;
 pub use error::{BspError, BspLumpId};
-pub use faces::AmbientKind;
+pub use faces::{AmbientKind, AmbientTexture, AmbientTextures};
+pub use kind::LeafKind;
 pub use leaf::{BspLeaf, LeafRow};
 pub use places::ClusterPlaces;
 pub(in crate::quake) use rewrite::NewVisibility;

@@ -5,6 +5,16 @@ use super::{BSPX_ENTRY, BSPX_HEADER, Bsp, BspError, i32_at, u32_at};
 use std::ops::Range;
 
 impl Bsp {
+    /// Refuses a map whose leafs, which change with visibility, lie under another lump: what [`Self::with_visibility`] would refuse at the end. Of
+    /// Quake II, whose leafs do not change, nothing is refused. A map whose leafs would happen to stay as they are is refused too.
+    ///
+    /// # Errors
+    /// [`BspError::Shared`].
+    pub fn check_leafs(&self) -> Result<(), BspError> {
+        let changes = !self.format.has_clusters() && self.n_visible_leafs > 0;
+        self.over_leafs().filter(|_| changes).map_or(Ok(()), |other| Err(self.shared(other)))
+    }
+
     /// As [`Self::with_visibility`] says, from the parts of a visibility lump.
     pub(in crate::quake) fn rewritten(&self, new: &NewVisibility<'_>) -> Result<Vec<u8>, BspError> {
         let vis = self.format.visibility_lump();
@@ -111,15 +121,22 @@ impl Bsp {
             put(record, LEAF_ROW, new.leaf_rows[k] as usize);
             record[len - 4..].copy_from_slice(&new.ambient[k]);
         }
-        let range = &self.lumps[index];
-        let over = |l: &Range<usize>| l.start < range.end && range.start < l.end;
-        let other = (0..self.lumps.len()).find(|&k| k != index && over(&self.lumps[k]));
-        match other.filter(|_| leafs != self.lump_bytes(index)) {
-            Some(other) => {
-                Err(BspError::Shared { lump: self.format.lump_id(index), other: self.format.lump_id(other) })
-            }
+        match self.over_leafs().filter(|_| leafs != self.lump_bytes(index)) {
+            Some(other) => Err(self.shared(other)),
             None => Ok(leafs),
         }
+    }
+
+    /// The first other lump that has bytes of the lump of leafs.
+    fn over_leafs(&self) -> Option<usize> {
+        let index = self.format.leaf_lump();
+        let range = &self.lumps[index];
+        let over = |l: &Range<usize>| l.start < range.end && range.start < l.end;
+        (0..self.lumps.len()).find(|&k| k != index && over(&self.lumps[k]))
+    }
+
+    fn shared(&self, other: usize) -> BspError {
+        BspError::Shared { lump: self.format.lump_id(self.format.leaf_lump()), other: self.format.lump_id(other) }
     }
 }
 

@@ -179,7 +179,13 @@ impl Bsp {
     }
 
     /// A first record and a number of records that a record of a lump names, if the other lump has them.
-    fn run(&self, by: (usize, usize), [first, count]: [i64; 2], of: usize, n: usize) -> Result<Range<usize>, BspError> {
+    pub(super) fn run(
+        &self,
+        by: (usize, usize),
+        [first, count]: [i64; 2],
+        of: usize,
+        n: usize,
+    ) -> Result<Range<usize>, BspError> {
         let (lump, of) = (self.format().lump_id(by.0), self.format().lump_id(of));
         let error = BspError::Run { lump, record: by.1, first, count, of, n };
         let (Ok(start), Ok(len)) = (usize::try_from(first), usize::try_from(count)) else { return Err(error) };

@@ -10,7 +10,7 @@ use crate::quake::Prt;
 /// [`VisibilityError::Leafs`], [`VisibilityError::Clusters`].
 pub fn check_match(bsp: &Bsp, leafs: &LeafClusters) -> Result<(), VisibilityError> {
     if bsp.format().has_clusters() {
-        let (portals, map) = (leafs.n_clusters(), bsp.n_clusters());
+        let (portals, map) = (leafs.n_leafs(), bsp.n_clusters());
         return if portals == map { Ok(()) } else { Err(VisibilityError::Clusters { portals, map }) };
     }
     let (portals, map) = (leafs.n_leafs(), bsp.n_visible_leafs());

@@ -3,7 +3,7 @@
 //! Quake has a row of leafs for each leaf; the leafs of a cluster share theirs. Quake II has a row of clusters
 //! for each cluster, and a second one for what can be heard. Rows are coded by [`rle`].
 
-use super::bsp::NewVisibility;
+use super::bsp::{AmbientTextures, NewVisibility};
 use super::{Bsp, BspError, BspFormat, LeafClusters, rle};
 use sightlines_pvs::BitMatrix;
 use sightlines_pvs::bits::{ones, or_words};
@@ -15,6 +15,7 @@ mod read;
 
 pub use error::VisibilityError;
 pub use fit::{check_match, check_portals, clusters_of_leafs};
+use read::quake2_rows;
 pub use read::{read_hearing, read_visibility};
 
 /// A visibility lump, and what goes with it in the leafs; [`Bsp::with_visibility`] puts it into a map.
@@ -58,12 +59,25 @@ impl Bsp {
 /// [`VisibilityError`] if the three do not fit together, if the lump would be too large, or if the
 /// faces of a leaf cannot be looked up.
 pub fn lump(bsp: &Bsp, leafs: &LeafClusters, seen: &BitMatrix) -> Result<VisibilityLump, VisibilityError> {
+    lump_with_sounds(bsp, leafs, seen, AmbientTextures::ALL)
+}
+
+/// As [`lump`], with the sounds of some textures only.
+///
+/// # Errors
+/// As there.
+pub fn lump_with_sounds(
+    bsp: &Bsp,
+    leafs: &LeafClusters,
+    seen: &BitMatrix,
+    textures: AmbientTextures,
+) -> Result<VisibilityLump, VisibilityError> {
     check_match(bsp, leafs)?;
     match bsp.format() {
-        BspFormat::Quake2 => quake2_lump(seen),
+        BspFormat::Quake2 => quake2_lump(&of_leafs(leafs, seen)?),
         _ => {
             let (bytes, leaf_rows) = quake_lump(leafs, seen)?;
-            Ok(VisibilityLump { bytes, leaf_rows, ambient: ambient(bsp, leafs, seen)? })
+            Ok(VisibilityLump { bytes, leaf_rows, ambient: loudness(bsp, leafs, seen, textures)? })
         }
     }
 }
@@ -77,9 +91,19 @@ pub fn lump(bsp: &Bsp, leafs: &LeafClusters, seen: &BitMatrix) -> Result<Visibil
 /// # Source
 /// What Quake's vis has always written: loudness was meant to fall with distance, but every distance is taken as 0.25.
 pub fn ambient(bsp: &Bsp, leafs: &LeafClusters, seen: &BitMatrix) -> Result<Vec<[u8; 4]>, VisibilityError> {
+    loudness(bsp, leafs, seen, AmbientTextures::ALL)
+}
+
+/// What some textures do to the loudness.
+fn loudness(
+    bsp: &Bsp,
+    leafs: &LeafClusters,
+    seen: &BitMatrix,
+    textures: AmbientTextures,
+) -> Result<Vec<[u8; 4]>, VisibilityError> {
     check_match(bsp, leafs)?;
     check_square(seen, leafs.n_clusters())?;
-    let made = bsp.leaf_sounds()?;
+    let made = bsp.leaf_sounds_of(textures)?;
     let own: Vec<u8> =
         (0..leafs.n_clusters()).map(|c| leafs.leafs_of(c).iter().fold(0, |bits, &l| bits | made[l as usize])).collect();
     let heard: Vec<u8> =
@@ -88,10 +112,33 @@ pub fn ambient(bsp: &Bsp, leafs: &LeafClusters, seen: &BitMatrix) -> Result<Vec<
     Ok(leafs.cluster_of_leaf().iter().map(|&cluster| level(heard[cluster as usize])).collect())
 }
 
+/// The lump of a map of Quake II with what is visible as the map has it, and what is audible made of that anew. `None` for other formats and for a
+/// map without visibility.
+///
+/// # Errors
+/// [`VisibilityError`] with the cluster whose row is wrong, or if the lump would be too large.
+pub fn lump_with_new_hearing(bsp: &Bsp) -> Result<Option<VisibilityLump>, VisibilityError> {
+    let has_rows = bsp.format().has_clusters() && !bsp.visibility().is_empty();
+    has_rows.then(|| quake2_lump(&quake2_rows(bsp, 0)?)).transpose()
+}
+
 fn check_square(seen: &BitMatrix, n_clusters: usize) -> Result<(), VisibilityError> {
     let (n_rows, n_cols) = (seen.n_rows(), seen.n_cols());
     let fits = n_rows == n_clusters && n_cols == n_clusters;
     if fits { Ok(()) } else { Err(VisibilityError::Matrix { n_rows, n_cols, n_clusters }) }
+}
+
+/// Which leafs see which: those of clusters that do.
+fn of_leafs(leafs: &LeafClusters, seen: &BitMatrix) -> Result<BitMatrix, VisibilityError> {
+    check_square(seen, leafs.n_clusters())?;
+    let n = leafs.n_leafs();
+    let mut rows = BitMatrix::new(n, n);
+    for (leaf, cluster) in leafs.cluster_of_leaf().iter().enumerate() {
+        for other in seen.iter_ones(*cluster as usize) {
+            leafs.leafs_of(other).iter().for_each(|&other| rows.set(leaf, other as usize, true));
+        }
+    }
+    Ok(rows)
 }
 
 /// Rows of leafs, and where the row of each leaf begins.

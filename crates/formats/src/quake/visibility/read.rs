@@ -62,7 +62,7 @@ fn quake_rows(bsp: &Bsp, leafs: &LeafClusters) -> Result<BitMatrix, VisibilityEr
 }
 
 /// The rows of one kind of a lump of Quake II: 0 seen, 1 heard.
-fn quake2_rows(bsp: &Bsp, kind: usize) -> Result<BitMatrix, VisibilityError> {
+pub(super) fn quake2_rows(bsp: &Bsp, kind: usize) -> Result<BitMatrix, VisibilityError> {
     let (lump, n) = (bsp.visibility(), bsp.n_clusters());
     let number = |at: usize| lump.get(at..at + 4).map(|b| b.iter().rev().fold(0, |n, &b| n << 8 | u32::from(b)));
     let n_clusters = number(0).ok_or(VisibilityError::Places { len: lump.len(), n_clusters: 0 })?;

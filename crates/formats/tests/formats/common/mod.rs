@@ -2,8 +2,9 @@
 
 pub(crate) mod glb;
 pub(crate) mod quake;
+pub(crate) mod udmf;
 
-use sightlines_formats::doom::{DoomMapSource, ML_TWOSIDED, SourceLine, Thing};
+use sightlines_formats::doom::{DoomMapSource, ML_TWOSIDED, SourceLine, SourceThing};
 use sightlines_formats::wad::{WadBuilder, WadKind};
 use sightlines_formats::{LumpName, Wad};
 use std::path::{Path, PathBuf};
@@ -18,7 +19,7 @@ pub(crate) fn two_rooms(hexen: bool) -> DoomMapSource {
         // Clockwise around each room, so that its sector is on the right hand.
         lines: vec![wall(1, 0, 0), wall(0, 5, 0), wall(5, 4, 0), wall(4, 3, 1), wall(3, 2, 1), wall(2, 1, 1), door],
         n_sectors: 2,
-        things: vec![Thing { x: 32, y: 32, kind: 1 }, Thing { x: 96, y: 32, kind: 3001 }],
+        things: vec![SourceThing { x: 32, y: 32, kind: 1 }, SourceThing { x: 96, y: 32, kind: 3001 }],
         reject: Some(vec![0]),
         hexen,
     }

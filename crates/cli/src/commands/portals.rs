@@ -1,0 +1,87 @@
+//! `portals`: the portal file of a Quake map that has none.
+
+use crate::Answer;
+use crate::file_error::{FileError, from_file_error};
+use crate::map_portals::{MapPortals, made};
+use crate::output::{self, bytes, count};
+use serde::Serialize;
+use sightlines::formats::quake::{LeafClusters, read_bsp};
+use std::fmt;
+use std::path::PathBuf;
+
+/// Why `portals` fails; exit code 2.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum Error {
+    /// A file cannot be read, used or written.
+    #[error(transparent)]
+    File(FileError),
+}
+
+from_file_error!(Error);
+
+/// Arguments of `portals`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct PortalsArgs {
+    /// The map: Quake's BSP 29, BSP2 or 2PSB, or Quake II's IBSP 38
+    #[arg(value_name = "MAP.bsp")]
+    map: PathBuf,
+    /// The portal file to write
+    #[arg(short, long, help_heading = "Output", value_name = "OUT.prt")]
+    output: PathBuf,
+    /// Print the result as JSON
+    #[arg(long, help_heading = "Output")]
+    json: bool,
+}
+
+pub(crate) fn run(args: &PortalsArgs) -> Result<Answer, Error> {
+    output::check(&[&args.map], &[&args.output])?;
+    let bsp = read_bsp(&args.map)?;
+    let MapPortals { prt, text, .. } = made(&bsp, &args.map)?;
+    output::save(&args.output, &text)?;
+    let n_leafs = prt.listed_leafs().map_or(prt.n_clusters() as usize, LeafClusters::n_leafs);
+    let outcome = Outcome {
+        out: args.output.display().to_string(),
+        format: bsp.format().name(),
+        portal_format: prt.dialect().magic(),
+        n_clusters: n_leafs,
+        n_portals: prt.n_portals(),
+        n_passages: prt.n_clusters() as usize - n_leafs,
+        n_bytes: text.len(),
+    };
+    output::print(args.json, &outcome)?;
+    Ok(Answer::Yes)
+}
+
+/// What was written.
+#[derive(Debug, Serialize)]
+struct Outcome {
+    out: String,
+    format: &'static str,
+    portal_format: &'static str,
+    /// Those that a map knows.
+    n_clusters: usize,
+    n_portals: usize,
+    /// Clusters for what is solid and can be seen through.
+    n_passages: usize,
+    n_bytes: usize,
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "wrote {}, {}", self.out, bytes(self.n_bytes as u64))?;
+        let clusters = count(self.n_clusters as u64, "cluster");
+        writeln!(f, "map            {} with {clusters}", self.format)?;
+        write!(f, "portals        {}, as {}", self.n_portals, self.portal_format)?;
+        match self.n_passages {
+            0 => writeln!(f),
+            n => writeln!(f, ", some of them into {}", count(n as u64, "passage")),
+        }?;
+        match self.n_passages {
+            0 => Ok(()),
+            _ => writeln!(
+                f,
+                "passages       faces leave openings into what is solid, through which rooms see each other"
+            ),
+        }
+    }
+}

@@ -1,0 +1,196 @@
+//! Words, strings and marks of a text, and where they are.
+
+use super::error::{TextError, TextErrorKind};
+
+/// A place in the text; both count from 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Place {
+    line: u32,
+    column: u32,
+}
+
+impl Place {
+    pub(super) fn error(self, kind: TextErrorKind) -> TextError {
+        TextError { line: self.line, column: self.column, kind }
+    }
+}
+
+/// A piece of the text.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Piece<'t> {
+    /// A name, a number or a keyword.
+    Word(&'t [u8]),
+    /// A string in quotes, without its content: sight depends on none.
+    Quoted,
+    /// One of `{ } = ; ( ) '`.
+    Mark(u8),
+    /// The end of the text.
+    End,
+}
+
+impl Piece<'_> {
+    /// The piece as an error shows it: not too long, and without control characters.
+    pub(super) fn shown(&self) -> String {
+        const LONGEST: usize = 24;
+        match self {
+            Self::Word(word) if word.len() > LONGEST => format!("{}...", word[..LONGEST].escape_ascii()),
+            Self::Word(word) => word.escape_ascii().to_string(),
+            Self::Quoted => "a string".to_owned(),
+            Self::Mark(mark) => char::from(*mark).to_string(),
+            Self::End => "the end of the text".to_owned(),
+        }
+    }
+}
+
+/// The pieces of a text, one after the other. No memory, whatever the text; each byte is looked at once or twice.
+#[derive(Debug)]
+pub(super) struct Lexer<'t> {
+    text: &'t [u8],
+    at: usize,
+    line: u32,
+    line_start: usize,
+}
+
+impl<'t> Lexer<'t> {
+    pub(super) fn new(text: &'t [u8]) -> Self {
+        Self { text, at: 0, line: 1, line_start: 0 }
+    }
+
+    /// The next piece and its place; comments and space before it are skipped.
+    pub(super) fn next(&mut self) -> Result<(Piece<'t>, Place), TextError> {
+        self.skip()?;
+        let place = self.place();
+        let Some(&first) = self.text.get(self.at) else { return Ok((Piece::End, place)) };
+        if first == b'"' {
+            self.string(place)?;
+            return Ok((Piece::Quoted, place));
+        }
+        if is_mark(first) {
+            self.at += 1;
+            return Ok((Piece::Mark(first), place));
+        }
+        let rest = &self.text[self.at..];
+        let ends = |k: &usize| !is_word(rest[*k]) || rest[*k..].starts_with(b"//") || rest[*k..].starts_with(b"/*");
+        let word = &rest[..(1..rest.len()).find(ends).unwrap_or(rest.len())];
+        self.at += word.len();
+        Ok((Piece::Word(word), place))
+    }
+
+    fn place(&self) -> Place {
+        // A lump has fewer than 2^31 bytes.
+        Place { line: self.line, column: (self.at - self.line_start + 1) as u32 }
+    }
+
+    /// Goes past one byte.
+    fn step(&mut self) {
+        if self.text[self.at] == b'\n' {
+            self.line += 1;
+            self.line_start = self.at + 1;
+        }
+        self.at += 1;
+    }
+
+    /// Goes past space and comments.
+    fn skip(&mut self) -> Result<(), TextError> {
+        loop {
+            let rest = &self.text[self.at..];
+            match rest {
+                [first, ..] if first.is_ascii_whitespace() => self.step(),
+                [b'/', b'/', ..] => self.at += rest.iter().position(|&b| b == b'\n').unwrap_or(rest.len()),
+                [b'/', b'*', ..] => self.comment()?,
+                _ => return Ok(()),
+            }
+        }
+    }
+
+    fn comment(&mut self) -> Result<(), TextError> {
+        let place = self.place();
+        self.at += 2;
+        while !self.text[self.at..].starts_with(b"*/") {
+            if self.at == self.text.len() {
+                return Err(place.error(TextErrorKind::Unterminated("comment")));
+            }
+            self.step();
+        }
+        self.at += 2;
+        Ok(())
+    }
+
+    /// Goes past a string; `\` takes its meaning from the character behind it.
+    fn string(&mut self, place: Place) -> Result<(), TextError> {
+        self.at += 1;
+        loop {
+            match self.text[self.at..] {
+                [b'"', ..] => break,
+                [b'\\', _, ..] => {
+                    self.at += 1;
+                    self.step();
+                }
+                [_, ..] => self.step(),
+                [] => return Err(place.error(TextErrorKind::Unterminated("string"))),
+            }
+        }
+        self.at += 1;
+        Ok(())
+    }
+}
+
+fn is_mark(byte: u8) -> bool {
+    matches!(byte, b'{' | b'}' | b'=' | b';' | b'(' | b')' | b'\'')
+}
+
+fn is_word(byte: u8) -> bool {
+    !is_mark(byte) && byte != b'"' && !byte.is_ascii_whitespace()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pieces(text: &str) -> Result<Vec<String>, TextError> {
+        let mut lexer = Lexer::new(text.as_bytes());
+        let mut found = Vec::new();
+        loop {
+            match lexer.next()? {
+                (Piece::End, _) => return Ok(found),
+                (piece, place) => found.push(format!("{}:{} {}", place.line, place.column, piece.shown())),
+            }
+        }
+    }
+
+    #[test]
+    fn pieces_are_found_where_they_are() {
+        let text = "a=1;// x = {\n\t/* \" \n */b{ c = \"}\\\"\n\";}\r\n-1.5e+3/**/z/y//";
+        let expected = [
+            "1:1 a",
+            "1:2 =",
+            "1:3 1",
+            "1:4 ;",
+            "3:4 b",
+            "3:5 {",
+            "3:7 c",
+            "3:9 =",
+            "3:11 a string",
+            "4:2 ;",
+            "4:3 }",
+            "5:1 -1.5e+3",
+            "5:12 z/y",
+        ];
+        assert_eq!(pieces(text).unwrap(), expected);
+        assert_eq!(pieces(" \n ").unwrap(), [""; 0]);
+        assert_eq!(pieces("\u{e4}\u{1}'").unwrap(), ["1:1 \\xc3\\xa4\\x01", "1:4 '"]);
+    }
+
+    #[test]
+    fn what_has_no_end_is_named_where_it_begins() {
+        for (text, error) in [
+            ("a\n  /* b", "line 2, column 3: this comment has no end"),
+            ("/*/", "line 1, column 1: this comment has no end"),
+            ("a = \"b;\n", "line 1, column 5: this string has no end"),
+            ("\"\\\"", "line 1, column 1: this string has no end"),
+            ("\"\\", "line 1, column 1: this string has no end"),
+        ] {
+            assert_eq!(pieces(text).unwrap_err().to_string(), error, "{text}");
+        }
+    }
+}

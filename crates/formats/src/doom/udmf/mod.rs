@@ -1,0 +1,173 @@
+//! Maps as text: the Universal Doom Map Format, and of it only what sight depends on.
+//!
+//! A text is a list of assignments, `name = value;`, and of blocks of assignments, `name { ... }`; blocks do not nest.
+//! Blocks of one kind are numbered in their order. Letters of names count the same in both cases; of two assignments
+//! to one name in a block the later counts. Blocks and names that are not needed are skipped, whatever the namespace.
+
+mod error;
+mod lexer;
+mod values;
+
+pub use error::{TextError, TextErrorKind};
+
+use super::ML_TWOSIDED;
+use super::content::{Content, LineDef, Thing};
+use lexer::{Lexer, Piece, Place};
+use values::Value;
+
+/// Reads a text. Memory within a small multiple of its length; each byte is looked at once or twice.
+///
+/// # Errors
+/// [`TextError`] with the line and column of the first thing that is wrong.
+pub(super) fn parse(text: &[u8]) -> Result<Content, TextError> {
+    let mut reader = Reader { lexer: Lexer::new(text), content: Content::default(), lines: vec![], sides: vec![] };
+    while reader.global()? {}
+    reader.check()?;
+    Ok(reader.content)
+}
+
+/// What a block of a kind takes, and where the block is.
+struct Block<'t, const N: usize> {
+    name: &'static str,
+    index: usize,
+    place: Place,
+    keys: [&'static str; N],
+    values: [Option<Value<'t>>; N],
+}
+
+struct Reader<'t> {
+    lexer: Lexer<'t>,
+    content: Content,
+    /// Where the blocks of lines are.
+    lines: Vec<Place>,
+    /// Where the blocks of sides are.
+    sides: Vec<Place>,
+}
+
+impl<'t> Reader<'t> {
+    /// Reads one assignment or block of the outermost level; `false` at the end of the text.
+    fn global(&mut self) -> Result<bool, TextError> {
+        let (name, place) = match self.lexer.next()? {
+            (Piece::End, _) => return Ok(false),
+            (Piece::Mark(b';'), _) => return Ok(true),
+            (piece, place) => (identifier(piece, place, "a name")?, place),
+        };
+        match self.lexer.next()? {
+            (Piece::Mark(b'='), _) => _ = self.value()?,
+            (Piece::Mark(b'{'), _) => self.block_of(name, place)?,
+            (piece, place) => return Err(expected("= or {", piece, place)),
+        }
+        Ok(true)
+    }
+
+    /// Reads a block behind its brace.
+    fn block_of(&mut self, name: &[u8], place: Place) -> Result<(), TextError> {
+        let content = &self.content;
+        match name.to_ascii_lowercase().as_slice() {
+            b"vertex" => {
+                let index = content.vertices.len();
+                let block = self.block(("vertex", index, place), ["x", "y"])?;
+                self.content.vertices.push([block.coordinate(0)?, block.coordinate(1)?]);
+            }
+            b"linedef" => {
+                let index = content.lines.len();
+                let block = self.block(("linedef", index, place), ["v1", "v2", "sidefront", "sideback", "twosided"])?;
+                let flags = if block.flag(4)? { ML_TWOSIDED } else { 0 };
+                let (right, left) = (block.optional_index(2)?, block.optional_index(3)?);
+                let line = LineDef { v1: block.index(0)?, v2: block.index(1)?, flags, right, left };
+                self.content.lines.push(line);
+                self.lines.push(place);
+            }
+            b"sidedef" => {
+                let index = content.side_sectors.len();
+                let block = self.block(("sidedef", index, place), ["sector"])?;
+                self.content.side_sectors.push(block.index(0)?);
+                self.sides.push(place);
+            }
+            b"sector" => {
+                let index = content.n_sectors;
+                self.block(("sector", index, place), [])?;
+                self.content.n_sectors += 1;
+            }
+            b"thing" => {
+                let index = content.things.len();
+                let block = self.block(("thing", index, place), ["x", "y", "type"])?;
+                let thing = Thing { x: block.coordinate(0)?, y: block.coordinate(1)?, kind: block.integer(2)? };
+                self.content.things.push(thing);
+            }
+            _ => _ = self.block(("block", 0, place), [])?,
+        }
+        Ok(())
+    }
+
+    /// Reads the assignments of a block up to its brace; keeps the values of `keys`.
+    fn block<const N: usize>(
+        &mut self,
+        (name, index, place): (&'static str, usize, Place),
+        keys: [&'static str; N],
+    ) -> Result<Block<'t, N>, TextError> {
+        let mut values = [None; N];
+        loop {
+            let key = match self.lexer.next()? {
+                (Piece::Mark(b'}'), _) => return Ok(Block { name, index, place, keys, values }),
+                (Piece::Mark(b';'), _) => continue,
+                (piece, place) => identifier(piece, place, "a name or }")?,
+            };
+            match self.lexer.next()? {
+                (Piece::Mark(b'='), _) => {}
+                (piece, place) => return Err(expected("=", piece, place)),
+            }
+            let value = self.value()?;
+            if let Some(k) = keys.iter().position(|k| key.eq_ignore_ascii_case(k.as_bytes())) {
+                values[k] = Some(value);
+            }
+        }
+    }
+
+    /// Reads a value and the semicolon behind it.
+    fn value(&mut self) -> Result<Value<'t>, TextError> {
+        let (piece, place) = self.lexer.next()?;
+        if !matches!(piece, Piece::Word(_) | Piece::Quoted) {
+            return Err(expected("a value", piece, place));
+        }
+        match self.lexer.next()? {
+            (Piece::Mark(b';'), _) => Ok(Value { piece, place }),
+            (piece, place) => Err(expected(";", piece, place)),
+        }
+    }
+
+    /// Refuses numbers of blocks that are not there.
+    fn check(&self) -> Result<(), TextError> {
+        let content = &self.content;
+        let refuse = |place: &Place, block, index, target, number, n| {
+            place.error(TextErrorKind::Reference { block, index, target, number, n })
+        };
+        let (n_vertices, n_sides) = (content.vertices.len(), content.side_sectors.len());
+        for (index, (line, place)) in content.lines.iter().zip(&self.lines).enumerate() {
+            if let Some(v) = [line.v1, line.v2].into_iter().find(|&v| v as usize >= n_vertices) {
+                return Err(refuse(place, "linedef", index, "vertex", v, n_vertices));
+            }
+            if let Some(s) = [line.right, line.left].into_iter().flatten().find(|&s| s as usize >= n_sides) {
+                return Err(refuse(place, "linedef", index, "sidedef", s, n_sides));
+            }
+        }
+        let beyond = |&(_, &s): &(usize, &u32)| s as usize >= content.n_sectors;
+        match content.side_sectors.iter().enumerate().find(beyond) {
+            Some((k, &s)) => Err(refuse(&self.sides[k], "sidedef", k, "sector", s, content.n_sectors)),
+            None => Ok(()),
+        }
+    }
+}
+
+/// A name: letters, digits and underscores, no digit first.
+fn identifier<'t>(piece: Piece<'t>, place: Place, what: &'static str) -> Result<&'t [u8], TextError> {
+    let plain = |&b: &u8| b.is_ascii_alphanumeric() || b == b'_';
+    match piece {
+        Piece::Word(word) if !word[0].is_ascii_digit() && word.iter().all(plain) => Ok(word),
+        _ => Err(expected(what, piece, place)),
+    }
+}
+
+fn expected(what: &'static str, found: Piece<'_>, place: Place) -> TextError {
+    place.error(TextErrorKind::Expected { expected: what, found: found.shown() })
+}
