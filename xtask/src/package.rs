@@ -46,7 +46,9 @@ pub(crate) fn unpacked(packages: &[Package]) -> Result<PathBuf, Failure> {
     let mut n_wrong = 0;
     for package in packages {
         let file = target().join("package").join(format!("{}.crate", folder_name(package)));
-        step::run(Command::new("tar").arg("-xzf").arg(&file).arg("-C").arg(&folder))?;
+        // With the time of now: in packages all files have one time of long ago, by which Cargo would take them for the ones that it compiled
+        // last time.
+        step::run(Command::new("tar").args(["--touch", "-xzf"]).arg(&file).arg("-C").arg(&folder))?;
         n_wrong += lacking(package, &folder.join(folder_name(package)))?;
     }
     if n_wrong > 0 {

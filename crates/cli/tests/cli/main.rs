@@ -24,10 +24,10 @@ mod outputs;
 mod own;
 mod pack;
 mod places;
+mod portals;
 mod progress;
 mod region;
 mod reject;
-mod portals;
 mod render;
 
 mod same_bytes;

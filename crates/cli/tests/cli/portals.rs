@@ -21,7 +21,8 @@ fn a_map_without_its_portal_file_has_portals() {
 
         let made = folder.run(&["vis", "map.bsp", "-o", "one.bsp"]).expect(0);
         assert!(made.out.contains(", portals made from the map\n"), "{}", made.out);
-        let note = format!("note: map.bsp: there is no map.prt; made {} portals from the map's tree\n", prt.n_portals());
+        let note =
+            format!("note: map.bsp: there is no map.prt; made {} portals from the map's tree\n", prt.n_portals());
         assert!(made.err.contains(&note), "{}", made.err);
         folder.run(&["vis", "map.bsp", "-o", "two.bsp", "--prt", "made.prt"]).expect(0);
         assert_eq!(folder.read("one.bsp"), folder.read("two.bsp"), "{format:?}");
@@ -57,7 +58,11 @@ fn what_is_solid_without_faces_is_seen_through() {
 fn maps_without_a_tree_are_refused() {
     let folder = Folder::new();
     folder.write("map.bsp", rooms(2, 2).bsp);
-    for args in [&["portals", "map.bsp", "-o", "o.prt"][..], &["vis", "map.bsp", "-o", "o.bsp"], &["build", "map.bsp", "-o", "o.pvs"]] {
+    for args in [
+        &["portals", "map.bsp", "-o", "o.prt"][..],
+        &["vis", "map.bsp", "-o", "o.bsp"],
+        &["build", "map.bsp", "-o", "o.pvs"],
+    ] {
         let error = folder.refused(args);
         assert!(
             error.starts_with("map.bsp: there is no map.prt beside it, and no portals can be made from the map: lump "),
