@@ -42,7 +42,9 @@ pub fn check_portals(bsp: &Bsp, prt: &Prt) -> Result<(), VisibilityError> {
             let (low, high) = boxes[cluster as usize];
             // Bounds are whole numbers in most formats, and may have been rounded.
             let is_inside = |p: &[f64; 3]| {
-                (0..3).map(|k| (k, p[k].max(all.0[k]).min(all.1[k]))).all(|(k, x)| low[k] - 1.0 <= x && x <= high[k] + 1.0)
+                (0..3)
+                    .map(|k| (k, p[k].max(all.0[k]).min(all.1[k])))
+                    .all(|(k, x)| low[k] - 1.0 <= x && x <= high[k] + 1.0)
             };
             n_sides += 1;
             n_outside += usize::from(!portal.points.iter().all(is_inside));
