@@ -18,11 +18,12 @@
 //!
 //! # Effects made by hand
 //! A table that is not symmetric, or that rejects a sector from itself, was not computed: mappers build
-//! blind or deaf monsters that way. Such a table is kept unless the caller insists.
+//! blind or deaf monsters that way. Such a table is kept unless the caller insists, or says itself which effects there are
+//! ([`RejectOptions::rmb`]).
 
 use crate::error::BakeError;
 use crate::sectors::see_groups;
-use sightlines_formats::doom::{DoomMap, MapFormat, MapLumps, list_maps};
+use sightlines_formats::doom::{DoomMap, MapFormat, MapLumps, RmbError, RmbFile, list_maps};
 use sightlines_formats::{DoomError, LumpName, RejectTable, Wad, WadError};
 use sightlines_progress::Observer;
 use sightlines_pvs::BitMatrix;
@@ -38,6 +39,8 @@ pub struct RejectOptions<'a> {
     pub force: bool,
     /// One map that cannot be done is an error; otherwise the others are done.
     pub strict: bool,
+    /// Effects to make in the tables that are built. The tables of maps that it has effects on are replaced, whatever they are.
+    pub rmb: Option<&'a RmbFile>,
     /// Number of threads; 0 for one for each core. Changes nothing but the time.
     pub threads: usize,
     /// Called with the number of finished zones and their total, separately for each map.
@@ -50,6 +53,7 @@ impl std::fmt::Debug for RejectOptions<'_> {
             .field("maps", &self.maps)
             .field("force", &self.force)
             .field("strict", &self.strict)
+            .field("rmb", &self.rmb)
             .field("threads", &self.threads)
             .finish_non_exhaustive()
     }
@@ -77,6 +81,9 @@ pub enum RejectError {
         #[source]
         kind: BakeError,
     },
+    /// An effect names a sector that is not there.
+    #[error(transparent)]
+    Rmb(#[from] RmbError),
     /// The new file cannot be laid out.
     #[error(transparent)]
     Write(#[from] WadError),
@@ -123,6 +130,8 @@ pub enum MapStatus {
 pub struct RejectSummary {
     /// Ordered pairs of sectors that are rejected.
     pub n_rejected: u64,
+    /// Ordered pairs of sectors whose answer effects have changed ([`RejectOptions::rmb`]).
+    pub n_effects: u64,
     /// Cells in regions whose lines disagree about the sector.
     pub n_disputed_cells: usize,
     /// Lines without length, which were left out.
@@ -134,7 +143,7 @@ pub struct RejectSummary {
 }
 
 /// Builds the REJECT table of one map. Symmetric; no sector is rejected from itself. Exact in the flat
-/// model of this [module](self) but for rounded crossings, which err towards visible.
+/// model of this [module](self) but for rounded crossings, which err towards visible. Makes no effects.
 ///
 /// # Errors
 /// [`RejectError::Bake`] if the map has no lines.
@@ -146,6 +155,7 @@ pub fn reject_table(map: &DoomMap, options: &RejectOptions<'_>) -> Result<(Rejec
     let table = table_of(&seen, map.n_sectors());
     let summary = RejectSummary {
         n_rejected: table.n_rejected(),
+        n_effects: 0,
         n_disputed_cells: cut.n_disputed_cells,
         n_lines_without_length: map.n_lines_without_length(),
         n_rounded_crossings: cut.n_rounded_crossings,
@@ -163,7 +173,8 @@ fn table_of(seen: &BitMatrix, n_sectors: u32) -> RejectTable {
 ///
 /// # Errors
 /// [`RejectError`]; then nothing is to be written. A map that cannot be done, or in an unsupported format, is an error if it was
-/// named, or if the file has no others that can. With [`RejectOptions::strict`] a map that cannot be done always is.
+/// named, or if the file has no others that can. With [`RejectOptions::strict`] a map that cannot be done always is; so is an effect
+/// on a sector that is not there.
 pub fn reject_wad(wad: &Wad, options: &RejectOptions<'_>) -> Result<RejectOutcome, RejectError> {
     let all = list_maps(wad);
     let chosen = choose(&all, &options.maps)?;
@@ -175,7 +186,7 @@ pub fn reject_wad(wad: &Wad, options: &RejectOptions<'_>) -> Result<RejectOutcom
     for map in chosen {
         let start = Instant::now();
         let (n_sectors, status, bytes) = match do_map(wad, map, insist, options) {
-            Err(error) if insist || options.strict => return Err(error),
+            Err(error) if insist || options.strict || matches!(error, RejectError::Rmb(_)) => return Err(error),
             Err(error) => (0, MapStatus::Failed(Box::new(error)), None),
             Ok(done) => done,
         };
@@ -225,9 +236,14 @@ fn do_map(wad: &Wad, lumps: &MapLumps, insist: bool, options: &RejectOptions<'_>
     let map = DoomMap::parse(wad, lumps)?;
     let n = map.n_sectors();
     let old = map.reject().and_then(|bytes| old_table(n, bytes));
-    if !options.force && old.is_some_and(|table| table.has_hand_made_effects()) {
+    let rmb = options.rmb.filter(|rmb| rmb.is_for(lumps.name()));
+    if !options.force && rmb.is_none() && old.is_some_and(|table| table.has_hand_made_effects()) {
         return Ok((n, MapStatus::KeptHandMade, None));
     }
-    let (table, summary) = reject_table(&map, options)?;
+    let (mut table, mut summary) = reject_table(&map, options)?;
+    if let Some(rmb) = rmb {
+        summary.n_effects = rmb.apply(lumps.name(), &mut table)?;
+        summary.n_rejected = table.n_rejected();
+    }
     Ok((n, MapStatus::Written(summary), Some(table.into_bytes())))
 }

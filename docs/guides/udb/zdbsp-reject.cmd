@@ -34,5 +34,8 @@ if errorlevel 1 (
 )
 del "%OUT%.log"
 "%SIGHTLINES%" -q reject "%OUT%" -o "%OUT%" --strict >nul
-if errorlevel 1 exit /b 2
+if errorlevel 1 (
+    echo error: no REJECT lump was built in "%OUT%" 1>&2
+    exit /b 2
+)
 exit /b 0

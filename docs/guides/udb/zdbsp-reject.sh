@@ -40,4 +40,7 @@ if [ "$code" -ne 0 ]; then
     printf '%s\nerror: zdbsp ended with code %s\n' "$told" "$code" >&2
     exit 1
 fi
-"$sightlines" -q reject "$out" -o "$out" --strict >/dev/null || exit 2
+"$sightlines" -q reject "$out" -o "$out" --strict >/dev/null || {
+    printf 'error: no REJECT lump was built in %s\n' "$out" >&2
+    exit 2
+}

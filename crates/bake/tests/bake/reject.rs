@@ -323,7 +323,7 @@ fn crossing_lines_reject_nearly_all_that_is_hidden() {
 // --- The file around the tables ----------------------------------------------------------------------
 
 /// A file with lumps before, between and behind three maps; the second has a table made by hand.
-fn three_maps(by_hand: &[u8]) -> Wad {
+pub(crate) fn three_maps(by_hand: &[u8]) -> Wad {
     let mut builder = WadBuilder::new(WadKind::Patch);
     builder.lump("BEFORE", b"before").unwrap();
     let mut add = |text: &str, map: Sketch, reject: Option<&[u8]>| {
@@ -338,7 +338,7 @@ fn three_maps(by_hand: &[u8]) -> Wad {
 }
 
 /// Asymmetric: 0 does not see 1, but 1 sees 0.
-const BLIND: [u8; 1] = [0b0010];
+pub(crate) const BLIND: [u8; 1] = [0b0010];
 /// Sector 1 is rejected from itself.
 const DEAF: [u8; 1] = [0b1000];
 

@@ -1,9 +1,10 @@
 //! REJECT tables of maps as text: those of the binary maps that they say the same as, and of coordinates that only texts have.
 
-use crate::reject::{build, crossing_map, other_lumps, read, rejects, wad_of};
+use crate::reject::{BLIND, build, crossing_map, other_lumps, read, rejects, three_maps, wad_of};
 use proptest::prelude::*;
 use sightlines_bake::{MapStatus, RejectOptions, reject_wad};
 use sightlines_formats::Wad;
+use sightlines_formats::doom::RmbFile;
 use sightlines_testkit::draw;
 
 #[path = "../../../formats/tests/formats/common/udmf.rs"]
@@ -69,4 +70,34 @@ fn slits_between_fractions_are_seen_through() {
     let outcome = build(&shut, &[], false).unwrap();
     let MapStatus::Written(summary) = outcome.maps[0].status else { panic!("{:?}", outcome.maps) };
     assert_eq!((summary.n_lines_without_length, summary.n_rejected), (1, 2));
+}
+
+// --- Effects of option files -------------------------------------------------------------------------
+
+/// Effects are made in the table that was built, on the maps that they are for; their tables are replaced whatever they were.
+#[test]
+fn effects_are_made_in_built_tables() {
+    let wad = three_maps(&BLIND);
+    let plain = rejects(&Wad::parse(build(&wad, &[], true).unwrap().bytes).unwrap());
+    let with = |text: &[u8]| {
+        let rmb = RmbFile::parse(text).unwrap();
+        reject_wad(&wad, &RejectOptions { rmb: Some(&rmb), threads: 1, ..RejectOptions::default() })
+    };
+    let outcome = with(b"MAP02\nINCLUDE (0) (1)\nMAP01\nBLIND 0 (1)").unwrap();
+    let numbers: Vec<(u64, u64)> = outcome
+        .maps
+        .iter()
+        .map(|m| match &m.status {
+            MapStatus::Written(summary) => (summary.n_effects, summary.n_rejected),
+            other => panic!("{other:?}"),
+        })
+        .collect();
+    let rejected = |k: usize| u64::from(plain[k].as_ref().unwrap().iter().map(|b| b.count_ones()).sum::<u32>());
+    assert_eq!(numbers, [(1, rejected(0) + 1), (1, rejected(1) - 1), (0, rejected(2))]);
+    let made = rejects(&Wad::parse(outcome.bytes).unwrap());
+    assert_eq!(made, [Some(vec![0b1110]), Some(vec![0b0100]), plain[2].clone()]);
+    // A map without effects keeps what was made by hand.
+    assert_eq!(with(b"MAP01\nSAFE 0 (1)").unwrap().maps[1].status, MapStatus::KeptHandMade);
+    let error = with(b"# all maps\nSAFE 0 (2)").unwrap_err();
+    assert_eq!(error.to_string(), "line 2: sector 2 is not among the 2 of map MAP01");
 }

@@ -7,6 +7,7 @@ use crate::progress::Bar;
 use serde::Serialize;
 use sightlines::bake::{MapOutcome, MapStatus, RejectError, RejectOptions, RejectSummary, reject_wad};
 use sightlines::formats::Wad;
+use sightlines::formats::doom::RmbFile;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -36,6 +37,9 @@ pub(crate) struct RejectArgs {
     /// Also replace tables with hand-made effects (asymmetric, or a sector rejected from itself)
     #[arg(long, help_heading = "Method")]
     force: bool,
+    /// Make the effects of this option file of RMB: BLIND and SAFE 0 and 1, INCLUDE, EXCLUDE
+    #[arg(long, help_heading = "Method", value_name = "FILE.rej")]
+    rmb: Option<PathBuf>,
     /// Stop at a map that cannot be done and write nothing, instead of doing the others
     #[arg(long, help_heading = "Method")]
     strict: bool,
@@ -54,17 +58,25 @@ pub(crate) fn run(args: &RejectArgs, show_progress: bool) -> Result<Answer, Erro
     // It may be the WAD that is read.
     output::check(&[], &[&args.output])?;
     let wad = Wad::read(&args.input)?;
+    let rmb = args.rmb.as_ref().map(RmbFile::read).transpose()?;
     let bar = Bar::new("visibility of sectors", show_progress);
     let options = RejectOptions {
         maps: args.map.clone(),
         force: args.force,
         strict: args.strict,
+        rmb: rmb.as_ref(),
         threads: args.threads,
         progress: Some(&bar),
     };
     let outcome = reject_wad(&wad, &options);
     drop(bar);
-    let outcome = outcome.map_err(|source| Error::Reject { path: args.input.clone(), source: Box::new(source) })?;
+    let outcome = outcome.map_err(|source| {
+        let path = match (&source, &args.rmb) {
+            (RejectError::Rmb(_), Some(options)) => options,
+            _ => &args.input,
+        };
+        Error::Reject { path: path.clone(), source: Box::new(source) }
+    })?;
     output::save(&args.output, &outcome.bytes)?;
     warn(&args.input, &outcome.maps);
     let maps = outcome.maps.iter().map(Map::from).collect();
@@ -104,6 +116,7 @@ struct Map {
     n_sectors: u32,
     /// Ordered pairs; null unless written.
     n_rejected: Option<u64>,
+    n_effects: Option<u64>,
     n_disputed_cells: Option<usize>,
     n_lines_without_length: Option<usize>,
     n_rounded_crossings: Option<usize>,
@@ -129,6 +142,7 @@ impl From<&MapOutcome> for Map {
             reason,
             n_sectors: outcome.n_sectors,
             n_rejected: did.map(|d| d.n_rejected),
+            n_effects: did.map(|d| d.n_effects),
             n_disputed_cells: did.map(|d| d.n_disputed_cells),
             n_lines_without_length: did.map(|d| d.n_lines_without_length),
             n_rounded_crossings: did.map(|d| d.n_rounded_crossings),
@@ -155,7 +169,11 @@ impl fmt::Display for Map {
             (_, Some(n)) => {
                 let pairs = (f64::from(self.n_sectors) * f64::from(self.n_sectors)).max(1.0);
                 let time = seconds(Duration::from_secs_f64(self.seconds));
-                write!(f, "{:>5} sectors, {:>7} of pairs rejected, {time}", self.n_sectors, percent(n as f64 / pairs))
+                write!(f, "{:>5} sectors, {:>7} of pairs rejected, {time}", self.n_sectors, percent(n as f64 / pairs))?;
+                match self.n_effects {
+                    Some(n @ 1..) => write!(f, ", {} changed by effects", count(n, "pair")),
+                    _ => Ok(()),
+                }
             }
             ("failed", _) => write!(f, "failed: {}", self.reason.as_deref().unwrap_or_default()),
             ("kept", _) => f.write_str("kept: its table has effects made by hand (--force replaces it)"),

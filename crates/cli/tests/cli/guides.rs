@@ -33,7 +33,7 @@ fn guide(name: &str) -> String {
 fn follow(folder: &Folder, name: &str) -> usize {
     let mut n_commands = 0;
     for (kind, text) in blocks(&guide(name)) {
-        if let Some(file) = kind.strip_prefix("json ") {
+        if let Some(file) = kind.strip_prefix("json ").or(kind.strip_prefix("rej ")) {
             folder.write(file, &text);
         }
         if kind != "sh" {

@@ -112,6 +112,16 @@ fn the_script_says_what_goes_wrong() {
     }
     let (code, said) = run_script(&folder, Path::new("/no/such/zdbsp"), &args("maps.wad", "out.wad"));
     assert!(code > 0 && said.to_lowercase().contains("error"), "{code} {said}");
+    let output = Command::new(guide("zdbsp-reject.sh"))
+        .args(args("maps.wad", "out.wad"))
+        .envs([("ZDBSP", zdbsp.as_path()), ("SIGHTLINES", Path::new("/no/such/sightlines"))])
+        .current_dir(folder.path("."))
+        .output()
+        .expect("the script can be run");
+    assert!(
+        output.status.code() == Some(2)
+            && String::from_utf8_lossy(&output.stderr).contains("error: no REJECT lump was built in out.wad")
+    );
     // A node builder that writes a map with a line to nowhere.
     let mut bad = doom_map(1);
     bad.lines[0].v1 = 50_000;

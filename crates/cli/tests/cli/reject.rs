@@ -89,3 +89,46 @@ fn a_real_map_is_rejected_soundly_and_tightly() {
     let Some(Some(shipped)) = tables(folder.read("e1m6.wad")).pop() else { panic!("a table") };
     assert!(n_wrong(&shipped, &seen) > 0);
 }
+
+/// The effects of an option file of RMB are made on top of what was built, again and again; what is wrong in it is named with its line.
+#[test]
+fn effects_of_option_files_are_made() {
+    let folder = Folder::with_wad();
+    folder.run(&["reject", "maps.wad", "-o", "plain.wad", "--force"]).expect(0);
+    folder.write("maps.rej", "# sector 1 is blind but to itself\nMAP01\nblind 1 (1)\nMAP02\nINC 0 (0)\nEXC (2) (2)\n");
+    let args = ["reject", "maps.wad", "-o", "out.wad", "--rmb", "maps.rej"];
+    let said = folder.run(&args).expect(0).out;
+    let reply = folder.run(&[&args[..], &["--json"]].concat()).expect(0).json();
+    let [plain, made] = ["plain.wad", "out.wad"].map(|name| tables(folder.read(name)));
+    let n = plain[0].as_ref().expect("a table").n_sectors();
+    for (k, changes) in [(0, true), (1, true), (2, false)] {
+        let [plain, made] = [&plain, &made].map(|tables| tables[k].as_ref().expect("a table"));
+        let mut expected = plain.clone();
+        match k {
+            0 => (0..n).filter(|&s| s != 1).for_each(|s| expected.set(1, s, true)),
+            1 => expected.set(2, 2, true),
+            _ => {}
+        }
+        assert_eq!(made, &expected);
+        let n_effects = expected.n_rejected() - plain.n_rejected();
+        assert_eq!((n_effects > 0, &reply["maps"][k]["n_effects"]), (changes, &json!(n_effects)));
+        assert_eq!(made.has_hand_made_effects(), changes);
+    }
+    assert!(said.contains("1 pair changed by effects"), "{said}");
+    // The next time, the file still has the last word; without it, what it made is kept.
+    folder.run(&["reject", "out.wad", "-o", "again.wad", "--rmb", "maps.rej"]).expect(0);
+    folder.run(&["reject", "out.wad", "-o", "kept.wad"]).expect(0);
+    assert!(folder.read("again.wad") == folder.read("out.wad") && folder.read("kept.wad") == folder.read("out.wad"));
+
+    for (options, place) in [
+        ("BLIND 0 (1)\nLEFT 3\n", "bad.rej: line 2: the option LEFT is not supported"),
+        ("\nBLIND 0 (60000)\n", "bad.rej: line 2: sector 60000 is not among the "),
+    ] {
+        folder.write("bad.rej", options);
+        let error = folder.refused(&["reject", "maps.wad", "-o", "none.wad", "--rmb", "bad.rej"]);
+        assert!(error.starts_with(place), "{error}");
+    }
+    let error = folder.refused(&["reject", "maps.wad", "-o", "none.wad", "--rmb", "absent.rej"]);
+    assert!(error.starts_with("absent.rej: "), "{error}");
+    assert!(!folder.names().contains(&"none.wad".to_owned()));
+}

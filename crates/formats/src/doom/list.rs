@@ -138,7 +138,7 @@ fn is_member(name: &LumpName) -> bool {
 }
 
 /// `MAP` and digits, or `E`, digits, `M`, digits.
-fn is_doom_map_name(name: &[u8]) -> bool {
+pub(super) fn is_doom_map_name(name: &[u8]) -> bool {
     let name = name.to_ascii_uppercase();
     let number = |text: &[u8]| !text.is_empty() && text.iter().all(u8::is_ascii_digit);
     let episode = |text: &[u8]| {

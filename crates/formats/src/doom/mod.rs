@@ -10,6 +10,7 @@ mod list;
 mod lumps;
 mod map;
 mod records;
+mod rmb;
 mod source;
 mod udmf;
 
@@ -18,6 +19,7 @@ pub use error::{DoomError, DoomErrorKind};
 pub use list::{MapLumps, list_maps};
 pub use lumps::{MapFormat, MapLump};
 pub use map::{DoomMap, LineDef, Thing};
+pub use rmb::{RmbError, RmbErrorKind, RmbFile};
 pub use source::{DoomMapSource, SourceLine, SourceThing, write_doom_map};
 pub use udmf::{TextError, TextErrorKind};
 

@@ -86,6 +86,13 @@ fn what_the_text_does_not_say_has_its_default() {
     let line = map.lines()[2];
     assert_eq!((line.v1, line.v2, line.right, line.left, line.is_two_sided()), (2, 1, None, None, false));
     assert_eq!(map.things(), []);
+    // Numbers in other ways than most programs write them.
+    let map = read(
+        triangle("linedef { v1 = 0x2; v2 = +1; sidefront = -1; } thing { x = +8.0; y = 1.6e+1; type = -0; }")
+            .as_bytes(),
+    );
+    let (line, thing) = map.map(|m| (m.lines()[2], m.things()[0])).unwrap();
+    assert_eq!((line.v1, line.v2, line.right, thing.x, thing.y, thing.kind), (2, 1, None, 8.0, 16.0, 0));
     for namespace in ["namespace = \"doom\";", "namespace = \"eternity\";", "ns = 5;", ""] {
         assert!(read(format!("{namespace}{}", triangle("")).as_bytes()).is_ok(), "{namespace}");
     }

@@ -5,13 +5,12 @@ use sightlines_formats::wad::{WadBuilder, WadKind};
 use sightlines_formats::{LumpName, Wad};
 use std::fmt::Write;
 
-/// A coordinate as one of the ways to write it.
+/// A coordinate as one of the ways to write it that every program reads.
 fn number(x: f64, way: usize) -> String {
-    match way % 4 {
+    match way % 3 {
         0 => format!("{x:.3}"),
         1 => format!("{x}"),
-        2 => format!("{x:+.1}"),
-        _ => format!("{x:e}"),
+        _ => format!("{x:.1}"),
     }
 }
 
@@ -40,12 +39,12 @@ pub(crate) fn text_of(map: &DoomMap) -> String {
 }
 
 fn line_text(line: &LineDef, k: usize) -> String {
-    let mut text = format!("v1 = {}; v2 = {:#x};", line.v1, line.v2);
+    let mut text = format!("v1 = {}; v2 = {};", line.v1, line.v2);
     if let Some(side) = line.right {
         write!(text, " sidefront = {side};").unwrap();
     }
     match line.left {
-        Some(side) => write!(text, " sideback = +{side};").unwrap(),
+        Some(side) => write!(text, " sideback = {side};").unwrap(),
         None if k % 2 == 0 => text += " sideback = -1;",
         None => {}
     }

@@ -1,0 +1,354 @@
+//! Option files of RMB, the classic builder of REJECT lumps: effects on what monsters see that no line of sight explains.
+//!
+//! One option a line, in letters of either case, shortened as long as it stays the only one; `#` begins a comment. A line with nothing
+//! but the name of a map begins the options of that map; those before the first such line are for every map. A list of sectors stands in
+//! brackets, or is a single number.
+//!
+//! Taken are `BLIND` and `SAFE` with the distances 0 (from and to every sector) and 1 (but the sector itself), `INCLUDE` and `EXCLUDE`.
+//! `NOMAP`, `PERFECT`, `PREPROCESS` and `PROCESS` steer the work of RMB only and mean nothing here; as with `PERFECT`, an effect is on the
+//! sectors that are named, and not on those inside them. All other options are refused.
+
+use crate::wad::LumpName;
+use crate::{ReadError, RejectTable};
+use std::path::Path;
+
+/// What is wrong with an option file, and where, shown as `line 3: ...`.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("line {line}: {kind}")]
+pub struct RmbError {
+    /// Line of the file, from 1.
+    pub line: usize,
+    /// What is wrong there.
+    #[source]
+    pub kind: RmbErrorKind,
+}
+
+/// What is wrong with an option file.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RmbErrorKind {
+    /// A word that is no option, or the beginning of several.
+    #[error("{0} is not an option of RMB")]
+    Unknown(String),
+    /// An option that is not taken.
+    #[error("the option {0} is not supported")]
+    Unsupported(&'static str),
+    /// A distance that is not taken.
+    #[error("the distance {0} is not supported, only 0 and 1 are")]
+    Distance(u32),
+    /// Something else stands where the option takes one thing.
+    #[error("{option} takes {expected}")]
+    Argument {
+        /// The option.
+        option: &'static str,
+        /// What it takes.
+        expected: &'static str,
+    },
+    /// A sector that is not there.
+    #[error("sector {sector} is not among the {n_sectors} of map {map}")]
+    Sector {
+        /// The map.
+        map: LumpName,
+        /// The sector.
+        sector: u32,
+        /// How many it has.
+        n_sectors: u32,
+    },
+}
+
+/// An option file that was read.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct RmbFile {
+    effects: Vec<Effect>,
+}
+
+/// One option, on the map that it is for, or on every map.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Effect {
+    line: usize,
+    map: Option<String>,
+    kind: EffectKind,
+    /// The sectors it is on; of [`EffectKind::Include`] and [`EffectKind::Exclude`] those of the viewers.
+    sectors: Vec<u32>,
+    /// What the viewers see or do not see.
+    targets: Vec<u32>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum EffectKind {
+    /// Sees nothing, or only itself.
+    Blind {
+        own: bool,
+    },
+    /// Is seen from nowhere, or only from itself.
+    Safe {
+        own: bool,
+    },
+    Include,
+    Exclude,
+}
+
+/// All options of RMB: a word is one of them, or the beginning of a single one.
+const OPTIONS: [&str; 23] = [
+    "BAND",
+    "BLIND",
+    "BLOCK",
+    "DISTANCE",
+    "DOOR",
+    "EXCLUDE",
+    "GROUP",
+    "INCLUDE",
+    "INVERT",
+    "LEFT",
+    "LENGTH",
+    "LINE",
+    "NODOOR",
+    "NOMAP",
+    "NOPROCESS",
+    "ONE",
+    "PERFECT",
+    "PREPROCESS",
+    "PROCESS",
+    "REPORT",
+    "RIGHT",
+    "SAFE",
+    "TRACE",
+];
+
+impl RmbFile {
+    /// Reads the text of an option file. O(length).
+    ///
+    /// # Errors
+    /// [`RmbError`] with the first line that is wrong, or that has an option that is not taken.
+    pub fn parse(text: &[u8]) -> Result<Self, RmbError> {
+        let text = String::from_utf8_lossy(text);
+        let mut map = None;
+        let mut effects = Vec::new();
+        for (line, content) in (1..).zip(text.lines()) {
+            let content = content.split('#').next().unwrap_or_default().trim().to_ascii_uppercase();
+            let (word, rest) = content.split_once(|c: char| c.is_whitespace() || c == '(').unwrap_or((&content, ""));
+            if word.is_empty() && rest.is_empty() {
+                continue;
+            }
+            if rest.is_empty() && super::list::is_doom_map_name(word.as_bytes()) {
+                map = Some(word.to_owned());
+                continue;
+            }
+            let word = if word.is_empty() { content.as_str() } else { word };
+            // The bracket that ended the word belongs to the rest.
+            let found = effect(word, content[word.len()..].trim()).map_err(|kind| RmbError { line, kind })?;
+            effects.extend(found.map(|(kind, sectors, targets)| Effect {
+                line,
+                map: map.clone(),
+                kind,
+                sectors,
+                targets,
+            }));
+        }
+        Ok(Self { effects })
+    }
+
+    /// Reads an option file.
+    ///
+    /// # Errors
+    /// [`ReadError`] with the file and what is wrong.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, ReadError> {
+        let read = || Ok(Self::parse(&std::fs::read(path.as_ref())?).map_err(crate::ReadErrorKind::content)?);
+        read().map_err(|kind: crate::ReadErrorKind| ReadError::new(&path, kind))
+    }
+
+    /// Whether there are effects on a map.
+    pub fn is_for(&self, map: LumpName) -> bool {
+        self.effects_on(map).next().is_some()
+    }
+
+    fn effects_on(&self, map: LumpName) -> impl Iterator<Item = &Effect> {
+        self.effects.iter().filter(move |e| e.map.as_ref().is_none_or(|name| map.is(name)))
+    }
+
+    /// Makes the effects on a map in its table; returns how many entries have changed.
+    ///
+    /// `EXCLUDE` counts more than `INCLUDE`, and that more than all others. Of two `BLIND`, or two `SAFE`, on one sector the later
+    /// counts. Costs O(n) for each sector named, and O(n²) once.
+    ///
+    /// # Errors
+    /// [`RmbError`] for a sector that the map does not have; then the table is as it was.
+    pub fn apply(&self, map: LumpName, table: &mut RejectTable) -> Result<u64, RmbError> {
+        let n = table.n_sectors();
+        for effect in self.effects_on(map) {
+            if let Some(&sector) = effect.sectors.iter().chain(&effect.targets).find(|&&s| s >= n) {
+                let kind = RmbErrorKind::Sector { map, sector, n_sectors: n };
+                return Err(RmbError { line: effect.line, kind });
+            }
+        }
+        let before = table.clone();
+        let (mut blind, mut safe) = (vec![None; n as usize], vec![None; n as usize]);
+        for effect in self.effects_on(map) {
+            let (list, own) = match effect.kind {
+                EffectKind::Blind { own } => (&mut blind, own),
+                EffectKind::Safe { own } => (&mut safe, own),
+                EffectKind::Include | EffectKind::Exclude => continue,
+            };
+            effect.sectors.iter().for_each(|&s| list[s as usize] = Some(own));
+        }
+        for (sector, own) in (0..n).zip(blind).filter_map(|(s, own)| Some((s, own?))) {
+            (0..n).filter(|&other| !own || other != sector).for_each(|other| table.set(sector, other, true));
+        }
+        for (sector, own) in (0..n).zip(safe).filter_map(|(s, own)| Some((s, own?))) {
+            (0..n).filter(|&other| !own || other != sector).for_each(|other| table.set(other, sector, true));
+        }
+        for (kind, rejected) in [(EffectKind::Include, false), (EffectKind::Exclude, true)] {
+            for effect in self.effects_on(map).filter(|e| e.kind == kind) {
+                for &viewer in &effect.sectors {
+                    effect.targets.iter().for_each(|&target| table.set(viewer, target, rejected));
+                }
+            }
+        }
+        let changed = before.as_bytes().iter().zip(table.as_bytes()).map(|(a, b)| u64::from((a ^ b).count_ones()));
+        Ok(changed.sum())
+    }
+}
+
+type Found = (EffectKind, Vec<u32>, Vec<u32>);
+
+/// The effect of an option and what stands behind it; `None` for one that means nothing here.
+fn effect(word: &str, rest: &str) -> Result<Option<Found>, RmbErrorKind> {
+    let option = option(word)?;
+    let argument = |expected| RmbErrorKind::Argument { option, expected };
+    match option {
+        "NOMAP" | "PERFECT" | "PREPROCESS" | "PROCESS" => Ok(None),
+        "INCLUDE" | "EXCLUDE" => {
+            let lists = sectors(rest).and_then(|(viewers, rest)| Some((viewers, sectors(rest)?)));
+            let Some((viewers, (targets, ""))) = lists else { return Err(argument("two lists of sectors")) };
+            let kind = if option == "INCLUDE" { EffectKind::Include } else { EffectKind::Exclude };
+            Ok(Some((kind, viewers, targets)))
+        }
+        "BLIND" | "SAFE" => {
+            let wrong = || argument("a distance and a list of sectors");
+            let (distance, rest) = number(rest).ok_or_else(wrong)?;
+            let Some((sectors, "")) = sectors(rest) else { return Err(wrong()) };
+            let own = match distance {
+                0 => false,
+                1 => true,
+                _ => return Err(RmbErrorKind::Distance(distance)),
+            };
+            let kind = if option == "BLIND" { EffectKind::Blind { own } } else { EffectKind::Safe { own } };
+            Ok(Some((kind, sectors, Vec::new())))
+        }
+        _ => Err(RmbErrorKind::Unsupported(option)),
+    }
+}
+
+fn option(word: &str) -> Result<&'static str, RmbErrorKind> {
+    let mut found = OPTIONS.iter().filter(|option| option.starts_with(word));
+    // A whole word is never the beginning of another option.
+    match (found.next(), found.next()) {
+        (Some(option), None) => Ok(option),
+        _ => Err(RmbErrorKind::Unknown(word.chars().take(24).collect::<String>().escape_debug().to_string())),
+    }
+}
+
+/// The number at the beginning of a text, and what stands behind it.
+fn number(text: &str) -> Option<(u32, &str)> {
+    let end = text.find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len());
+    Some((text[..end].parse().ok()?, text[end..].trim_start()))
+}
+
+/// The list of sectors at the beginning of a text, and what stands behind it.
+fn sectors(text: &str) -> Option<(Vec<u32>, &str)> {
+    let Some(list) = text.strip_prefix('(') else {
+        let (sector, rest) = number(text)?;
+        return Some((vec![sector], rest));
+    };
+    let (list, rest) = list.split_once(')')?;
+    let sectors: Option<Vec<u32>> = list.split_whitespace().map(|s| s.parse().ok()).collect();
+    Some((sectors.filter(|s| !s.is_empty())?, rest.trim_start()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn name(text: &str) -> LumpName {
+        LumpName::new(text).unwrap()
+    }
+
+    /// The table of a map of four sectors after the options of a file, from one in which 0 and 3 do not see each other.
+    fn table(text: &str, map: &str) -> (String, u64) {
+        let mut table = RejectTable::new(4);
+        table.set(0, 3, true);
+        table.set(3, 0, true);
+        let n = RmbFile::parse(text.as_bytes()).unwrap().apply(name(map), &mut table).unwrap();
+        let bit = |a, b| if table.get(a, b) { '1' } else { '0' };
+        let rows: Vec<String> = (0..4).map(|a| (0..4).map(|b| bit(a, b)).collect()).collect();
+        (rows.join(" "), n)
+    }
+
+    #[test]
+    fn options_have_the_effects_that_they_name() {
+        for (text, rows, n) in [
+            ("", "0001 0000 0000 1000", 0),
+            ("BLIND 0 (1)", "0001 1111 0000 1000", 4),
+            ("blind 1 (0 1)", "0111 1011 0000 1000", 5),
+            ("SAFE 0 1", "0101 0100 0100 1100", 4),
+            ("safe 1 (3)", "0001 0001 0001 1000", 2),
+            ("INCLUDE (0) (3 2)", "0000 0000 0000 1000", 1),
+            ("EXC 1 (2 0)", "0001 1010 0000 1000", 2),
+            // The later of two counts, whatever the order of others.
+            ("SAFE 0 1\nSAFE 1 1", "0101 0000 0100 1100", 3),
+            ("EXCLUDE (1) (2)\nINCLUDE (1) (2 3)\nBLIND 0 (1)", "0001 1110 0000 1000", 3),
+            ("BLIND 0 2\nSAFE 1 2", "0011 0010 1111 1010", 7),
+            ("NOMAP\nPERFECT # as always\n\n# a comment\nPREPROCESS 4\nPROC (1 2)", "0001 0000 0000 1000", 0),
+        ] {
+            assert_eq!(table(text, "MAP01"), (rows.to_owned(), n), "{text}");
+        }
+    }
+
+    #[test]
+    fn headings_choose_maps() {
+        let text = "BLIND 0 (0)\nE1M1\nINC (0) (1)\nmap02\nEXCLUDE(3)(3)\ne1m1\nSAFE 0 (2)";
+        assert_eq!(table(text, "E1M1").0, "1011 0010 0010 1010");
+        assert_eq!(table(text, "MAP02").0, "1111 0000 0000 1001");
+        assert_eq!(table(text, "MAP03").0, "1111 0000 0000 1000");
+        let file = RmbFile::parse(b"E1M1\nBLIND 0 (0)").unwrap();
+        assert!(file.is_for(name("e1m1")) && !file.is_for(name("E1M2")));
+    }
+
+    #[test]
+    fn what_is_wrong_is_named_with_its_line() {
+        for (text, error) in [
+            ("\nFOO 1", "line 2: FOO is not an option of RMB"),
+            ("B 1 2", "line 1: B is not an option of RMB"),
+            ("(1)", "line 1: (1) is not an option of RMB"),
+            ("# x\nLEFT 311", "line 2: the option LEFT is not supported"),
+            ("INV BLIND 1 (2)", "line 1: the option INVERT is not supported"),
+            ("BLIND 2 (1)", "line 1: the distance 2 is not supported, only 0 and 1 are"),
+            ("SAFE (1)", "line 1: SAFE takes a distance and a list of sectors"),
+            ("BLIND 0", "line 1: BLIND takes a distance and a list of sectors"),
+            ("BLIND 0 ()", "line 1: BLIND takes a distance and a list of sectors"),
+            ("BLIND 0 (1", "line 1: BLIND takes a distance and a list of sectors"),
+            ("BLIND 0 1 2", "line 1: BLIND takes a distance and a list of sectors"),
+            ("BLIND 99999999999 (1)", "line 1: BLIND takes a distance and a list of sectors"),
+            ("INCLUDE (1) (x)", "line 1: INCLUDE takes two lists of sectors"),
+            ("EXCLUDE (1)", "line 1: EXCLUDE takes two lists of sectors"),
+        ] {
+            assert_eq!(RmbFile::parse(text.as_bytes()).unwrap_err().to_string(), error, "{text}");
+        }
+        let mut table = RejectTable::new(4);
+        let file = RmbFile::parse(b"BLIND 0 1\nE1M1\nEXCLUDE 1 4").unwrap();
+        let error = file.apply(name("E1M1"), &mut table).unwrap_err();
+        assert_eq!(error.to_string(), "line 3: sector 4 is not among the 4 of map E1M1");
+        assert_eq!(table, RejectTable::new(4));
+        assert_eq!(file.apply(name("E1M2"), &mut table), Ok(4));
+    }
+
+    #[test]
+    fn broken_bytes_are_refused() {
+        for k in 0..=255 {
+            for text in [vec![k], [&b"BLIND 0 "[..], &[k]].concat(), [&b"INCLUDE ("[..], &[k, b')']].concat()] {
+                drop(RmbFile::parse(&text));
+            }
+        }
+        assert!(RmbFile::parse(&[0xff; 1000]).is_err());
+    }
+}
