@@ -1,52 +1,10 @@
 //! One map: its lines, sides, sectors and things, checked, and the plan they make.
 
-use super::{DoomError, DoomErrorKind, MAX_SECTORS, ML_TWOSIDED, MapFormat, MapLump, MapLumps, records, udmf};
+use super::content::{Content, LineDef, Thing};
+use super::{DoomError, DoomErrorKind, MAX_SECTORS, MapFormat, MapLump, MapLumps, records, udmf};
 use crate::wad::{LumpName, Wad};
 use sightlines_cells::{Plan, PlanError, PlanLine, PlanObject};
 use sightlines_geometry::{Aabb, Point2};
-
-/// A line from one vertex to another.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct LineDef {
-    /// Index of the vertex it starts at.
-    pub v1: u32,
-    /// Index of the vertex it ends at.
-    pub v2: u32,
-    /// Flags; see [`ML_TWOSIDED`]. Of a map as text no other is read.
-    pub flags: u16,
-    /// Index of the side on the right hand going from `v1` to `v2`, if it has one.
-    pub right: Option<u32>,
-    /// Index of the side on the left hand, if it has one.
-    pub left: Option<u32>,
-}
-
-impl LineDef {
-    /// Whether the line lets sight through. Its sides do not matter.
-    pub fn is_two_sided(&self) -> bool {
-        self.flags & ML_TWOSIDED != 0
-    }
-}
-
-/// A monster, player, item or lamp.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Thing {
-    /// Where it stands, in map units.
-    pub x: f64,
-    /// Where it stands, in map units.
-    pub y: f64,
-    /// Its number among the things of its game, such as 3001 for an imp.
-    pub kind: i32,
-}
-
-/// What is read from a map in any format; of a map as text with every index checked.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub(super) struct Content {
-    pub(super) vertices: Vec<[f64; 2]>,
-    pub(super) lines: Vec<LineDef>,
-    pub(super) side_sectors: Vec<u32>,
-    pub(super) n_sectors: usize,
-    pub(super) things: Vec<Thing>,
-}
 
 /// What sight depends on in one map, with every index checked.
 #[derive(Debug, Clone, PartialEq)]
@@ -132,7 +90,7 @@ impl DoomMap {
     }
 
     /// The map as engines use REJECT: flat. The lines of the plan are those of the map that have length, in their order, from the
-    /// first vertex to the second; a line blocks sight unless its flag [`ML_TWOSIDED`] is
+    /// first vertex to the second; a line blocks sight unless its flag [`ML_TWOSIDED`](super::ML_TWOSIDED) is
     /// set. Heights, doors and textures do not count, because they change during play. Groups are
     /// sectors; [`Plan::n_groups`] may be less than [`DoomMap::n_sectors`], as some may be unused.
     /// Things are objects without extent, called such as `thing 3001 #12`.
@@ -153,13 +111,6 @@ impl DoomMap {
             bounds: Aabb::around([[thing.x, thing.y]]),
         });
         Plan::new(lines.collect(), objects.collect())
-    }
-}
-
-impl Content {
-    /// Whether the ends of a line are two points.
-    fn has_length(&self, line: &LineDef) -> bool {
-        self.vertices[line.v1 as usize] != self.vertices[line.v2 as usize]
     }
 }
 

@@ -5,6 +5,7 @@
 //! whatever their format. Maps of the console games are recognised and refused by name.
 
 mod choose;
+mod content;
 mod error;
 mod list;
 mod lumps;
@@ -15,10 +16,11 @@ mod source;
 mod udmf;
 
 pub use choose::{MapChoiceError, choose_map};
+pub use content::{LineDef, Thing};
 pub use error::{DoomError, DoomErrorKind};
 pub use list::{MapLumps, list_maps};
 pub use lumps::{MapFormat, MapLump};
-pub use map::{DoomMap, LineDef, Thing};
+pub use map::DoomMap;
 pub use rmb::{RmbError, RmbErrorKind, RmbFile};
 pub use source::{DoomMapSource, SourceLine, SourceThing, write_doom_map};
 pub use udmf::{TextError, TextErrorKind};

@@ -1,7 +1,7 @@
 //! The records of binary maps.
 
-use super::map::Content;
-use super::{DoomError, DoomErrorKind, LineDef, MapFormat, MapLump, MapLumps, Thing};
+use super::content::{Content, LineDef, Thing};
+use super::{DoomError, DoomErrorKind, MapFormat, MapLump, MapLumps};
 use crate::wad::Wad;
 
 /// Reads the lumps of a map in a binary format.

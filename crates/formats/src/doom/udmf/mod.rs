@@ -10,8 +10,8 @@ mod values;
 
 pub use error::{TextError, TextErrorKind};
 
-use super::map::Content;
-use super::{LineDef, ML_TWOSIDED, Thing};
+use super::ML_TWOSIDED;
+use super::content::{Content, LineDef, Thing};
 use lexer::{Lexer, Piece, Place};
 use values::Value;
 

@@ -1,0 +1,53 @@
+//! What maps of all formats hold: lines, things, and the lists of them.
+
+use super::ML_TWOSIDED;
+
+/// A line from one vertex to another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct LineDef {
+    /// Index of the vertex it starts at.
+    pub v1: u32,
+    /// Index of the vertex it ends at.
+    pub v2: u32,
+    /// Flags; see [`ML_TWOSIDED`]. Of a map as text no other is read.
+    pub flags: u16,
+    /// Index of the side on the right hand going from `v1` to `v2`, if it has one.
+    pub right: Option<u32>,
+    /// Index of the side on the left hand, if it has one.
+    pub left: Option<u32>,
+}
+
+impl LineDef {
+    /// Whether the line lets sight through. Its sides do not matter.
+    pub fn is_two_sided(&self) -> bool {
+        self.flags & ML_TWOSIDED != 0
+    }
+}
+
+/// A monster, player, item or lamp.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Thing {
+    /// Where it stands, in map units.
+    pub x: f64,
+    /// Where it stands, in map units.
+    pub y: f64,
+    /// Its number among the things of its game, such as 3001 for an imp.
+    pub kind: i32,
+}
+
+/// What is read from a map in any format; of a map as text with every index checked.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Content {
+    pub(super) vertices: Vec<[f64; 2]>,
+    pub(super) lines: Vec<LineDef>,
+    pub(super) side_sectors: Vec<u32>,
+    pub(super) n_sectors: usize,
+    pub(super) things: Vec<Thing>,
+}
+
+impl Content {
+    /// Whether the ends of a line are two points.
+    pub(super) fn has_length(&self, line: &LineDef) -> bool {
+        self.vertices[line.v1 as usize] != self.vertices[line.v2 as usize]
+    }
+}
