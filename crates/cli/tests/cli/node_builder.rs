@@ -149,7 +149,7 @@ fn recording(tics: u32) -> Vec<u8> {
     let mut bytes = vec![109, 3, 1, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0];
     let (mut forward, mut turn) = (50u8, 0u8);
     for tic in 0..tics {
-        if tic % 20 == 0 {
+        if tic.is_multiple_of(20) {
             let pick = random.next() as usize;
             forward = [50, 50, 25, 0, 206][pick % 5];
             turn = [0, 0, 3, 253, 8, 248][pick / 8 % 6];

@@ -69,7 +69,7 @@ fn damaged_texts_are_named_with_their_place() {
     let at = whole.find("v2 = ").expect("a line");
     let line = whole[..at].lines().count();
     for (bad, place) in [
-        (whole.replacen("v2 = ", "v2 = 7", 1), format!("map MAP01: TEXTMAP: line {line}, column ")),
+        (whole.replacen("v2 = ", "v2 = 99999", 1), format!("map MAP01: TEXTMAP: line {line}, column ")),
         (whole.replacen("v2 = ", "v2 ? ", 1), format!("map MAP01: TEXTMAP: line {line}, column ")),
         (
             format!("{whole}\"open"),

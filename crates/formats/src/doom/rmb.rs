@@ -153,7 +153,7 @@ impl RmbFile {
     /// # Errors
     /// [`ReadError`] with the file and what is wrong.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, ReadError> {
-        let read = || Ok(Self::parse(&std::fs::read(path.as_ref())?).map_err(crate::ReadErrorKind::content)?);
+        let read = || Self::parse(&std::fs::read(path.as_ref())?).map_err(crate::ReadErrorKind::content);
         read().map_err(|kind: crate::ReadErrorKind| ReadError::new(&path, kind))
     }
 

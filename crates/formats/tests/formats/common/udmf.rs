@@ -45,7 +45,7 @@ fn line_text(line: &LineDef, k: usize) -> String {
     }
     match line.left {
         Some(side) => write!(text, " sideback = {side};").unwrap(),
-        None if k % 2 == 0 => text += " sideback = -1;",
+        None if k.is_multiple_of(2) => text += " sideback = -1;",
         None => {}
     }
     match (line.is_two_sided(), k % 2) {
