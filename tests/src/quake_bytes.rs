@@ -80,6 +80,31 @@ impl<'b> RawMap<'b> {
         ((-1 - at) as usize, nearest)
     }
 
+    /// The leafs that a segment goes through, in order, each with how long it is in there. Rounded.
+    pub fn leafs_along(&self, from: Point, to: Point) -> Vec<(usize, f64)> {
+        let length = (0..3).map(|k| (to[k] - from[k]).powi(2)).sum::<f64>().sqrt();
+        let mut open = vec![(self.root(), from, to, length)];
+        let mut met = Vec::new();
+        while let Some((at, a, b, length)) = open.pop() {
+            if at < 0 {
+                met.push(((-1 - at) as usize, length));
+                continue;
+            }
+            let (plane, children) = self.node(at as usize);
+            let (ha, hb) = (height(&plane, a), height(&plane, b));
+            let near = usize::from(ha < 0.0);
+            if (ha < 0.0) == (hb < 0.0) {
+                open.push((children[near], a, b, length));
+                continue;
+            }
+            let t = (ha / (ha - hb)).clamp(0.0, 1.0);
+            let middle = std::array::from_fn(|k| a[k] + t * (b[k] - a[k]));
+            open.push((children[1 - near], middle, b, length * (1.0 - t)));
+            open.push((children[near], a, middle, length * t));
+        }
+        met
+    }
+
     fn leaf_len(&self) -> usize {
         match self.format {
             BspFormat::Bsp29 | BspFormat::Quake2 => 28,

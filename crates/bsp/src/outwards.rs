@@ -158,8 +158,6 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(300))]
-
         /// The triangle of three planes in a fourth: its exact corners are within the rounded ones, and these are near. Planes that are nearly
         /// parallel make slivers.
         #[test]

@@ -199,39 +199,32 @@ fn portals_of_real_maps_are_those_of_their_compilers() {
     );
 }
 
-/// Follows random lines through the tree of the map's bytes in small steps, from leafs on until they are in something solid or in the sky: every
-/// leaf on the way is seen from the first. Returns how many were met.
+/// Follows random lines through the tree of the map's bytes, from leafs on until they are in something solid or in the sky: every leaf on the way is
+/// seen from the first. Returns how many were met.
 fn descend(case: &Case) -> Result<usize, String> {
     let raw = RawMap::new(&case.bytes);
     let bsp = Bsp::parse(case.bytes.clone()).unwrap();
     let (mut random, mut n_met) = (SplitMix::new(7), 0);
     let n = case.prt.leaf_clusters().n_leafs();
     let is_air = |leaf: usize| (1..=n).contains(&leaf) && ![-2, -6].contains(&bsp.leafs()[leaf].contents);
-    for _ in 0..4000 {
+    for _ in 0..20_000 {
         let (low, high) = raw.leaf_box(1 + random.below(n));
-        let start: [f64; 3] =
-            std::array::from_fn(|k| low[k] + (high[k] - low[k]) * (random.below(1000) as f64 + 0.5) / 1000.0);
+        let within = |k: usize, at: f64| low[k] + (high[k] - low[k]) * at;
+        let from: [f64; 3] = std::array::from_fn(|k| within(k, (random.below(1000) as f64 + 0.5) / 1000.0));
         let way: [f64; 3] = std::array::from_fn(|_| random.below(2001) as f64 - 1000.0);
-        let length = way.iter().map(|x| x * x).sum::<f64>().sqrt().max(1.0);
-        let (from, near) = raw.leaf_at(start);
-        if near < 0.01 || !is_air(from) {
-            continue;
-        }
-        let mut last = from;
-        // Shorter steps than anything that is solid, as far as it is thicker than a quarter of a unit.
-        for step in 0..4000 {
-            let p: [f64; 3] = std::array::from_fn(|k| start[k] + way[k] / length * 0.25 * f64::from(step));
-            let (leaf, near) = raw.leaf_at(p);
-            if !is_air(leaf) {
-                break;
+        let to = std::array::from_fn(|k| from[k] + 8.0 * way[k]);
+        let met = raw.leafs_along(from, to);
+        let Some(&(first, _)) = met.first() else { continue };
+        for (leaf, length) in met.into_iter().take_while(|&(leaf, length)| is_air(leaf) || length < 1e-9) {
+            // What is met for a thousandth of a unit may be met by rounding.
+            if length < 1e-3 || leaf == first {
+                continue;
             }
-            if leaf != last && near > 0.01 {
-                (last, n_met) = (leaf, n_met + 1);
-                if !case.rows.get(from - 1, leaf - 1) {
-                    return Err(format!(
-                        "leaf {leaf} is met from {start:?} in leaf {from} at {p:?}, and counts as hidden"
-                    ));
-                }
+            n_met += 1;
+            if !case.rows.get(first - 1, leaf - 1) {
+                return Err(format!(
+                    "leaf {leaf} is met from {from:?} in leaf {first} towards {to:?}, and counts as hidden"
+                ));
             }
         }
     }
