@@ -59,7 +59,7 @@ impl Outcome {
         Self {
             out: out.display().to_string(),
             format: bsp.format().name(),
-            portal_format: prt.dialect().magic(),
+            portal_format: prt.dialect().name(),
             fast,
             clusters: Clusters::new(&report.clusters),
             n_faces,

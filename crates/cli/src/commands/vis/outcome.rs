@@ -39,7 +39,7 @@ impl Outcome {
         Self {
             out: out.display().to_string(),
             format: bsp.format().name(),
-            portal_format: prt.dialect().magic(),
+            portal_format: prt.dialect().name(),
             n_leafs: bsp.n_visible_leafs(),
             clusters: Clusters::new(&map.clusters),
             fast: false,
