@@ -18,7 +18,10 @@ impl<'b> RawMap<'b> {
     /// As everything here, if the bytes are no sound map.
     pub fn new(bytes: &'b [u8]) -> Self {
         let format = BspFormat::ALL.into_iter().find(|f| bytes.starts_with(f.magic())).expect("a map");
-        Self { bytes, format }
+        // Hexen II begins as Quake, with models of another length.
+        let begins = Self { bytes, format };
+        let is_hexen = format == BspFormat::Bsp29 && !begins.lump("models").len().is_multiple_of(64);
+        Self { bytes, format: if is_hexen { BspFormat::Hexen2 } else { format } }
     }
 
     fn lump(&self, name: &str) -> &'b [u8] {
@@ -31,19 +34,25 @@ impl<'b> RawMap<'b> {
     }
 
     fn is_wide(&self) -> bool {
-        matches!(self.format, BspFormat::Bsp2 | BspFormat::Bsp2Psb)
+        matches!(self.format, BspFormat::Bsp2 | BspFormat::Bsp2Psb | BspFormat::Qbism) || self.is_quake3()
+    }
+
+    fn is_quake3(&self) -> bool {
+        matches!(self.format, BspFormat::Quake3 | BspFormat::Wolfenstein)
     }
 
     /// Normal and distance of a node's plane, and its children.
     fn node(&self, node: usize) -> ([f32; 4], [i32; 2]) {
         let (len, wide) = match self.format {
-            BspFormat::Bsp29 => (24, false),
-            BspFormat::Bsp2 => (44, true),
+            BspFormat::Bsp29 | BspFormat::HalfLife | BspFormat::Hexen2 => (24, false),
+            BspFormat::Bsp2 | BspFormat::Qbism => (44, true),
+            BspFormat::Quake3 | BspFormat::Wolfenstein => (36, true),
             BspFormat::Bsp2Psb => (32, true),
             BspFormat::Quake2 => (28, true),
         };
         let record = &self.lump("nodes")[len * node..];
-        let plane = &self.lump("planes")[20 * int(record, 0) as usize..];
+        let plane_len = if self.is_quake3() { 16 } else { 20 };
+        let plane = &self.lump("planes")[plane_len * int(record, 0) as usize..];
         let child = |k: usize| if wide { int(record, 4 + 4 * k) } else { short(record, 4 + 2 * k) };
         (std::array::from_fn(|k| float(plane, 4 * k)), [child(0), child(1)])
     }
@@ -54,7 +63,7 @@ impl<'b> RawMap<'b> {
     }
 
     fn root(&self) -> i32 {
-        int(self.lump("models"), 36)
+        if self.is_quake3() { 0 } else { int(self.lump("models"), 36) }
     }
 
     /// Number of leafs, the solid one included.
@@ -65,8 +74,14 @@ impl<'b> RawMap<'b> {
     /// The cluster that each leaf names; `None` where rows are for leafs.
     pub fn named_clusters(&self) -> Option<Vec<Option<u32>>> {
         let leafs = self.lump("leafs").chunks_exact(self.leaf_len());
-        let clusters = leafs.map(|leaf| u32::try_from(short(leaf, 4)).ok()).collect();
-        (self.format == BspFormat::Quake2).then_some(clusters)
+        let cluster = |leaf: &[u8]| match self.format {
+            BspFormat::Quake3 | BspFormat::Wolfenstein => int(leaf, 0),
+            BspFormat::Qbism => int(leaf, 4),
+            _ => short(leaf, 4),
+        };
+        let clusters = leafs.map(|leaf| u32::try_from(cluster(leaf)).ok()).collect();
+        let has_clusters = self.is_quake3() || matches!(self.format, BspFormat::Quake2 | BspFormat::Qbism);
+        has_clusters.then_some(clusters)
     }
 
     /// The leaf at a point, and how near to a plane the point came; exact for points on a grid of eighths.
@@ -107,9 +122,11 @@ impl<'b> RawMap<'b> {
 
     fn leaf_len(&self) -> usize {
         match self.format {
-            BspFormat::Bsp29 | BspFormat::Quake2 => 28,
+            BspFormat::Bsp29 | BspFormat::HalfLife | BspFormat::Hexen2 | BspFormat::Quake2 => 28,
             BspFormat::Bsp2 => 44,
             BspFormat::Bsp2Psb => 32,
+            BspFormat::Qbism => 52,
+            BspFormat::Quake3 | BspFormat::Wolfenstein => 48,
         }
     }
 
@@ -118,6 +135,8 @@ impl<'b> RawMap<'b> {
         let record = &self.lump("leafs")[self.leaf_len() * leaf..];
         let at = |k: usize| match self.format {
             BspFormat::Bsp2 => f64::from(float(record, 8 + 4 * k)),
+            BspFormat::Qbism => f64::from(float(record, 12 + 4 * k)),
+            BspFormat::Quake3 | BspFormat::Wolfenstein => f64::from(int(record, 8 + 4 * k)),
             _ => f64::from(short(record, 8 + 2 * k)),
         };
         ([at(0), at(1), at(2)], [at(3), at(4), at(5)])
@@ -133,8 +152,11 @@ impl<'b> RawMap<'b> {
     pub fn marks(&self, leaf: usize) -> Vec<usize> {
         let record = &self.lump("leafs")[self.leaf_len() * leaf..];
         let [first, count] = match self.format {
-            BspFormat::Bsp29 | BspFormat::Quake2 => [20, 22].map(|at| word(record, at)),
-            BspFormat::Bsp2 => [32, 36].map(|at| int(record, at) as usize),
+            BspFormat::Bsp29 | BspFormat::HalfLife | BspFormat::Hexen2 | BspFormat::Quake2 => {
+                [20, 22].map(|at| word(record, at))
+            }
+            BspFormat::Qbism => [36, 40].map(|at| int(record, at) as usize),
+            BspFormat::Bsp2 | BspFormat::Quake3 | BspFormat::Wolfenstein => [32, 36].map(|at| int(record, at) as usize),
             BspFormat::Bsp2Psb => [20, 24].map(|at| int(record, at) as usize),
         };
         (first..first + count).map(|k| self.index("marksurfaces", k)).collect()
@@ -142,13 +164,29 @@ impl<'b> RawMap<'b> {
 
     /// The first face of the world, and how many there are.
     pub fn world_faces(&self) -> (usize, usize) {
-        let at = if self.format == BspFormat::Quake2 { 40 } else { 56 };
+        let at = match self.format {
+            BspFormat::Quake2 | BspFormat::Qbism => 40,
+            BspFormat::Quake3 | BspFormat::Wolfenstein => 24,
+            BspFormat::Hexen2 => 72,
+            _ => 56,
+        };
         let [first, count] = [0, 4].map(|k| int(self.lump("models"), at + k) as usize);
         (first, count)
     }
 
+    /// The number of polygons of a face: one, or triangles.
+    pub fn n_polygons(&self, face: usize) -> usize {
+        if self.is_quake3() { self.corners(face).len() - 2 } else { 1 }
+    }
+
     /// The corners of a face in turn.
     pub fn corners(&self, face: usize) -> Vec<Point> {
+        if self.is_quake3() {
+            // The vertices of a face that was converted are its corners.
+            let record = &self.lump("faces")[104 * face..];
+            let vertex = |k: i32| &self.lump("vertices")[44 * (int(record, 12) + k) as usize..];
+            return (0..int(record, 16)).map(|k| std::array::from_fn(|j| float(vertex(k), 4 * j).into())).collect();
+        }
         let record = &self.lump("faces")[face * if self.is_wide() { 28 } else { 20 }..];
         let (first, count) =
             if self.is_wide() { (int(record, 8), int(record, 12) as usize) } else { (int(record, 4), word(record, 8)) };

@@ -1,5 +1,8 @@
 //! Generated worlds as the files of a compiler of maps: portals, and a map that they belong to.
 
+#[path = "../../crates/formats/tests/formats/common/convert.rs"]
+mod convert;
+
 use sightlines::formats::quake::BspFormat;
 use sightlines::formats::quake::prt::{LeafList, Prt, write_prt};
 use sightlines::geometry::{Aabb, Point3};
@@ -47,6 +50,9 @@ const TEXTURES: [&str; 5] = ["brick", "*water0", "sky1", "floor", "*lava1"];
 /// # Panics
 /// If the world is too large for the format: indices have 16 bits in `Bsp29` and `Quake2`.
 pub fn bsp_bytes(world: &World, format: BspFormat) -> Vec<u8> {
+    if convert::base(format) != format {
+        return convert::map(&bsp_bytes(world, convert::base(format)), format);
+    }
     let lumps = Lumps::new(world, format);
     let mut file = format.magic().to_vec();
     let directory = file.len();

@@ -43,7 +43,7 @@ pub(crate) fn made(bsp: &Bsp, map: &Path) -> Result<MapPortals, InputError> {
 impl MapPortals {
     /// What kind of file it is, as reports name it: none, if they were made.
     pub(crate) fn format(&self) -> &'static str {
-        if self.is_made { MADE } else { self.prt.dialect().magic() }
+        if self.is_made { MADE } else { self.prt.dialect().name() }
     }
 
     /// Says on standard error that there was no portal file.

@@ -29,8 +29,10 @@ impl WorldTree {
             .map(|n| WorldNode { normal: n.normal, distance: n.distance, children: n.children.map(child) })
             .collect();
         let first = faces.range().start;
-        let face =
-            |k: usize| WorldFace { name: format!("face {}", first as usize + k), corners: faces.corners(k).to_vec() };
+        let face = |k: usize| WorldFace {
+            name: format!("face {}", first as usize + k),
+            polygons: faces.polygons(k).map(<[_]>::to_vec).collect(),
+        };
         let mut listed = vec![Vec::new(); prt.n_clusters() as usize];
         for leaf in 0..lists.n_leafs() {
             if let Some(list) = cluster(leaf as u32 + 1).and_then(|cluster| listed.get_mut(cluster as usize)) {

@@ -1,7 +1,7 @@
 //! What is really there.
 
 use sightlines_cells::{CellGraph, Convex, Plan, Scene};
-use sightlines_geometry::Point3;
+use sightlines_geometry::{Aabb, Point3};
 use sightlines_progress::Cancelled;
 use sightlines_pvs::{GeometryDigest, Table, TableKind};
 
@@ -47,8 +47,15 @@ pub struct WorldNode {
 pub struct WorldFace {
     /// What a table calls it.
     pub name: String,
-    /// Its corners in turn, in scene units.
-    pub corners: Vec<Point3>,
+    /// The convex polygons that it is made of, most often one: the corners of each in turn, in scene units.
+    pub polygons: Vec<Vec<Point3>>,
+}
+
+impl WorldFace {
+    /// The box around all of its corners; empty if it has none.
+    pub(crate) fn bounds(&self) -> Aabb<3> {
+        Aabb::around(self.polygons.iter().flatten().copied())
+    }
 }
 
 /// The tree of planes that a map was cut along, with its faces.

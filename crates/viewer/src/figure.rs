@@ -29,11 +29,19 @@ impl Figure {
         Self::of_objects(objects.iter().map(|object| (&object.vertices[..], &object.triangles[..])))
     }
 
-    /// Objects that are polygons, such as the faces of a Quake map, each as a fan of triangles. O(corners).
-    pub fn of_polygons<'a>(polygons: impl Iterator<Item = &'a [Point3]>) -> Self {
-        let fan = |n: usize| (2..n as u32).map(|k| [0, k - 1, k]).collect::<Vec<_>>();
-        let fans: Vec<(&[Point3], Vec<[u32; 3]>)> = polygons.map(|corners| (corners, fan(corners.len()))).collect();
-        Self::of_objects(fans.iter().map(|(corners, fan)| (*corners, &fan[..])))
+    /// Objects that are made of polygons, such as the faces of a Quake map, each polygon as a fan of triangles. O(corners).
+    pub fn of_polygons<'a>(objects: impl Iterator<Item = impl Iterator<Item = &'a [Point3]>>) -> Self {
+        let fans = |polygons: &mut dyn Iterator<Item = &'a [Point3]>| {
+            let (mut corners, mut triangles) = (Vec::new(), Vec::new());
+            for polygon in polygons {
+                let first = corners.len() as u32;
+                triangles.extend((2..polygon.len() as u32).map(|k| [first, first + k - 1, first + k]));
+                corners.extend(polygon);
+            }
+            (corners, triangles)
+        };
+        let objects: Vec<(Vec<Point3>, Vec<[u32; 3]>)> = objects.map(|mut polygons| fans(&mut polygons)).collect();
+        Self::of_objects(objects.iter().map(|(corners, triangles)| (&corners[..], &triangles[..])))
     }
 
     /// The lines of a plan that block sight. O(lines).
@@ -143,7 +151,7 @@ mod tests {
     #[test]
     fn the_largest_triangles_stay() {
         let faces = [quad(0.0, 1.0), quad(1.0, 3.0), quad(2.0, 2.0), vec![]];
-        let all = Figure::of_polygons(faces.iter().map(Vec::as_slice));
+        let all = Figure::of_polygons(faces.iter().map(|face| std::iter::once(&face[..])));
         assert_eq!((all.n_triangles(), all.n_objects(), &all.firsts[..]), (6, 4, &[0, 2, 4, 6, 6][..]));
         assert_eq!(all.with_at_most(6), all);
         let less = all.with_at_most(3);

@@ -161,8 +161,9 @@ fn check_faces(
     counts: &mut Counts,
 ) -> Result<(), String> {
     let (first, n_faces) = raw.world_faces();
-    if table.objects().len() != n_faces || (0..n_faces as u32).any(|k| table.polygons_of(ObjectId(k)) != 1) {
-        return Err(format!("{} objects of one polygon for {n_faces} faces", table.objects().len()));
+    let is_whole = |k: usize| table.polygons_of(ObjectId(k as u32)) as usize == raw.n_polygons(first + k);
+    if table.objects().len() != n_faces || !(0..n_faces).all(is_whole) {
+        return Err(format!("{} objects for {n_faces} faces, or of another number of polygons", table.objects().len()));
     }
     let lists = |cluster: u32, k: usize| table.objects_of(CellId(cluster)).binary_search(&ObjectId(k as u32)).is_ok();
     for (leaf, cluster) in clusters.iter().enumerate().filter_map(|(leaf, c)| Some((leaf, (*c)?))) {

@@ -173,7 +173,7 @@ fn pages_of_real_scenes_find_what_the_tables_say() {
             Bakeable::Scene(file) => Some(Figure::of_scene(&file.scene)),
             Bakeable::Map(bsp, _) => {
                 let faces = bsp.world_faces().expect("faces");
-                Some(Figure::of_polygons((0..faces.n_faces()).map(|k| faces.corners(k))))
+                Some(Figure::of_polygons((0..faces.n_faces()).map(|k| faces.polygons(k))))
             }
             Bakeable::Portals(_) => None,
         };

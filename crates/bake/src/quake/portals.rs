@@ -167,6 +167,10 @@ enum Between {
 /// For each opening whether faces cover it.
 fn covered(bsp: &Bsp, tree: &BspTree, places: &Places<'_>, all: &[Opening]) -> Result<Vec<bool>, PortalsError> {
     let (faces, kinds) = (bsp.world_faces()?, bsp.face_covers()?);
+    // Where faces name no planes, what is solid is closed.
+    let Some(kinds) = kinds else {
+        return Ok(all.iter().map(|opening| places.between(opening.regions) != Between::Open).collect());
+    };
     let covers = Covers::new(kinds.into_iter().enumerate().map(|(k, cover)| (cover, faces.corners(k))));
     let is_covered = |opening: &Opening| {
         let node = &tree.nodes()[opening.node as usize];

@@ -45,7 +45,7 @@ pub fn bake_map(bsp: &Bsp, prt: &Prt, options: PrtOptions<'_>) -> Result<BakedMa
     parts.cells = boxes(bsp, &tree, &leafs, &graph).into_iter().map(cell_record).collect();
     parts.locator = Locator::build(&parts.cell_bounds(), 3);
     parts.objects = (0..faces.n_faces()).map(|k| object_record(&faces, k)).collect();
-    parts.object_polygons = vec![1; faces.n_faces()];
+    parts.object_polygons = (0..faces.n_faces()).map(|k| faces.polygons(k).len() as u32).collect();
     let world = WorldSummary {
         n_faces: faces.n_faces(),
         n_unlisted_faces: lists.n_unlisted_faces,

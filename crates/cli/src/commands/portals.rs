@@ -22,7 +22,7 @@ from_file_error!(Error);
 /// Arguments of `portals`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct PortalsArgs {
-    /// The map: Quake's BSP 29, BSP2 or 2PSB, or Quake II's IBSP 38
+    /// The map: of Quake, Half-Life, Hexen II, Quake II, Qbism, Quake III or Wolfenstein
     #[arg(value_name = "MAP.bsp")]
     map: PathBuf,
     /// The portal file to write
@@ -42,7 +42,7 @@ pub(crate) fn run(args: &PortalsArgs) -> Result<Answer, Error> {
     let outcome = Outcome {
         out: args.output.display().to_string(),
         format: bsp.format().name(),
-        portal_format: prt.dialect().magic(),
+        portal_format: prt.dialect().name(),
         n_clusters: n_leafs,
         n_portals: prt.n_portals(),
         n_passages: prt.n_clusters() as usize - n_leafs,

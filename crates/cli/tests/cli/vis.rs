@@ -224,7 +224,11 @@ fn files_are_recognized_by_their_content() {
     for format in BspFormat::ALL {
         folder.write("map", small_maps().into_iter().find(|map| map.format == format).unwrap().bsp);
         let reply = folder.run(&["info", "map"]).expect(0).out;
-        assert!(reply.starts_with("map: Quake") && reply.contains("\nvisibility  "), "{reply}");
+        assert!(
+            reply.starts_with(&format!("map: {} map, {}\n", format.game(), format.name()))
+                && reply.contains("\nvisibility  "),
+            "{reply}"
+        );
     }
     // CRLF is whitespace.
     folder.write("crlf", map.prt.replace('\n', "\r\n"));

@@ -34,7 +34,7 @@ const PROOFS: &[u8] = b"SLPROOFS";
 ///
 /// * `head`: all of the file, or at least its first [`HEAD`](super::HEAD) bytes.
 ///
-/// The content decides. Where it is JSON, which many formats are, and where it decides nothing, the extension of the name does.
+/// The content decides. Portals of Half-Life begin with a number, which decides nothing. Where it is JSON, which many formats are, and where it decides nothing, the extension of the name does.
 pub fn detect(name: &Path, head: &[u8]) -> Option<&'static Format> {
     let by_content = FORMATS.iter().find(|format| format.sign.is_in(head));
     // Formats of JSON are distinguished by content, so the last of them is what a name means without any.

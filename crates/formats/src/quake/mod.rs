@@ -2,8 +2,8 @@
 //!
 //! | | read | refused by name |
 //! | --- | --- | --- |
-//! | portals ([`prt`]) | `PRT1`, `PRT2`, `PRT1-AM` | anything else |
-//! | maps ([`bsp`]) | Quake's version 29, `BSP2`, `2PSB`, Quake II's `IBSP` 38 | other versions |
+//! | portals ([`prt`]) | `PRT1`, `PRT2`, `PRT1-AM`, those of Half-Life and of Quake III | anything else |
+//! | maps ([`bsp`]) | Quake's version 29, `BSP2`, `2PSB`, Half-Life's version 30, Hexen II's 29, Quake II's `IBSP` 38, Qbism's `QBSP` 38, `IBSP` 46 and 47 of Quake III and Wolfenstein | other versions, Blue Shift, Quake Live |
 //!
 //! Words of these files: a *leaf* is a cell of the map's tree; a *cluster* is one leaf, or several that share a
 //! visibility row. Portal files count leafs from 0, maps from 1, because leaf 0 of a map is solid. Visibility is stored

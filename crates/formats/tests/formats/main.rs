@@ -6,6 +6,7 @@ mod materials;
 mod motion;
 mod mutations;
 mod quake_bsp;
+mod quake_family;
 mod quake_prt;
 mod quake_real;
 mod quake_world;

@@ -21,9 +21,9 @@ fn refused(bytes: &[u8]) -> String {
 
 /// The leafs of the small maps in three clusters, the middle one of two leafs. In the order of Quake II.
 fn three_clusters(format: BspFormat) -> LeafClusters {
-    match format {
-        BspFormat::Quake2 => LeafClusters::identity(3).unwrap(),
-        _ => LeafClusters::new(3, vec![1, 2, 0, 1]).unwrap(),
+    match format.has_clusters() {
+        true => LeafClusters::identity(3).unwrap(),
+        false => LeafClusters::new(3, vec![1, 2, 0, 1]).unwrap(),
     }
 }
 
@@ -43,10 +43,11 @@ fn leafs_are_read() {
         assert_eq!((bsp.format(), bsp.leafs().len()), (format, 6));
         assert!(bsp.visibility().is_empty() && bsp.extra_lumps().is_empty());
         let leaf = bsp.leafs()[2];
-        assert_eq!((leaf.contents, leaf.mins, leaf.maxs), (-1, [0.0; 3], [64.0; 3]));
+        let contents = if matches!(format, BspFormat::Quake3 | BspFormat::Wolfenstein) { 0 } else { -1 };
+        assert_eq!((leaf.contents, leaf.mins, leaf.maxs), (contents, [0.0; 3], [64.0; 3]));
         assert_eq!((leaf.first_face, leaf.n_faces), (1, 2));
         let rows: Vec<LeafRow> = bsp.leafs().iter().map(|l| l.row).collect();
-        if format == BspFormat::Quake2 {
+        if format.has_clusters() {
             let [c0, c1, c2] = [0, 1, 2].map(LeafRow::Cluster);
             assert_eq!(rows, [LeafRow::Solid, c2, c0, c1, c0, LeafRow::Solid]);
             assert_eq!((bsp.n_clusters(), bsp.n_visible_leafs(), leaf.ambient), (3, 5, [0; 4]));
@@ -60,7 +61,7 @@ fn leafs_are_read() {
 
 #[test]
 fn sounds_are_looked_up() {
-    for format in [BspFormat::Bsp29, BspFormat::Bsp2, BspFormat::Bsp2Psb] {
+    for format in BspFormat::ALL.into_iter().filter(|format| format.has_sounds()) {
         assert_eq!(small(format).leaf_sounds(), Ok(vec![0, 0b0001, 0, 0b1010]), "{format:?}");
         let levels = ambient(&small(format), &three_clusters(format), &chain()).unwrap();
         // Water and lava lie in cluster 2 and the middle one; cluster 0 sees only the middle one.
@@ -70,6 +71,7 @@ fn sounds_are_looked_up() {
         assert_eq!(alone, [[0, 255, 0, 255], [255, 0, 0, 0], [0; 4], [0, 255, 0, 255]]);
     }
     assert_eq!(small(BspFormat::Quake2).leaf_sounds(), Ok(vec![0; 5]));
+    assert_eq!(small(BspFormat::HalfLife).leaf_sounds(), Ok(vec![0; 4]));
     // A map without textures makes no sounds; one whose textures are cut off is refused.
     let with = |lump: usize, bytes: &[u8]| {
         let map = SmallBsp::new(BspFormat::Bsp29);
@@ -92,9 +94,9 @@ fn sounds_are_looked_up() {
 fn broken_maps_are_refused() {
     assert_eq!(refused(b""), "not a map: 0 bytes are less than a header of 124");
     assert_eq!(refused(b"BSP2 and then nothing"), "not a map: 21 bytes are less than a header of 124");
-    let known = "not with version 29, BSP2, 2PSB or IBSP and version 38";
+    let known = "not with version 29 or 30, BSP2, 2PSB, IBSP and version 38, 46 or 47, or QBSP and version 38";
     assert_eq!(refused(&[30; 200]), format!("not a map: it begins with \"{}\", {known}", "\\x1e".repeat(8)));
-    assert_eq!(refused(b"IBSP\x2e\0\0\0"), format!("not a map: it begins with \"IBSP.\\x00\\x00\\x00\", {known}"));
+    assert_eq!(refused(b"IBSP\x30\0\0\0"), format!("not a map: it begins with \"IBSP0\\x00\\x00\\x00\", {known}"));
     let file = SmallBsp::new(BspFormat::Bsp29).file(false);
     let with = |at: usize, number: i32| {
         let mut bytes = file.clone();
@@ -152,7 +154,7 @@ fn additional_lumps_are_checked() {
 
 #[test]
 fn visibility_is_written_as_engines_load_it() {
-    for format in [BspFormat::Bsp29, BspFormat::Bsp2, BspFormat::Bsp2Psb] {
+    for format in BspFormat::ALL.into_iter().filter(|format| !format.has_clusters()) {
         let lump = visibility::lump(&small(format), &three_clusters(format), &chain()).unwrap();
         // Bits are leafs 2 0 3 1 by cluster 0, 1, 1, 2: rows of clusters 0, 1 and 2.
         assert_eq!(lump.bytes, [0b1101, 0b1111, 0b1011]);
@@ -232,7 +234,8 @@ fn another_lump_changes_nothing_else() {
             let rows: Vec<LeafRow> = lump.leaf_rows.iter().map(|&row| LeafRow::At(row)).collect();
             if !bsp.format().has_clusters() {
                 let found: Vec<_> = after.visible_leafs().iter().map(|l| (l.row, l.ambient)).collect();
-                assert_eq!(found, rows.into_iter().zip(lump.ambient.clone()).collect::<Vec<_>>());
+                let levels = if bsp.format().has_sounds() { lump.ambient.clone() } else { vec![[9; 4]; 4] };
+                assert_eq!(found, rows.into_iter().zip(levels).collect::<Vec<_>>());
                 assert_eq!(after.leafs()[5], bsp.leafs()[5], "what cannot be seen stays as it was");
             }
             assert!(after.as_bytes().len() <= bsp.as_bytes().len() + bytes.len() + 7);

@@ -2,7 +2,7 @@
 
 use crate::common::quake::{SMALL_PRTS, check_prt};
 use proptest::prelude::*;
-use sightlines_formats::quake::prt::{LeafList, Prt, PrtDialect, PrtErrorKind, parse_prt, write_prt};
+use sightlines_formats::quake::prt::{LeafList, Prt, PrtDialect, PrtErrorKind, SolidFace, parse_prt, write_prt};
 use sightlines_formats::quake::{LeafError, MAX_CLUSTERS, read_prt};
 use sightlines_testkit::mutate::{SplitMix, flipped_bits, mutate};
 use std::time::{Duration, Instant};
@@ -19,9 +19,10 @@ const PORTAL: &str = "3 0 1 (0 0 0) (1 0 0) (0 1 0)\n";
 
 #[test]
 fn dialects_are_read() {
-    let [plain, lists, numbers] = SMALL_PRTS.map(|text| parse_prt(text.as_bytes()).unwrap());
-    assert_eq!([&plain, &lists, &numbers].map(|p| p.dialect()), PrtDialect::ALL);
-    for prt in [&plain, &lists, &numbers] {
+    let all = SMALL_PRTS.map(|text| parse_prt(text.as_bytes()).unwrap());
+    let [plain, lists, numbers, counts, faces] = &all;
+    assert_eq!(all.each_ref().map(|p| p.dialect()), PrtDialect::ALL);
+    for prt in &all {
         assert_eq!((prt.n_clusters(), prt.n_portals()), (3, 2));
         let portals: Vec<_> = prt.portals().collect();
         assert_eq!(portals[0].clusters, [0, 1]);
@@ -33,7 +34,68 @@ fn dialects_are_read() {
     assert_eq!(plain.leaf_clusters().cluster_of_leaf(), [0, 1, 2]);
     assert_eq!(lists.listed_leafs().unwrap().cluster_of_leaf(), [1, 2, 0, 1]);
     assert_eq!(lists.leaf_clusters(), numbers.leaf_clusters());
-    assert_eq!(SMALL_PRTS.map(|text| text.replace("1e-3", "0.001")), [&plain, &lists, &numbers].map(write_prt));
+    assert_eq!(counts.listed_leafs().unwrap().cluster_of_leaf(), [0, 1, 2, 2]);
+    assert_eq!((faces.listed_leafs(), faces.hints()), (None, Some(&[0, 1][..])));
+    let [face] = faces.solid_faces() else { panic!("one face") };
+    assert_eq!((face.cluster, &face.points[..]), (2, faces.portal(1).points));
+    assert!(all[..4].iter().all(|prt| prt.hints().is_none() && prt.solid_faces().is_empty()));
+    assert_eq!(SMALL_PRTS.map(|text| text.replace("1e-3", "0.001")), all.each_ref().map(write_prt));
+}
+
+/// Files that begin alike: the pieces behind the two counts tell a `PRT1` from one of Quake III.
+#[test]
+fn dialects_that_begin_alike_are_told_apart() {
+    let dialect = |text: &str| parse_prt(text.as_bytes()).map(|prt| prt.dialect()).map_err(|error| error.to_string());
+    let triangle = "(0 0 0) (1 0 0) (0 1 0)";
+    assert_eq!(dialect("PRT1 1 0"), Ok(PrtDialect::Prt1));
+    assert_eq!(dialect("PRT1 1 0 0"), Ok(PrtDialect::Quake3));
+    assert_eq!(dialect(&format!("PRT1 1 0 1 3 0 {triangle}")), Ok(PrtDialect::Quake3));
+    assert_eq!(dialect(&format!("PRT1 2 1 3 0 1 {triangle}")), Ok(PrtDialect::Prt1));
+    assert_eq!(dialect(&format!("PRT1 2 1 0 3 0 1 0 {triangle}")), Ok(PrtDialect::Quake3));
+    assert_eq!(dialect(&format!("2 1 1 1 3 0 1 {triangle}")), Ok(PrtDialect::HalfLife));
+    // Between the two: faces without hints.
+    let error = "line 1, column 10: the number of points of portal 0: 0 is not from 3 to 64";
+    assert_eq!(dialect(&format!("PRT1 2 1 0 3 0 1 {triangle}")), Err(error.to_owned()));
+}
+
+#[test]
+fn hostile_files_of_half_life() {
+    let text = |counts: &str| refused(format!("2\n1\n{counts}\n{PORTAL}").as_bytes());
+    let many = "line 4, column 1: the number of leafs of cluster 1: 65536 is not from 0 to 65535";
+    assert_eq!(text("1\n65536"), many);
+    assert_eq!(
+        text("2147483648\n1"),
+        "line 3, column 1: the number of leafs of cluster 0: 2147483648 is not from 0 to 65536"
+    );
+    // A count too few: the portal's number of points is taken for it.
+    assert_eq!(text("1"), "line 4, column 3: the number of points of portal 0: 0 is not from 3 to 64");
+    assert_eq!(refused(b"2147483648 1"), "line 1, column 1: the number of clusters: 2147483648 is not from 1 to 65536");
+    assert_eq!(refused(b"0 0"), "line 1, column 1: the number of clusters: 0 is not from 1 to 65536");
+    assert_eq!(refused(b"3 0 1 -1"), "line 1, column 7: the number of leafs of cluster 1: -1 is not from 0 to 65535");
+    let prt = parse_prt(format!("2\n1\n3\n0\n{PORTAL}").as_bytes()).unwrap();
+    assert_eq!(prt.leaf_clusters().cluster_of_leaf(), [0, 0, 0]);
+    let order = prt.with_leafs(LeafList::Counts, vec![0, 1, 0]).unwrap_err();
+    assert_eq!(order.to_string(), "leaf 2 is of cluster 0, and the leaf before it of a later one");
+}
+
+#[test]
+fn hostile_files_of_quake_3() {
+    let text =
+        |behind: &str| refused(format!("PRT1\n2\n1\n2147483648\n3 0 1 0 (0 0 0) (1 0 0) (0 1 0)\n{behind}").as_bytes());
+    assert_eq!(text(""), "line 6, column 1: expected the number of points of solid face 0, found the end of the file");
+    assert_eq!(text("3 2"), "line 6, column 3: the cluster of solid face 0: 2 is not from 0 to 1");
+    assert_eq!(text("65 1"), "line 6, column 1: the number of points of solid face 0: 65 is not from 3 to 64");
+    let place = "line 6, column 12: expected point 1 of solid face 0 in parentheses, found ";
+    assert_eq!(text("3 1 (0 0 0) 1"), format!("{place}\"1\"").replace("column 12", "column 13"));
+    assert_eq!(text("3 1 (0 0 0) (1 nan 0)"), format!("{place}\"nan\"").replace("column 12", "column 16"));
+    let far = text("3 1 (0 0 0) (1 1e300 0)");
+    assert!(far.starts_with("line 6, column 1: solid face 0, point 1: coordinate 1e300 is "), "{far}");
+    let prt = parse_prt(b"PRT1 2 0").unwrap();
+    assert!(prt.clone().with_faces(vec![1], vec![]).is_err(), "a hint of no portal");
+    let face = |cluster, n| SolidFace { cluster, points: vec![[1.0, 2.0, 3.0]; n] };
+    for (face, is_sound) in [(face(1, 3), true), (face(2, 3), false), (face(1, 2), false), (face(1, 65), false)] {
+        assert_eq!(prt.clone().with_faces(vec![], vec![face]).is_ok(), is_sound);
+    }
 }
 
 #[test]
@@ -176,24 +238,21 @@ fn hostile_parentheses() {
 
 #[test]
 fn hostile_beginnings_and_ends() {
-    let magic = "line 1, column 1: expected PRT1, PRT2 or PRT1-AM, found ";
+    let magic = "line 1, column 1: expected PRT1, PRT2, PRT1-AM or the number of clusters, found ";
     assert_eq!(refused(b""), format!("{magic}the end of the file"));
-    for (text, found) in [("PRT3\n1\n0\n", "PRT3"), ("prt1\n", "prt1"), ("12\n4\n", "12"), ("\0\0", "\0\0")] {
+    for (text, found) in [("PRT3\n1\n0\n", "PRT3"), ("prt1\n", "prt1"), ("12a\n4\n", "12a"), ("\0\0", "\0\0")] {
         assert_eq!(refused(text.as_bytes()), format!("{magic}{found:?}"));
     }
     let long = refused("x".repeat(5_000_000).as_bytes());
     assert_eq!(long, format!("{magic}\"{}...\"", "x".repeat(40)));
     assert_eq!(
         refused(&[b' '; 5_000_000][..]),
-        "line 1, column 5000001: expected PRT1, PRT2 or PRT1-AM, found the end of the file"
+        "line 1, column 5000001: expected PRT1, PRT2, PRT1-AM or the number of clusters, found the end of the file"
     );
     for behind in ["x", "0", "-1", "\0", PORTAL] {
         let text = refused(format!("PRT1\n2\n1\n{PORTAL}{behind}").as_bytes());
         assert!(text.starts_with("line 5, column 1: expected the end of the file, found "), "{text}");
     }
-    // The header of another dialect has a number more, and portals too.
-    let other = refused(b"PRT1\n2\n1\n3\n3 0 1 0 (0 0 0) (1 0 0) (0 1 0)\n");
-    assert_eq!(other, "line 5, column 1: a cluster of portal 0: 3 is not from 0 to 1");
 }
 
 #[test]
@@ -283,7 +342,7 @@ fn damaged_files_are_read_or_refused() {
     let first = crate::common::setting("SIGHTLINES_FUZZ_SEED", 0);
     let accepted = (first..first + rounds)
         .filter(|&number| {
-            let broken = mutate(SMALL_PRTS[number as usize % 3].as_bytes(), &mut SplitMix::new(number));
+            let broken = mutate(SMALL_PRTS[number as usize % SMALL_PRTS.len()].as_bytes(), &mut SplitMix::new(number));
             std::panic::catch_unwind(|| check_prt(&broken)).unwrap_or_else(|_| {
                 panic!("replay with SIGHTLINES_FUZZ_ROUNDS=1 SIGHTLINES_FUZZ_SEED={number}: {broken:?}")
             })
@@ -301,7 +360,7 @@ fn portals() -> impl Strategy<Value = Prt> {
     ];
     let point = [coordinate.clone(), coordinate.clone(), coordinate];
     let portal = (0..20u32, 1..20u32, proptest::collection::vec(point, 3..9));
-    let leafs = proptest::option::of((any::<bool>(), proptest::collection::vec(0..20u32, 1..60)));
+    let leafs = proptest::option::of((0..4, proptest::collection::vec(0..20u32, 1..60)));
     (proptest::collection::vec(portal, 0..12), leafs).prop_map(|(portals, leafs)| {
         let mut prt = Prt::new(20).unwrap();
         for (a, step, points) in portals {
@@ -319,8 +378,17 @@ fn portals() -> impl Strategy<Value = Prt> {
         }
         match leafs {
             None => prt,
-            Some((true, leafs)) => prt.with_leafs(LeafList::PerCluster, leafs).unwrap(),
-            Some((false, leafs)) => prt.with_leafs(LeafList::PerLeaf, leafs).unwrap(),
+            Some((0, leafs)) => prt.with_leafs(LeafList::PerCluster, leafs).unwrap(),
+            Some((1, leafs)) => prt.with_leafs(LeafList::PerLeaf, leafs).unwrap(),
+            Some((2, mut leafs)) => {
+                leafs.sort_unstable();
+                prt.with_leafs(LeafList::Counts, leafs).unwrap()
+            }
+            Some((_, leafs)) => {
+                let hints = (0..prt.n_portals() as u32).collect();
+                let face = |&cluster| SolidFace { cluster, points: vec![[f64::from(cluster), 0.5, -3.0]; 3] };
+                prt.with_faces(hints, leafs.iter().map(face).collect()).unwrap()
+            }
         }
     })
 }
@@ -332,11 +400,16 @@ fn in_order(prt: Prt) -> Prt {
     for (_, portal) in prt.portals().enumerate().filter(|&(k, _)| k != wrong) {
         rest.push_portal(portal.clusters, portal.points).unwrap();
     }
-    let leafs = prt.listed_leafs().map(|leafs| leafs.cluster_of_leaf().to_vec());
-    let list = if prt.dialect() == PrtDialect::Prt2 { LeafList::PerCluster } else { LeafList::PerLeaf };
-    in_order(match leafs {
-        Some(leafs) => rest.with_leafs(list, leafs).unwrap(),
-        None => rest,
+    let leafs = || prt.leaf_clusters().cluster_of_leaf().to_vec();
+    in_order(match prt.dialect() {
+        PrtDialect::Prt1 => rest,
+        PrtDialect::Prt2 => rest.with_leafs(LeafList::PerCluster, leafs()).unwrap(),
+        PrtDialect::Prt1Am => rest.with_leafs(LeafList::PerLeaf, leafs()).unwrap(),
+        PrtDialect::HalfLife => rest.with_leafs(LeafList::Counts, leafs()).unwrap(),
+        PrtDialect::Quake3 => {
+            let hints = (0..rest.n_portals() as u32).collect();
+            rest.with_faces(hints, prt.solid_faces().to_vec()).unwrap()
+        }
     })
 }
 
@@ -357,6 +430,8 @@ proptest! {
     #[test]
     fn portals_cut_off_are_refused(prt in portals(), at in any::<prop::sample::Index>()) {
         let text = write_prt(&prt);
+        // Without portals the beginning of one of Quake III is a `PRT1`.
+        prop_assume!(prt.dialect() != PrtDialect::Quake3 || prt.n_portals() > 0);
         let last = text.trim_end().rfind(char::is_whitespace).unwrap();
         let cut = at.index(last);
         let error = parse_prt(&text.as_bytes()[..cut]).unwrap_err();

@@ -33,7 +33,11 @@ fn faces_are_read() {
             let x = 64.0 * leaf as f64 + 32.0;
             for k in face..face + names.len() {
                 let square = [[x, 8.0, 8.0], [x, 24.0, 8.0], [x, 24.0, 24.0], [x, 8.0, 24.0]];
-                assert_eq!(faces.corners(k), square, "{format:?}, face {k}");
+                let [a, b, c, d] = square;
+                let is_of_triangles = matches!(format, BspFormat::Quake3 | BspFormat::Wolfenstein);
+                let polygons: &[&[_]] = if is_of_triangles { &[&[a, b, c], &[a, c, d]] } else { &[&square] };
+                assert!(faces.polygons(k).eq(polygons.iter().copied()), "{format:?}, face {k}");
+                assert_eq!(faces.corners(k), polygons.concat());
             }
             if leaf < lists.n_leafs() {
                 let all: Vec<u32> = (face..face + names.len()).map(|k| k as u32).collect();
@@ -175,9 +179,18 @@ fn cut_lumps_are_refused() {
     for format in BspFormat::ALL {
         let map = SmallBsp::with_world(format);
         let file = map.file(false);
-        for name in
-            ["planes", "nodes", "vertices", "edges", "surfedges", "faces", "models", "leaffaces", "marksurfaces"]
-        {
+        for name in [
+            "planes",
+            "nodes",
+            "vertices",
+            "edges",
+            "surfedges",
+            "indices",
+            "faces",
+            "models",
+            "leaffaces",
+            "marksurfaces",
+        ] {
             let Some(lump) = format.lump_names().iter().position(|n| *n == name) else { continue };
             let len = Bsp::parse(file.clone()).unwrap().lumps()[lump].len();
             for cut in [len - 1, 0] {
@@ -196,7 +209,8 @@ fn cut_lumps_are_refused() {
             }
         }
     }
-    assert_eq!(n_cut, 4 * 8 * 2);
+    // Those of Quake III have one list of indices for two of edges.
+    assert_eq!(n_cut, (7 * 8 + 2 * 7) * 2);
 }
 
 #[test]

@@ -44,9 +44,11 @@ fn samples(format: &Format) -> Vec<(&'static str, Vec<u8>)> {
     }
 }
 
-/// Formats that only the name tells, such as OBJ, and JSON that is a glTF by its name.
+/// Formats that only the name tells, such as OBJ, JSON that is a glTF by its name, and portals of Half-Life, which begin with a number.
 fn is_by_name(format: &Format, bytes: &[u8]) -> bool {
-    format.name == "obj" || format.name == "gltf" && !bytes.starts_with(b"glTF")
+    format.name == "obj"
+        || format.name == "prt" && bytes[0].is_ascii_digit()
+        || format.name == "gltf" && !bytes.starts_with(b"glTF")
 }
 
 fn name_of(name: &str, bytes: &[u8]) -> Option<&'static str> {

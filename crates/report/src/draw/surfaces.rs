@@ -35,17 +35,18 @@ impl Surfaces {
         Self { triangles }
     }
 
-    /// Objects that are convex polygons and seen from the front only, where their corners turn clockwise, such as the faces of a Quake
+    /// Objects that are made of convex polygons and seen from the front only, where their corners turn clockwise, such as the faces of a Quake
     /// map. O(corners).
     #[must_use]
-    pub fn of_polygons<'a>(polygons: impl Iterator<Item = &'a [Point3]>) -> Self {
+    pub fn of_polygons<'a>(objects: impl Iterator<Item = impl Iterator<Item = &'a [Point3]>>) -> Self {
         let fan = |(object, corners): (u32, &'a [Point3])| {
             corners.windows(2).skip(1).map(move |side| {
                 let corners = [corners[0], side[1], side[0]];
                 Surface { corners, object, is_opaque: true, is_single_sided: true }
             })
         };
-        Self { triangles: (0..).zip(polygons).flat_map(fan).collect() }
+        let polygons = (0..).zip(objects).flat_map(|(object, polygons)| polygons.map(move |p| (object, p)));
+        Self { triangles: polygons.flat_map(fan).collect() }
     }
 
     /// Number of triangles.

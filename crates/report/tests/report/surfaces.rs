@@ -100,7 +100,7 @@ fn lines_are_merged() {
 #[test]
 fn faces_of_maps_are_cut_as_polygons() {
     let square: [Point3; 4] = [[1.0, 0.0, 1.0], [3.0, 0.0, 1.0], [3.0, 2.0, 1.0], [1.0, 2.0, 1.0]];
-    let surfaces = Surfaces::of_polygons([&square[..], &[]].into_iter());
+    let surfaces = Surfaces::of_polygons([&square[..], &[]].into_iter().map(std::iter::once));
     assert_eq!(surfaces.n_triangles(), 2);
     let options = SliceOptions { height: 1.0, surfaces: Some(&surfaces), size: 625, ..SliceOptions::default() };
     let lines = lines_of(&slice_svg(&house(), &options).unwrap(), SEEN);

@@ -4,7 +4,7 @@ use super::convex::PortalWorld;
 use super::{RayOracle, Sample, at, clip, dot, extreme, length, scale_of, sub};
 use crate::exact::snapped;
 use crate::sight::{Sight, Target};
-use crate::truth::{WorldChild, WorldTree};
+use crate::truth::{WorldChild, WorldFace, WorldTree};
 use sightlines_cells::{CellGraph, CellId, Convex};
 use sightlines_geometry::{Aabb, BoxTree, Point3, Random};
 use sightlines_pvs::{PortalRecord, Table};
@@ -45,7 +45,7 @@ struct Stay {
 impl<'a> MapWorld<'a> {
     pub(crate) fn new(table: &Table, graph: &CellGraph<Convex>, tree: &'a WorldTree) -> Self {
         let cells: Vec<Aabb<3>> = table.cells().iter().map(|c| Aabb { min: c.min, max: c.max }).collect();
-        let boxes: Vec<Aabb<3>> = tree.faces.iter().map(|f| Aabb::around(f.corners.iter().copied())).collect();
+        let boxes: Vec<Aabb<3>> = tree.faces.iter().map(WorldFace::bounds).collect();
         let scale = scale_of(cells.iter().flat_map(|b| b.min.into_iter().chain(b.max)));
         Self { portals: PortalWorld::new(graph), tree, cells, faces: BoxTree::build(&boxes, 4), size: 4.0 * scale }
     }
@@ -154,9 +154,15 @@ impl<'a> MapWorld<'a> {
         end >= 1.0 && is_at(stays.first(), from, 0.0) && is_at(stays.last(), to, 1.0)
     }
 
-    /// Where a segment crosses a face from one side to the other, further from its edges than the margin, as its share.
-    fn crosses_face(&self, face: u32, p: Point3, q: Point3) -> Option<f64> {
-        let corners = &self.tree.faces[face as usize].corners;
+    /// Where a segment crosses a face from one side to the other, further from its edges than the margin: the share of the segment, and the
+    /// polygon of the face.
+    fn crosses_face(&self, face: u32, p: Point3, q: Point3) -> Option<(f64, &'a [Point3])> {
+        let tree: &'a WorldTree = self.tree;
+        let polygons = tree.faces[face as usize].polygons.iter();
+        polygons.map(|corners| &corners[..]).find_map(|corners| Some((Self::crosses(corners, p, q)?, corners)))
+    }
+
+    fn crosses(corners: &[Point3], p: Point3, q: Point3) -> Option<f64> {
         let a = *corners.first()?;
         let cross =
             |u: Point3, v: Point3| [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
@@ -178,14 +184,14 @@ impl<'a> MapWorld<'a> {
         // Faces lie on planes of the tree but for rounding, which is far below this.
         const NEAR: f64 = 0.01;
         let d = sub(q, p);
-        let Some(t) = self.crosses_face(face, p, q) else { return false };
+        let Some((t, corners)) = self.crosses_face(face, p, q) else { return false };
         let (stays, end) = self.stays(p, d);
         let (Some(first), Some(last)) = (stays.first(), stays.last()) else { return false };
         if first.cluster != from || first.from > 0.0 || end > t || last.to < end {
             return false;
         }
         // From there on it is close to the face; on the way nothing but the same cluster.
-        let steep = (self.tree_height(face, q) - self.tree_height(face, p)).abs() / length(d);
+        let steep = (height(corners, q) - height(corners, p)).abs() / length(d);
         let before = t - 4.0 * NEAR / (steep.max(NEAR) * length(d));
         let (x, rest) = (at(p, d, end), d.map(|c| c * (before - end)));
         let way = self.stretches(x, rest, NEAR);
@@ -194,13 +200,6 @@ impl<'a> MapWorld<'a> {
             && way.iter().all(|s| s.cluster == Some(last.cluster))
             && behind.iter().all(|s| s.cluster.is_none())
             && !behind.is_empty()
-    }
-
-    /// How far a point is from the plane of a face, in scene units; rounded.
-    fn tree_height(&self, face: u32, p: Point3) -> f64 {
-        let corners = &self.tree.faces[face as usize].corners;
-        let plane = sightlines_geometry::Portal3::of_corners(corners.clone());
-        plane.map_or(0.0, |s| dot(s.normal(), sub(p, corners[0])) / length(s.normal()))
     }
 
     /// Proposes the faces behind which a ray is in something solid.
@@ -213,8 +212,8 @@ impl<'a> MapWorld<'a> {
         self.faces.visit(
             |b| clip(near_end, rest, b, [0.0, 1.0], 1.0).is_some(),
             |face| {
-                if let Some(t) = self.crosses_face(face, p, q) {
-                    let height = (self.tree_height(face, p)).abs();
+                if let Some((t, corners)) = self.crosses_face(face, p, q) {
+                    let height = height(corners, p).abs();
                     // Two units behind it.
                     let behind = at(p, sub(q, p), t * (1.0 + 2.0 / height.max(MARGIN)));
                     let segment = [p, behind].map(snapped);
@@ -223,6 +222,12 @@ impl<'a> MapWorld<'a> {
             },
         );
     }
+}
+
+/// How far a point is from the plane of a polygon, in scene units; rounded.
+fn height(corners: &[Point3], p: Point3) -> f64 {
+    let plane = sightlines_geometry::Portal3::of_corners(corners.to_vec());
+    plane.map_or(0.0, |s| dot(s.normal(), sub(p, corners[0])) / length(s.normal()))
 }
 
 impl RayOracle for MapWorld<'_> {

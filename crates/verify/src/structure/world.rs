@@ -2,9 +2,8 @@
 
 use super::objects::compare;
 use crate::findings::{Findings, Violation};
-use crate::truth::WorldTree;
+use crate::truth::{WorldFace, WorldTree};
 use sightlines_cells::{CellGraph, CellId, Convex};
-use sightlines_geometry::Aabb;
 use sightlines_pvs::{ObjectId, Table};
 
 /// Compares cells and portals with those of a portal file.
@@ -28,11 +27,11 @@ pub(super) fn portals(table: &Table, graph: &CellGraph<Convex>, findings: &mut F
 
 /// Compares objects with the faces of a map, and lists with those of its leafs.
 pub(super) fn faces(table: &Table, world: &WorldTree, findings: &mut Findings) {
-    let around = |corners: &[[f64; 3]]| {
-        let b = Aabb::<3>::around(corners.iter().copied());
+    let around = |face: &WorldFace| {
+        let b = face.bounds();
         if b.is_empty() { ([0.0; 3], [0.0; 3]) } else { (b.min, b.max) }
     };
-    let objects = world.faces.iter().map(|f| (f.name.as_str(), around(&f.corners).0, around(&f.corners).1));
+    let objects = world.faces.iter().map(|f| (f.name.as_str(), around(f).0, around(f).1));
     if !compare(table, objects, findings) || world.listed.len() != table.n_cells() {
         return;
     }

@@ -42,7 +42,7 @@ pub(super) fn lists(
     };
     let n_listed = of_clusters.iter_mut().map(in_order).sum();
     for k in 0..faces.n_faces() {
-        for cluster in reached(tree, faces.corners(k)) {
+        for cluster in faces.polygons(k).flat_map(|corners| reached(tree, corners)) {
             of_clusters[cluster as usize].push(k as u32);
         }
     }

@@ -201,7 +201,7 @@ impl Outcome {
                 Self::Portals(portals::Outcome::new(out, prt, fast, did, n_bytes).verbose(verbose))
             }
             (Bakeable::Map(bsp, prt), Report::Map(did)) => {
-                let format = if source.is_made { MADE } else { prt.dialect().magic() };
+                let format = if source.is_made { MADE } else { prt.dialect().name() };
                 Self::Map(quake::Outcome::new(out, bsp, format, fast, did, n_bytes).verbose(verbose))
             }
             _ => unreachable!("the report of a bake is of the kind of its input"),

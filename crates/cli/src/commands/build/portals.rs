@@ -60,7 +60,7 @@ impl Outcome {
     pub(crate) fn new(out: &Path, prt: &Prt, fast: bool, found: &ClusterVisibility, n_bytes: usize) -> Self {
         Self {
             out: out.display().to_string(),
-            portal_format: prt.dialect().magic(),
+            portal_format: prt.dialect().name(),
             fast,
             clusters: Clusters::new(found),
             n_bytes,

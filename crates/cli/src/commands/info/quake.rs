@@ -35,7 +35,7 @@ impl PrtInfo {
         Ok(Self {
             file: path.display().to_string(),
             kind: "portals",
-            portal_format: prt.dialect().magic(),
+            portal_format: prt.dialect().name(),
             n_clusters: prt.n_clusters(),
             n_leafs: prt.listed_leafs().map(LeafClusters::n_leafs),
             n_portals: prt.n_portals(),
@@ -76,15 +76,17 @@ pub(super) struct BspInfo {
     file: String,
     kind: &'static str,
     format: &'static str,
+    #[serde(skip)]
+    game: &'static str,
     /// All leafs, those of doors and the like and the solid one included.
     n_leafs: usize,
     n_visible_leafs: usize,
-    /// Null but in Quake II.
+    /// Null but in Quake II and III.
     n_clusters: Option<usize>,
     /// `none`, `there` or `damaged`.
     visibility: &'static str,
     visibility_bytes: usize,
-    /// What sees and is seen: `leaf`, or `cluster` in Quake II.
+    /// What sees and is seen: `leaf`, or `cluster` in Quake II and III.
     pairs_of: &'static str,
     /// Ordered pairs of different ones of which the first sees the second, according to the map; null without
     /// visibility.
@@ -103,6 +105,7 @@ impl BspInfo {
             file: path.display().to_string(),
             kind: "bsp",
             format: bsp.format().name(),
+            game: bsp.format().game(),
             n_leafs: bsp.leafs().len(),
             n_visible_leafs: bsp.n_visible_leafs(),
             n_clusters: has_clusters.then(|| bsp.n_clusters()),
@@ -138,8 +141,7 @@ fn seen_pairs(bsp: &Bsp) -> Result<(u64, u64), String> {
 
 impl fmt::Display for BspInfo {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let game = if self.n_clusters.is_some() { "Quake II" } else { "Quake" };
-        writeln!(f, "{}: {game} map, {}", self.file, self.format)?;
+        writeln!(f, "{}: {} map, {}", self.file, self.game, self.format)?;
         writeln!(f, "leafs          {}, {} of them can be seen", self.n_leafs, self.n_visible_leafs)?;
         if let Some(n) = self.n_clusters {
             writeln!(f, "clusters       {n}")?;

@@ -43,7 +43,7 @@ fn of_map(path: &Path, bsp: &Bsp, table: &Table) -> Result<Figure, Error> {
     let faces = bsp.world_faces().map_err(|error| ReadError::new(path, error))?;
     let (found, listed) = (faces.n_faces(), table.objects().len());
     match table.kind().is_quake() && found == listed {
-        true => Ok(Figure::of_polygons((0..found).map(|k| faces.corners(k)))),
+        true => Ok(Figure::of_polygons((0..found).map(|k| faces.polygons(k)))),
         false => Err(other(path, format!("it has {listed} objects, and the world of this map {found} faces"))),
     }
 }

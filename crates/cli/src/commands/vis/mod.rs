@@ -32,7 +32,7 @@ use std::time::{Duration, Instant};
 /// Arguments of `vis`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct VisArgs {
-    /// The map: Quake's BSP 29, BSP2 or 2PSB, or Quake II's IBSP 38
+    /// The map, of Quake, Quake II or III, Half-Life, Hexen II, or one of their relatives that `info` names
     #[arg(value_name = "MAP.bsp")]
     pub(crate) map: PathBuf,
     /// The portal file that the compiler wrote [default: beside the map; made from the map if there is none]

@@ -6,7 +6,7 @@ mod files;
 
 use files::{SMALL_PRTS, SmallBsp, small_bsps};
 use sightlines::formats::Prt;
-use sightlines::formats::quake::prt::{parse_prt, write_prt};
+use sightlines::formats::quake::prt::{LeafList, SolidFace, parse_prt, write_prt};
 use sightlines::formats::quake::visibility::check_portals;
 use sightlines::formats::quake::{Bsp, BspFormat};
 
@@ -38,20 +38,28 @@ pub(crate) fn small_maps() -> Vec<Map> {
 }
 
 /// A map of each format with a tree and faces: four leafs in a row, with windows between them that are squares of 16, and
-/// its portals. Leaf `k` is cluster `k`, but for Quake II, where they are clusters 2, 0, 1 and 0.
+/// its portals, in the dialect of its compilers. Leaf `k` is cluster `k`, but for Quake II and III, where they are clusters 2, 0, 1 and 0.
 pub(crate) fn row_of_leafs(format: BspFormat) -> Map {
     let map = SmallBsp::with_world(format);
-    let cluster = |leaf: usize| match format {
-        BspFormat::Quake2 => u32::try_from(map.clusters[leaf]).expect("a cluster"),
-        _ => leaf as u32,
+    let cluster = |leaf: usize| match format.has_clusters() {
+        true => u32::try_from(map.clusters[leaf]).expect("a cluster"),
+        false => leaf as u32,
     };
-    let n_clusters = if format == BspFormat::Quake2 { 3 } else { 4 };
+    let n_clusters = if format.has_clusters() { 3 } else { 4 };
     let mut prt = Prt::new(n_clusters).expect("some rooms");
     for leaf in 0..3 {
         let x = 64.0 * (leaf + 1) as f64;
         let points = [[x, 24.0, 24.0], [x, 40.0, 24.0], [x, 40.0, 40.0], [x, 24.0, 40.0]];
         prt.push_portal([cluster(leaf), cluster(leaf + 1)], &points).expect("a window");
     }
+    let prt = match format {
+        BspFormat::HalfLife => prt.with_leafs(LeafList::Counts, vec![0, 1, 2, 3]).expect("four leafs"),
+        BspFormat::Quake3 | BspFormat::Wolfenstein => {
+            let end = SolidFace { cluster: 0, points: vec![[256.0, 0.0, 0.0], [256.0, 64.0, 0.0], [256.0, 0.0, 64.0]] };
+            prt.with_faces(vec![0, 1, 0], vec![end]).expect("a face")
+        }
+        _ => prt,
+    };
     let name = format!("a row of leafs, {format:?}");
     Map { name, format, bsp: map.file(true), prt: write_prt(&prt) }
 }

@@ -1,16 +1,26 @@
 //! Which faces of a map's world hide what is behind them.
 
-use super::leaf::MODELS;
-use super::tree::PLANES;
-use super::{Bsp, BspError, BspFormat, i32_at, u16_at, u32_at};
+use super::layout::FaceForm;
+use super::{Bsp, BspError, i32_at, u16_at, u32_at};
 use sightlines_geometry::Point3;
 
-/// Bytes of a plane.
-const PLANE_LEN: usize = 20;
-/// Bytes of the record of a face's texture: Quake's, and Quake II's.
-const TEXINFO_LEN: [usize; 2] = [40, 76];
-/// Where it names the texture, and where it has the flags of the surface: behind 8 floats.
-const TEXTURE: usize = 32;
+/// What tells whether a face is opaque: the records of textures, and what they say.
+struct Textures {
+    lump: usize,
+    len: usize,
+    says: Says,
+}
+
+#[derive(Clone, Copy)]
+enum Says {
+    /// The index of a texture, whose name tells (Quake, Half-Life, Hexen II).
+    Name,
+    /// Flags (Quake II).
+    Flags,
+}
+
+/// Where both are in a record: behind 8 floats.
+const SAID: usize = 32;
 /// Bytes of a texture's name.
 const NAME_LEN: usize = 16;
 
@@ -33,59 +43,60 @@ pub struct FaceCover {
 }
 
 impl Bsp {
-    /// How the faces of the world hide, in the order of [`Bsp::world_faces`]. O(file).
+    /// How the faces of the world hide, in the order of [`Bsp::world_faces`]; `None` for Quake III and its relatives, whose faces name no plane, and whose
+    /// leafs are opaque or not as a whole. O(file).
     ///
     /// # Errors
     /// [`BspError`] for lumps that are not a whole number of records, and for a face, plane or texture record that is not there.
     ///
     /// # Source
-    /// As [`Bsp::parse`]; that engines draw textures whose names begin with `{` with holes, and those with `*` as liquids, is a convention of
+    /// As [`Bsp::parse`]; that engines draw textures whose names begin with `{` with holes, and those with `*` or `!` as liquids, is a convention of
     /// theirs.
-    pub fn face_covers(&self) -> Result<Vec<FaceCover>, BspError> {
-        let is_quake2 = self.format() == BspFormat::Quake2;
-        let is_wide = matches!(self.format(), BspFormat::Bsp2 | BspFormat::Bsp2Psb);
-        let (faces_lump, info_lump) = if is_quake2 { (6, 5) } else { (7, 6) };
-        let face_len = if is_wide { 28 } else { 20 };
-        let info_len = TEXINFO_LEN[usize::from(is_quake2)];
-        let (faces, infos) = (self.records(faces_lump, face_len)?, self.records(info_lump, info_len)?);
-        let planes = self.records(PLANES, PLANE_LEN)?;
-        let n_infos = infos.len() / info_len;
+    pub fn face_covers(&self) -> Result<Option<Vec<FaceCover>>, BspError> {
+        let layout = self.format().layout();
+        if matches!(layout.face_form, FaceForm::Vertices { .. }) {
+            return Ok(None);
+        }
+        let textures = match self.format().has_clusters() {
+            true => Textures { lump: 5, len: 76, says: Says::Flags },
+            false => Textures { lump: 6, len: 40, says: Says::Name },
+        };
+        let (own, len) = (layout.faces.lump, layout.faces.len);
+        let is_wide = len == 28;
+        let faces = self.records(own, len)?;
+        let infos = self.records(textures.lump, textures.len)?;
+        let planes = self.records(layout.planes.lump, layout.planes.len)?;
+        let (n_planes, n_infos) = (planes.len() / layout.planes.len, infos.len() / textures.len);
         let cover = |k: usize| -> Result<FaceCover, BspError> {
-            let face = &faces[k * face_len..][..face_len];
+            let face = &faces[k * len..][..len];
             let (plane, side, info) = match is_wide {
                 true => (i64::from(i32_at(face, 0)), i32_at(face, 4), i64::from(i32_at(face, 16))),
                 false => (i64::from(u16_at(face, 0)), i32::from(u16_at(face, 2)), i64::from(u16_at(face, 10))),
             };
-            let plane = self.named((faces_lump, k), plane, PLANES, planes.len() / PLANE_LEN)?;
-            let info = self.named((faces_lump, k), info, info_lump, n_infos)?;
-            let record = &infos[info * info_len..][..info_len];
-            let is_opaque = if is_quake2 {
-                u32_at(record, TEXTURE) & SEE_THROUGH == 0
-            } else {
-                self.is_opaque_texture(i32_at(record, TEXTURE))
+            let plane = self.named((own, k), plane, layout.planes.lump, n_planes)?;
+            let info = self.named((own, k), info, textures.lump, n_infos)?;
+            let record = &infos[info * textures.len..][..textures.len];
+            let is_opaque = match textures.says {
+                Says::Flags => u32_at(record, SAID) & SEE_THROUGH == 0,
+                Says::Name => self.is_opaque_texture(i32_at(record, SAID)),
             };
-            let number = |k: usize| f64::from(f32::from_bits(u32_at(planes, PLANE_LEN * plane + 4 * k)));
-            Ok(FaceCover {
-                normal: [number(0), number(1), number(2)],
-                distance: number(3),
-                side: u8::from(side != 0),
-                is_opaque,
-            })
+            let number = |k: usize| f64::from(f32::from_bits(u32_at(planes, layout.planes.len * plane + 4 * k)));
+            let normal = [number(0), number(1), number(2)];
+            Ok(FaceCover { normal, distance: number(3), side: u8::from(side != 0), is_opaque })
         };
-        let model = self.world_model()?;
-        let at = if is_quake2 { 40 } else { 56 };
+        let (model, at) = (self.world_model()?, layout.model_faces);
         let run = [i32_at(model, at), i32_at(model, at + 4)].map(i64::from);
-        let models = if is_quake2 { 13 } else { MODELS };
-        self.run((models, 0), run, faces_lump, faces.len() / face_len)?.map(cover).collect()
+        let world = self.run((layout.models.lump, 0), run, own, faces.len() / len)?;
+        world.map(cover).collect::<Result<_, _>>().map(Some)
     }
 
     /// Whether a texture of Quake hides what is behind it, by its name.
     fn is_opaque_texture(&self, index: i32) -> bool {
         let lump = self.lump_bytes(2);
         let name = || {
-            let index = usize::try_from(index).ok()?;
             let n = usize::try_from(i32::from_le_bytes(*lump.first_chunk::<4>()?)).ok()?;
-            let place = lump.get(4 + 4 * index..8 + 4 * index).filter(|_| index < n)?;
+            let index = usize::try_from(index).ok().filter(|&index| index < n)?;
+            let place = lump[4..].chunks_exact(4).nth(index)?;
             let start = usize::try_from(i32_at(place, 0)).ok()?;
             lump.get(start..start.checked_add(NAME_LEN)?)
         };

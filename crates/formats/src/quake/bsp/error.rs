@@ -32,12 +32,31 @@ pub enum BspError {
     },
     /// It begins like no version that is known.
     #[error(
-        "not a map: it begins with \"{}\", not with version 29, BSP2, 2PSB or IBSP and version 38",
+        "not a map: it begins with \"{}\", not with version 29 or 30, BSP2, 2PSB, IBSP and version 38, 46 or 47, or QBSP and version 38",
         found.escape_ascii()
     )]
     Version {
         /// The first eight bytes.
         found: [u8; 8],
+    },
+    /// A map of Half-Life: Blue Shift, which has the first two lumps the other way round.
+    #[error(
+        "lump 0 has planes and lump 1 has none, as in maps of Half-Life: Blue Shift, which are not read; with the first two entries of the directory exchanged this is a map of Half-Life"
+    )]
+    BlueShift,
+    /// A map with more lumps than its version has, as Quake Live's: they would be lost.
+    #[error(
+        "the directory has an entry for lump {index}, which version {version} does not have: {len} bytes at byte {offset}; such maps (of Quake Live) are not read"
+    )]
+    MoreLumps {
+        /// The number of the version.
+        version: i32,
+        /// The index of the first such lump.
+        index: usize,
+        /// Its place, as the directory has it.
+        offset: i32,
+        /// Its length, as the directory has it.
+        len: i32,
     },
     /// A lump is not inside the file.
     #[error("{lump}: {len} bytes at byte {offset} are not inside the file of {file_len} bytes")]
@@ -102,7 +121,7 @@ pub enum BspError {
         /// The leaf, as the map counts.
         leaf: usize,
         /// The number there.
-        found: i16,
+        found: i32,
     },
     /// The faces of a leaf are not in their list.
     #[error("leaf {leaf}: faces {first} to {first} + {count} of the list are not among its {n_listed}")]
@@ -200,6 +219,20 @@ pub enum BspError {
         /// The lump that should have them.
         of: BspLumpId,
         /// Records of that lump.
+        n: usize,
+    },
+    /// The grid of a curved face is not as large as it has points.
+    #[error("{lump}: face {face}: a grid of {width} by {height} has not its {n} points")]
+    Grid {
+        /// The lump of faces.
+        lump: BspLumpId,
+        /// The face.
+        face: usize,
+        /// Points in a row.
+        width: i64,
+        /// Rows.
+        height: i64,
+        /// Points that the face has.
         n: usize,
     },
     /// Runs that share a list so much that they are longer than any file.

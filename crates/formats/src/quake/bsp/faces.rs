@@ -1,11 +1,9 @@
 //! What can be heard in a leaf: its faces of water, sky and lava.
 
-use super::{Bsp, BspError, BspFormat, i32_at, u16_at, u32_at};
+use super::{Bsp, BspError, i32_at, u16_at, u32_at};
 
 const TEXTURES: usize = 2;
 const TEXINFO: usize = 6;
-const FACES: usize = 7;
-const MARKS: usize = 11;
 /// Bytes of a texinfo; the texture's index is behind 8 floats.
 const TEXINFO_LEN: usize = 40;
 const TEXINFO_TEXTURE: usize = 32;
@@ -117,7 +115,7 @@ enum Face {
 
 impl Bsp {
     /// Which sounds the faces of each visible leaf make: bit `k` is set for the [`AmbientKind`] of place `k`.
-    /// Zeros in Quake II, which has no such sounds. O(file).
+    /// Zeros in formats [without such sounds](super::BspFormat::has_sounds). O(file).
     ///
     /// A map whose lump of textures is empty makes no sounds.
     ///
@@ -132,7 +130,7 @@ impl Bsp {
     /// # Errors
     /// As there.
     pub fn leaf_sounds_of(&self, textures: AmbientTextures) -> Result<Vec<u8>, BspError> {
-        if self.format() == BspFormat::Quake2 {
+        if !self.format().has_sounds() {
             return Ok(vec![0; self.n_visible_leafs()]);
         }
         let faces = self.face_sounds(textures);
@@ -171,19 +169,19 @@ impl Bsp {
         }
     }
 
-    fn face_len(&self) -> usize {
-        if self.format() == BspFormat::Bsp29 { 20 } else { 28 }
-    }
-
     fn n_faces(&self) -> usize {
-        self.lump_bytes(FACES).len() / self.face_len()
+        let faces = self.format().layout().faces;
+        self.lump_bytes(faces.lump).len() / faces.len
     }
 
-    fn marks(&self) -> Vec<u32> {
-        let bytes = self.lump_bytes(MARKS);
-        match self.format() {
-            BspFormat::Bsp29 => bytes.chunks_exact(2).map(|mark| u32::from(u16_at(mark, 0))).collect(),
-            _ => bytes.chunks_exact(4).map(|mark| u32_at(mark, 0)).collect(),
+    /// The faces that leafs list, without the rest of a lump that is no whole number of records.
+    pub(super) fn marks(&self) -> Vec<u32> {
+        let marks = self.format().layout().marks;
+        let bytes = self.lump_bytes(marks.lump).chunks_exact(marks.len);
+        if marks.len == 2 {
+            bytes.map(|mark| u32::from(u16_at(mark, 0))).collect()
+        } else {
+            bytes.map(|mark| u32_at(mark, 0)).collect()
         }
     }
 
@@ -197,11 +195,9 @@ impl Bsp {
                 Some(sounds) => texture(info).and_then(|k| sounds.get(k).copied()).unwrap_or(Face::NoTexture),
             })
             .collect();
-        let texinfo = |face: &[u8]| match self.format() {
-            BspFormat::Bsp29 => usize::from(u16_at(face, 10)),
-            _ => u32_at(face, 16) as usize,
-        };
-        let faces = self.lump_bytes(FACES).chunks_exact(self.face_len());
+        let layout = self.format().layout();
+        let texinfo = |face: &[u8]| layout.face_texinfo.map_or(0, |number| number.count_of(face) as usize);
+        let faces = self.lump_bytes(layout.faces.lump).chunks_exact(layout.faces.len);
         faces.map(|face| of_texinfo.get(texinfo(face)).copied().unwrap_or(Face::NoTexture)).collect()
     }
 

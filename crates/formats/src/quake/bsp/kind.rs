@@ -13,22 +13,26 @@ pub enum LeafKind {
     Solid,
 }
 
-/// Quake's codes.
+/// The codes of Quake, Half-Life and Hexen II.
 const SOLID: i32 = -2;
 const SKY: i32 = -6;
-/// Quake II's bit.
+/// The bit of Quake II and Qbism.
 const SOLID_BIT: i32 = 1;
 
 impl BspLeaf {
-    /// What fills it.
+    /// What fills it. In Quake III and its relatives, which do not say that, what is in no cluster is solid.
     ///
     /// # Source
     /// As [`super::Bsp::parse`].
     pub fn kind(&self, format: BspFormat) -> LeafKind {
-        match (format, self.contents) {
-            (BspFormat::Quake2, contents) if contents & SOLID_BIT != 0 => LeafKind::Solid,
-            (BspFormat::Bsp29 | BspFormat::Bsp2 | BspFormat::Bsp2Psb, SOLID) => LeafKind::Solid,
-            (BspFormat::Bsp29 | BspFormat::Bsp2 | BspFormat::Bsp2Psb, SKY) => LeafKind::Sky,
+        let is_solid = match format {
+            BspFormat::Quake3 | BspFormat::Wolfenstein => self.cluster().is_none(),
+            _ if format.has_clusters() => self.contents & SOLID_BIT != 0,
+            _ => self.contents == SOLID,
+        };
+        match (is_solid, format.has_clusters(), self.contents) {
+            (true, _, _) => LeafKind::Solid,
+            (_, false, SKY) => LeafKind::Sky,
             _ => LeafKind::Open,
         }
     }

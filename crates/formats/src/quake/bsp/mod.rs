@@ -8,22 +8,30 @@
 //! | i32 29 (Quake) | 15 | 28 bytes, 16-bit bounds and indices | 20 bytes | 24 bytes, 16-bit children |
 //! | `BSP2` | 15 | 44 bytes, bounds as floats, 32-bit indices | 28 bytes | 44 bytes |
 //! | `2PSB` | 15 | 32 bytes, 16-bit bounds, 32-bit indices | 28 bytes | 32 bytes |
+//! | i32 30 (Half-Life) | as version 29 | | | |
+//! | i32 29 (Hexen II) | as Quake's but for models, of 80 bytes | | | |
 //! | `IBSP`, i32 38 (Quake II) | 19 | 28 bytes, names its cluster | 20 bytes | 28 bytes |
+//! | `QBSP`, i32 38 (Qbism) | 19 | 52 bytes, bounds as floats | 28 bytes | 44 bytes |
+//! | `IBSP`, i32 46 or 47 (Quake III, Wolfenstein) | 17 | 48 bytes, names its cluster | 104 bytes, with triangles | 36 bytes |
 
 mod covers;
 mod error;
 mod faces;
+mod family;
 mod kind;
+mod layout;
 mod leaf;
 mod places;
 mod rewrite;
 mod surfaces;
 mod tree;
+mod triangles;
 
 pub use covers::FaceCover;
 pub use error::{BspError, BspLumpId};
 pub use faces::{AmbientKind, AmbientTexture, AmbientTextures};
 pub use kind::LeafKind;
+pub(in crate::quake) use layout::RowForm;
 pub use leaf::{BspLeaf, LeafRow};
 pub use places::ClusterPlaces;
 pub(in crate::quake) use rewrite::NewVisibility;
@@ -46,89 +54,74 @@ pub enum BspFormat {
     Bsp2Psb,
     /// `IBSP`, version 38, of Quake II.
     Quake2,
+    /// Version 30, of Half-Life: version 29 with other light and textures.
+    HalfLife,
+    /// Version 29 of Hexen II: with models of 80 bytes.
+    Hexen2,
+    /// `QBSP`, version 38, of Qbism: Quake II's with wider numbers.
+    Qbism,
+    /// `IBSP`, version 46, of Quake III Arena.
+    Quake3,
+    /// `IBSP`, version 47, of Return to Castle Wolfenstein: the same records as version 46.
+    Wolfenstein,
 }
 
-/// Lumps of the first three formats.
-const QUAKE: [&str; 15] = [
-    "entities",
-    "planes",
-    "textures",
-    "vertices",
-    "visibility",
-    "nodes",
-    "texinfo",
-    "faces",
-    "lighting",
-    "clipnodes",
-    "leafs",
-    "marksurfaces",
-    "edges",
-    "surfedges",
-    "models",
-];
-
-/// Lumps of Quake II.
-const QUAKE2: [&str; 19] = [
-    "entities",
-    "planes",
-    "vertices",
-    "visibility",
-    "nodes",
-    "texinfo",
-    "faces",
-    "lighting",
-    "leafs",
-    "leaffaces",
-    "leafbrushes",
-    "edges",
-    "surfedges",
-    "models",
-    "brushes",
-    "brushsides",
-    "pop",
-    "areas",
-    "areaportals",
-];
-
 impl BspFormat {
-    /// All that are read.
-    pub const ALL: [Self; 4] = [Self::Bsp29, Self::Bsp2, Self::Bsp2Psb, Self::Quake2];
+    /// All that are read. Hexen II's begins as Quake's does; all others differ in their first bytes.
+    pub const ALL: [Self; 9] = [
+        Self::Bsp29,
+        Self::Bsp2,
+        Self::Bsp2Psb,
+        Self::Quake2,
+        Self::HalfLife,
+        Self::Hexen2,
+        Self::Qbism,
+        Self::Quake3,
+        Self::Wolfenstein,
+    ];
 
     /// The first bytes of files of each.
-    pub const MAGICS: [&'static [u8]; 4] =
-        [Self::ALL[0].magic(), Self::ALL[1].magic(), Self::ALL[2].magic(), Self::ALL[3].magic()];
+    pub const MAGICS: [&'static [u8]; 9] = [
+        Self::ALL[0].magic(),
+        Self::ALL[1].magic(),
+        Self::ALL[2].magic(),
+        Self::ALL[3].magic(),
+        Self::ALL[4].magic(),
+        Self::ALL[5].magic(),
+        Self::ALL[6].magic(),
+        Self::ALL[7].magic(),
+        Self::ALL[8].magic(),
+    ];
 
     /// The first bytes of a file.
     pub const fn magic(self) -> &'static [u8] {
-        match self {
-            Self::Bsp29 => &[29, 0, 0, 0],
-            Self::Bsp2 => b"BSP2",
-            Self::Bsp2Psb => b"2PSB",
-            Self::Quake2 => b"IBSP\x26\0\0\0",
-        }
+        self.layout().magic
     }
 
     /// Its name, as users know it.
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::Bsp29 => "BSP 29",
-            Self::Bsp2 => "BSP2",
-            Self::Bsp2Psb => "2PSB",
-            Self::Quake2 => "IBSP 38",
-        }
+        self.layout().name
+    }
+
+    /// The game that it is of.
+    pub const fn game(self) -> &'static str {
+        self.layout().game
     }
 
     /// What its lumps hold, in the order of the directory.
     pub const fn lump_names(self) -> &'static [&'static str] {
-        match self {
-            Self::Quake2 => &QUAKE2,
-            _ => &QUAKE,
-        }
+        self.layout().lump_names
     }
 
     /// Whether rows are for clusters that leafs name, rather than for leafs that name rows.
     pub const fn has_clusters(self) -> bool {
-        matches!(self, Self::Quake2)
+        !matches!(self.layout().row_form, RowForm::OfLeafs)
+    }
+
+    /// Whether leafs have a loudness that goes with visibility: in Quake and Hexen II. In Half-Life they have one too, which its
+    /// compilers leave at zero.
+    pub const fn has_sounds(self) -> bool {
+        self.layout().has_sounds
     }
 
     /// Bytes of magic and directory.
@@ -138,18 +131,12 @@ impl BspFormat {
 
     /// Index of the visibility lump.
     pub const fn visibility_lump(self) -> usize {
-        match self {
-            Self::Quake2 => 3,
-            _ => 4,
-        }
+        self.layout().visibility
     }
 
     /// Index of the lump of leafs.
     pub const fn leaf_lump(self) -> usize {
-        match self {
-            Self::Quake2 => 8,
-            _ => 10,
-        }
+        self.layout().leafs.lump
     }
 
     /// A lump as errors name it.
@@ -190,18 +177,20 @@ impl Bsp {
     /// [`BspError`] with the lump and the leaf concerned.
     ///
     /// # Source
-    /// Quake's specifications 3.4 (Girlich and others), and id Software's published Quake II tools for the
-    /// layout of version 38; the wide formats and BSPX as current engines read them.
+    /// Quake's specifications 3.4 (Girlich and others), and id Software's published tools of Quake II and Quake III for the
+    /// layout of versions 38 and 46; the wide formats and BSPX as current engines read them. Half-Life's, Hexen II's, Wolfenstein's
+    /// and Qbism's are by their public descriptions.
     pub fn parse(bytes: Vec<u8>) -> Result<Self, BspError> {
         let Some(start) = bytes.first_chunk::<8>() else {
             return Err(BspError::NoHeader { len: bytes.len(), needed: BspFormat::Bsp29.header_len() });
         };
-        let format = BspFormat::ALL.into_iter().find(|f| start.starts_with(f.magic()));
-        let format = format.ok_or(BspError::Version { found: *start })?;
-        let needed = format.header_len();
+        let begins = BspFormat::ALL.into_iter().find(|f| start.starts_with(f.magic()));
+        let begins = begins.ok_or(BspError::Version { found: *start })?;
+        let needed = begins.header_len();
         if bytes.len() < needed {
             return Err(BspError::NoHeader { len: bytes.len(), needed });
         }
+        let format = family::told_apart(begins, &bytes)?;
         let n_lumps = format.lump_names().len();
         let lumps = (0..n_lumps).map(|k| lump_range(format, &bytes, k)).collect::<Result<Vec<_>, _>>()?;
         let bspx = find_bspx(&bytes, &lumps)?;
@@ -211,11 +200,12 @@ impl Bsp {
             let error = BspError::LumpLength { lump: format.lump_id(lump), len: range.len(), record };
             if whole { Ok(&bytes[range]) } else { Err(error) }
         };
-        let leafs = leaf::parse_leafs(format, records(format.leaf_lump(), leaf::leaf_len(format))?)?;
-        let n_visible_leafs = match format.has_clusters() {
+        let layout = format.layout();
+        let leafs = leaf::parse_leafs(layout, records(layout.leafs.lump, layout.leafs.len)?)?;
+        let n_visible_leafs = match layout.model_leafs {
             // Leaf 0 is what is solid. The clusters of the others determine which are visible.
-            true => leafs.len().saturating_sub(1),
-            false => leaf::visible_leafs(records(leaf::MODELS, leaf::MODEL_LEN)?, leafs.len())?,
+            None => leafs.len().saturating_sub(1),
+            Some(at) => leaf::visible_leafs(records(layout.models.lump, layout.models.len)?, at, leafs.len())?,
         };
         let clusters = leafs.iter().filter_map(|leaf| leaf.cluster());
         let n_clusters = clusters.max().map_or(0, |last| usize::from(last) + 1);
@@ -225,6 +215,11 @@ impl Bsp {
     /// The version of the format.
     pub fn format(&self) -> BspFormat {
         self.format
+    }
+
+    /// How its visibility is stored.
+    pub(in crate::quake) fn row_form(&self) -> RowForm {
+        self.format.layout().row_form
     }
 
     /// The whole file.
@@ -255,7 +250,7 @@ impl Bsp {
         &self.leafs
     }
 
-    /// Number of leafs that can be seen: leafs 1 to this one. In Quake II those among them that have a cluster.
+    /// Number of leafs that can be seen: leafs 1 to this one. In Quake II and III those among them that have a cluster.
     pub fn n_visible_leafs(&self) -> usize {
         self.n_visible_leafs
     }
@@ -265,7 +260,7 @@ impl Bsp {
         self.leafs.get(1..=self.n_visible_leafs).unwrap_or_default()
     }
 
-    /// Number of clusters that leafs name (Quake II), else 0.
+    /// Number of clusters that leafs name (Quake II and III), else 0.
     pub fn n_clusters(&self) -> usize {
         self.n_clusters
     }

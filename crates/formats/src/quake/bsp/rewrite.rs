@@ -1,6 +1,5 @@
 //! Writing a map again with another visibility lump.
 
-use super::leaf::{LEAF_ROW, leaf_len};
 use super::{BSPX_ENTRY, BSPX_HEADER, Bsp, BspError, i32_at, u32_at};
 use std::ops::Range;
 
@@ -109,17 +108,21 @@ impl Bsp {
     fn changed_leafs(&self, new: &NewVisibility<'_>) -> Result<Vec<u8>, BspError> {
         let index = self.format.leaf_lump();
         let mut leafs = self.lump_bytes(index).to_vec();
-        let n_leafs = if self.format.has_clusters() { 0 } else { self.n_visible_leafs };
-        for found in [new.leaf_rows.len(), new.ambient.len()] {
+        let layout = self.format.layout();
+        let n_rows = if self.format.has_clusters() { 0 } else { self.n_visible_leafs };
+        let n_sounds = if self.format.has_sounds() { self.n_visible_leafs } else { 0 };
+        for (found, n_leafs) in [(new.leaf_rows.len(), n_rows), (new.ambient.len(), n_sounds)] {
             if found != n_leafs {
                 return Err(BspError::RowCount { found, n_leafs });
             }
         }
-        let len = leaf_len(self.format);
-        for (k, record) in leafs.chunks_exact_mut(len).skip(1).take(n_leafs).enumerate() {
+        let mut records: Vec<&mut [u8]> = leafs.chunks_exact_mut(layout.leafs.len).skip(1).collect();
+        for (record, &row) in records.iter_mut().zip(new.leaf_rows) {
             // A lump that fits a file has no row past what 31 bits can say.
-            put(record, LEAF_ROW, new.leaf_rows[k] as usize);
-            record[len - 4..].copy_from_slice(&new.ambient[k]);
+            put(record, LEAF_ROW, row as usize);
+        }
+        if let Some(at) = layout.leaf_ambient {
+            records.iter_mut().zip(new.ambient).for_each(|(record, level)| record[at..at + 4].copy_from_slice(level));
         }
         match self.over_leafs().filter(|_| leafs != self.lump_bytes(index)) {
             Some(other) => Err(self.shared(other)),
@@ -139,6 +142,9 @@ impl Bsp {
         BspError::Shared { lump: self.format.lump_id(self.format.leaf_lump()), other: self.format.lump_id(other) }
     }
 }
+
+/// Where a leaf has the place of its row, in all formats whose leafs have one.
+const LEAF_ROW: usize = 4;
 
 /// What a map is written again with; see [`VisibilityLump`](crate::quake::VisibilityLump).
 pub(in crate::quake) struct NewVisibility<'a> {

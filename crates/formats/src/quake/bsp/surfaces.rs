@@ -1,6 +1,7 @@
 //! The faces of a map's world: their corners, and which leafs list them.
 
-use super::{Bsp, BspError, BspFormat, i32_at, u16_at, u32_at};
+use super::layout::{FaceForm, Number, Records};
+use super::{Bsp, BspError, i32_at, triangles, u16_at, u32_at};
 use crate::point::check_point;
 use sightlines_geometry::Point3;
 use std::ops::Range;
@@ -10,16 +11,36 @@ const MOST_SHARED: u64 = 4;
 
 /// The faces of the world, without those of doors and the like: polygons, most of them convex, with corners that
 /// predicates accept. May be empty; a face may have any number of corners.
+///
+/// A face of Quake III is several polygons: its triangles, or the quadrangles of the grid that controls a curved one, which lies
+/// in the convex hull of the grid but beside these.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WorldFaces {
     /// The first face, as an index of the file.
-    first: u32,
-    /// Where the corners of each face begin, and behind them their number.
-    starts: Vec<u32>,
-    corners: Vec<Point3>,
+    pub(super) first: u32,
+    /// Where the polygons of each face begin, and behind them their number.
+    pub(super) faces: Vec<u32>,
+    /// Where the corners of each polygon begin, and behind them their number.
+    pub(super) starts: Vec<u32>,
+    pub(super) corners: Vec<Point3>,
 }
 
 impl WorldFaces {
+    /// No faces yet.
+    pub(super) fn new(first: u32) -> Self {
+        Self { first, faces: vec![0], starts: vec![0], corners: Vec::new() }
+    }
+
+    /// Ends a polygon, which has the corners behind those of the one before.
+    pub(super) fn end_polygon(&mut self) {
+        self.starts.push(self.corners.len() as u32);
+    }
+
+    /// Ends a face, which has the polygons behind those of the one before.
+    pub(super) fn end_face(&mut self) {
+        self.faces.push(self.starts.len() as u32 - 1);
+    }
+
     /// Their indices in the file.
     pub fn range(&self) -> Range<u32> {
         self.first..self.first + self.n_faces() as u32
@@ -27,15 +48,25 @@ impl WorldFaces {
 
     /// Number of faces.
     pub fn n_faces(&self) -> usize {
-        self.starts.len() - 1
+        self.faces.len() - 1
     }
 
-    /// The corners of the `k`-th face in turn, in scene units.
+    /// The corners of the `k`-th face in turn, in scene units; those of all of its polygons, if it is not one.
     ///
     /// # Panics
     /// If there are not so many.
     pub fn corners(&self, k: usize) -> &[Point3] {
-        &self.corners[self.starts[k] as usize..self.starts[k + 1] as usize]
+        let [start, end] = [k, k + 1].map(|k| self.starts[self.faces[k] as usize] as usize);
+        &self.corners[start..end]
+    }
+
+    /// The polygons of the `k`-th face, each with its corners in turn, in scene units.
+    ///
+    /// # Panics
+    /// If there are not so many faces.
+    pub fn polygons(&self, k: usize) -> impl ExactSizeIterator<Item = &[Point3]> {
+        let polygons = self.faces[k] as usize..self.faces[k + 1] as usize;
+        polygons.map(|p| &self.corners[self.starts[p] as usize..self.starts[p + 1] as usize])
     }
 }
 
@@ -61,75 +92,69 @@ impl LeafFaces {
     }
 }
 
-/// Indices of the lumps that faces are read from.
-struct Lumps {
-    vertices: usize,
-    faces: usize,
-    marks: usize,
-    edges: usize,
+/// Where the corners of faces come from: a run of a list of edges, each with two vertices.
+struct Edges {
+    edges: Records,
     surfedges: usize,
-    models: usize,
-}
-
-impl Lumps {
-    const fn of(format: BspFormat) -> Self {
-        match format {
-            BspFormat::Quake2 => Self { vertices: 2, faces: 6, marks: 9, edges: 11, surfedges: 12, models: 13 },
-            _ => Self { vertices: 3, faces: 7, marks: 11, edges: 12, surfedges: 13, models: 14 },
-        }
-    }
+    first: Number,
+    count: Number,
 }
 
 impl Bsp {
-    /// Whether indices of vertices and faces have 32 bits.
-    fn is_wide(&self) -> bool {
-        matches!(self.format(), BspFormat::Bsp2 | BspFormat::Bsp2Psb)
-    }
-
     /// Reads the faces of the world with their corners. Time and memory in proportion to the file.
     ///
     /// # Errors
     /// [`BspError`] for lumps that are not a whole number of records, for a face, list, edge or vertex that is not there,
-    /// for a vertex that is nowhere, and for faces that share more of the list of edges than their number explains.
+    /// for a vertex that is nowhere, and for faces that share more of a list than their number explains.
     ///
     /// # Source
     /// As [`Bsp::parse`].
     pub fn world_faces(&self) -> Result<WorldFaces, BspError> {
-        let lumps = Lumps::of(self.format());
-        let (face_len, edge_len) = if self.is_wide() { (28, 8) } else { (20, 4) };
-        let vertices = self.vertices(&lumps)?;
-        let faces = self.records(lumps.faces, face_len)?;
-        let edges = self.records(lumps.edges, edge_len)?;
-        let listed = self.records(lumps.surfedges, 4)?;
-        let (n_edges, n_listed) = (edges.len() / edge_len, listed.len() / 4);
-
-        let model = self.world_model()?;
-        // Behind floats and root, in Quake behind four roots and the number of visible leafs.
-        let at = if self.format() == BspFormat::Quake2 { 40 } else { 56 };
+        let layout = self.format().layout();
+        let vertices = self.vertices()?;
+        let faces = self.records(layout.faces.lump, layout.faces.len)?;
+        let (model, at) = (self.world_model()?, layout.model_faces);
         let run = [i32_at(model, at), i32_at(model, at + 4)].map(i64::from);
-        let world = self.run((lumps.models, 0), run, lumps.faces, faces.len() / face_len)?;
-        let (mut starts, mut corners) = (vec![0], Vec::new());
-        for k in world.clone() {
-            let face = &faces[k * face_len..][..face_len];
-            let run = match self.is_wide() {
-                true => [i64::from(i32_at(face, 8)), i64::from(u32_at(face, 12))],
-                false => [i64::from(i32_at(face, 4)), i64::from(u16_at(face, 8))],
-            };
-            let run = self.run((lumps.faces, k), run, lumps.surfedges, n_listed)?;
-            let n_named = corners.len() as u64 + run.len() as u64;
-            self.refuse_shared(lumps.faces, n_named, lumps.surfedges, n_listed)?;
+        let world = self.run((layout.models.lump, 0), run, layout.faces.lump, faces.len() / layout.faces.len)?;
+        match layout.face_form {
+            FaceForm::Edges { edges, surfedges, first, count } => {
+                self.faces_of_edges(&Edges { edges, surfedges, first, count }, world, faces, &vertices)
+            }
+            FaceForm::Vertices { indices } => triangles::faces(self, indices, world, faces, &vertices),
+        }
+    }
+
+    fn faces_of_edges(
+        &self,
+        from: &Edges,
+        world: Range<usize>,
+        faces: &[u8],
+        vertices: &[Point3],
+    ) -> Result<WorldFaces, BspError> {
+        let (layout, edge_len) = (self.format().layout(), from.edges.len);
+        let edges = self.records(from.edges.lump, edge_len)?;
+        let listed = self.records(from.surfedges, 4)?;
+        let (n_edges, n_listed) = (edges.len() / edge_len, listed.len() / 4);
+        let mut found = WorldFaces::new(world.start as u32);
+        for k in world {
+            let face = &faces[k * layout.faces.len..][..layout.faces.len];
+            let run = [from.first.of(face), from.count.of(face)];
+            let run = self.run((layout.faces.lump, k), run, from.surfedges, n_listed)?;
+            let n_named = found.corners.len() as u64 + run.len() as u64;
+            self.refuse_shared(layout.faces.lump, n_named, from.surfedges, n_listed)?;
             for at in run {
                 let edge = i64::from(i32_at(listed, 4 * at));
-                let index = self.named((lumps.surfedges, at), edge.abs(), lumps.edges, n_edges)?;
+                let index = self.named((from.surfedges, at), edge.abs(), from.edges.lump, n_edges)?;
                 let end = usize::from(edge < 0);
                 let record = &edges[index * edge_len..][..edge_len];
-                let vertex = if self.is_wide() { u32_at(record, 4 * end) } else { u32::from(u16_at(record, 2 * end)) };
-                let by = (lumps.edges, index);
-                corners.push(vertices[self.named(by, i64::from(vertex), lumps.vertices, vertices.len())?]);
+                let vertex = if edge_len == 8 { u32_at(record, 4 * end) } else { u32::from(u16_at(record, 2 * end)) };
+                let by = (from.edges.lump, index);
+                found.corners.push(vertices[self.named(by, i64::from(vertex), layout.vertices.lump, vertices.len())?]);
             }
-            starts.push(corners.len() as u32);
+            found.end_polygon();
+            found.end_face();
         }
-        Ok(WorldFaces { first: world.start as u32, starts, corners })
+        Ok(found)
     }
 
     /// Reads which faces the visible leafs list. Time and memory in proportion to the file.
@@ -138,14 +163,11 @@ impl Bsp {
     /// [`BspError`] for lumps that are not a whole number of records, for a part of the list or a face that is not there,
     /// and for leafs that share more of the list than their number explains.
     pub fn leaf_faces(&self) -> Result<LeafFaces, BspError> {
-        let lumps = Lumps::of(self.format());
-        let (face_len, mark_len) = if self.is_wide() { (28, 4) } else { (20, 2) };
-        let n_faces = self.records(lumps.faces, face_len)?.len() / face_len;
-        let listed = self.records(lumps.marks, mark_len)?;
-        let marks: Vec<u32> = match self.is_wide() {
-            true => listed.chunks_exact(4).map(|mark| u32_at(mark, 0)).collect(),
-            false => listed.chunks_exact(2).map(|mark| u32::from(u16_at(mark, 0))).collect(),
-        };
+        let layout = self.format().layout();
+        let (list, leafs) = (layout.marks.lump, layout.leafs.lump);
+        let n_faces = self.records(layout.faces.lump, layout.faces.len)?.len() / layout.faces.len;
+        self.records(list, layout.marks.len)?;
+        let marks = self.marks();
         let mut n_named = 0;
         let range = |(leaf, record): (&super::BspLeaf, usize)| {
             let (first, count) = (leaf.first_face, leaf.n_faces);
@@ -154,11 +176,10 @@ impl Bsp {
                 return Ok(0..0);
             }
             n_named += u64::from(count);
-            self.refuse_shared(self.format().leaf_lump(), n_named, lumps.marks, marks.len())?;
-            let run = [first, count].map(i64::from);
-            let range = self.run((self.format().leaf_lump(), record), run, lumps.marks, marks.len())?;
+            self.refuse_shared(leafs, n_named, list, marks.len())?;
+            let range = self.run((leafs, record), [first, count].map(i64::from), list, marks.len())?;
             for at in range.clone() {
-                self.named((lumps.marks, at), i64::from(marks[at]), lumps.faces, n_faces)?;
+                self.named((list, at), i64::from(marks[at]), layout.faces.lump, n_faces)?;
             }
             Ok(range)
         };
@@ -166,9 +187,10 @@ impl Bsp {
         Ok(LeafFaces { marks, ranges })
     }
 
-    fn vertices(&self, lumps: &Lumps) -> Result<Vec<Point3>, BspError> {
-        let records = self.records(lumps.vertices, 12)?.chunks_exact(12).enumerate();
-        let lump = self.format().lump_id(lumps.vertices);
+    fn vertices(&self) -> Result<Vec<Point3>, BspError> {
+        let vertices = self.format().layout().vertices;
+        let records = self.records(vertices.lump, vertices.len)?.chunks_exact(vertices.len).enumerate();
+        let lump = self.format().lump_id(vertices.lump);
         let float = |record: &[u8], k: usize| f64::from(f32::from_bits(u32_at(record, 4 * k)));
         let vertex = |(vertex, record): (usize, &[u8])| {
             let point = std::array::from_fn(|k| float(record, k));
@@ -194,7 +216,7 @@ impl Bsp {
     }
 
     /// Runs may share records, but not so often that a small file becomes a large map.
-    fn refuse_shared(&self, lump: usize, n_named: u64, of: usize, n: usize) -> Result<(), BspError> {
+    pub(super) fn refuse_shared(&self, lump: usize, n_named: u64, of: usize, n: usize) -> Result<(), BspError> {
         let [lump, of] = [lump, of].map(|k| self.format().lump_id(k));
         if n_named <= MOST_SHARED * n as u64 { Ok(()) } else { Err(BspError::SharedRuns { lump, n_named, of, n }) }
     }

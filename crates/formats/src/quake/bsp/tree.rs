@@ -1,15 +1,8 @@
 //! The tree of planes that a map's world was cut along, down to its leafs.
 
-use super::leaf::MODELS;
-use super::{Bsp, BspError, BspFormat, MAX_TREE_DEPTH, i32_at, u16_at, u32_at};
+use super::layout::Layout;
+use super::{Bsp, BspError, MAX_TREE_DEPTH, i32_at, u16_at, u32_at};
 use sightlines_geometry::Point3;
-
-/// Index of the lump of planes, in all formats.
-pub(super) const PLANES: usize = 1;
-/// Bytes of a plane: normal and distance as floats, and which axis it is across.
-const PLANE_LEN: usize = 20;
-/// Where a model has the root of its tree: behind 9 floats, in all formats.
-const MODEL_ROOT: usize = 36;
 
 /// What is on a side of a plane of a tree.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -72,16 +65,18 @@ impl Bsp {
     /// As [`Bsp::parse`]. That children of version 29 are as many nodes as there are and count leafs from the other end of
     /// 16 bits is how engines read maps with more than 32767 nodes; for others it is the same as a sign.
     pub fn world_tree(&self) -> Result<BspTree, BspError> {
-        let planes = self.records(PLANES, PLANE_LEN)?;
-        let nodes = self.records(self.node_lump(), node_len(self.format()))?;
-        let file = NodesOfFile { bsp: self, planes, nodes };
+        let layout = self.format().layout();
+        let planes = self.records(layout.planes.lump, layout.planes.len)?;
+        let nodes = self.records(layout.nodes.lump, layout.nodes.len)?;
+        let file = NodesOfFile { bsp: self, layout, planes, nodes };
         let mut tree = Growing { nodes: Vec::new(), depths: Vec::new(), is_reached: vec![false; file.n_nodes()] };
-        let named = i64::from(i32_at(self.world_model()?, MODEL_ROOT));
-        let root = tree.add(&file, file.found(named, (self.model_lump(), 0))?, 0)?;
+        let model = self.world_model()?;
+        let named = layout.model_root.map_or(0, |at| i64::from(i32_at(model, at)));
+        let root = tree.add(&file, file.found(named, (layout.models.lump, 0))?, 0)?;
         let mut at = 0;
         while let Some(&BspNode { index, .. }) = tree.nodes.get(at) {
             for (side, child) in file.children(index).into_iter().enumerate() {
-                let found = file.found(child, (self.node_lump(), index as usize))?;
+                let found = file.found(child, (layout.nodes.lump, index as usize))?;
                 let child = tree.add(&file, found, tree.depths[at] + 1)?;
                 tree.nodes[at].children[side] = child;
             }
@@ -92,20 +87,9 @@ impl Bsp {
 
     /// The record of model 0, which is the world.
     pub(super) fn world_model(&self) -> Result<&[u8], BspError> {
-        let (lump, len) = match self.format() {
-            BspFormat::Quake2 => (self.model_lump(), 48),
-            _ => (MODELS, super::leaf::MODEL_LEN),
-        };
+        let super::layout::Records { lump, len } = self.format().layout().models;
         let models = self.records(lump, len)?;
         models.get(..len).ok_or(BspError::NoModel { lump: self.format().lump_id(lump) })
-    }
-
-    fn node_lump(&self) -> usize {
-        if self.format() == BspFormat::Quake2 { 4 } else { 5 }
-    }
-
-    fn model_lump(&self) -> usize {
-        if self.format() == BspFormat::Quake2 { 13 } else { MODELS }
     }
 
     /// The bytes of a lump of records of `record` bytes.
@@ -121,16 +105,6 @@ impl Bsp {
         let index = usize::try_from(found).ok().filter(|&k| k < n);
         let (lump, of) = (self.format().lump_id(by.0), self.format().lump_id(of));
         index.ok_or(BspError::Reference { lump, record: by.1, found, of, n })
-    }
-}
-
-/// Bytes of a node: the plane, two children, bounds, first face and number of faces.
-const fn node_len(format: BspFormat) -> usize {
-    match format {
-        BspFormat::Bsp29 => 24,
-        BspFormat::Bsp2 => 44,
-        BspFormat::Bsp2Psb => 32,
-        BspFormat::Quake2 => 28,
     }
 }
 
@@ -156,7 +130,7 @@ impl Growing {
             Found::Leaf(leaf) => return Ok(BspChild::Leaf(leaf)),
             Found::Node(index) => index,
         };
-        let (lump, node) = (file.bsp.format().lump_id(file.bsp.node_lump()), index as usize);
+        let (lump, node) = (file.bsp.format().lump_id(file.layout.nodes.lump), index as usize);
         if std::mem::replace(&mut self.is_reached[node], true) {
             return Err(BspError::NodeTwice { lump, node });
         }
@@ -173,55 +147,57 @@ impl Growing {
 /// The lumps that a tree is read from.
 struct NodesOfFile<'b> {
     bsp: &'b Bsp,
+    layout: &'static Layout,
     planes: &'b [u8],
     nodes: &'b [u8],
 }
 
 impl NodesOfFile<'_> {
     fn n_nodes(&self) -> usize {
-        self.nodes.len() / node_len(self.bsp.format())
+        self.nodes.len() / self.layout.nodes.len
     }
 
     fn node(&self, node: u32) -> &[u8] {
-        let len = node_len(self.bsp.format());
+        let len = self.layout.nodes.len;
         &self.nodes[node as usize * len..][..len]
     }
 
     /// The children as numbers: nodes from 0, leafs from -1 downwards.
     fn children(&self, node: u32) -> [i64; 2] {
         let record = self.node(node);
-        [0, 1].map(|side| match self.bsp.format() {
-            BspFormat::Bsp29 => {
+        [0, 1].map(|side| {
+            if self.layout.short_children {
                 let child = i64::from(u16_at(record, 4 + 2 * side));
                 if child < self.n_nodes() as i64 { child } else { child - 0x1_0000 }
+            } else {
+                i64::from(i32_at(record, 4 + 4 * side))
             }
-            _ => i64::from(i32_at(record, 4 + 4 * side)),
         })
     }
 
     /// The normal and the distance of a node's plane.
     fn plane(&self, node: u32) -> Result<(Point3, f64), BspError> {
-        let by = (self.bsp.node_lump(), node as usize);
+        let (planes, by) = (self.layout.planes, (self.layout.nodes.lump, node as usize));
         let found = i64::from(u32_at(self.node(node), 0));
-        let plane = self.bsp.named(by, found, PLANES, self.planes.len() / PLANE_LEN)?;
-        let numbers: [f64; 4] =
-            std::array::from_fn(|k| f64::from(f32::from_bits(u32_at(self.planes, PLANE_LEN * plane + 4 * k))));
-        let [x, y, z, distance] = numbers;
-        // A normal of any other length is not the result of rounding: floats have it to 1e-7, and the maps that were examined do.
-        let length = (x * x + y * y + z * z).sqrt();
-        if (length - 1.0).abs() <= 1.0 / 64.0 && distance.is_finite() {
-            Ok(([x, y, z], distance))
-        } else {
-            Err(BspError::NotAPlane { lump: self.bsp.format().lump_id(PLANES), plane })
-        }
+        let plane = self.bsp.named(by, found, planes.lump, self.planes.len() / planes.len)?;
+        plane_of(&self.planes[planes.len * plane..])
+            .ok_or_else(|| BspError::NotAPlane { lump: self.bsp.format().lump_id(planes.lump), plane })
     }
 
     fn found(&self, child: i64, by: (usize, usize)) -> Result<Found, BspError> {
         if child < 0 {
-            let (leafs, n) = (self.bsp.format().leaf_lump(), self.bsp.leafs().len());
+            let (leafs, n) = (self.layout.leafs.lump, self.bsp.leafs().len());
             Ok(Found::Leaf(self.bsp.named(by, -1 - child, leafs, n)? as u32))
         } else {
-            Ok(Found::Node(self.bsp.named(by, child, self.bsp.node_lump(), self.n_nodes())? as u32))
+            Ok(Found::Node(self.bsp.named(by, child, self.layout.nodes.lump, self.n_nodes())? as u32))
         }
     }
+}
+
+/// The plane that a record begins with, of at least 16 bytes; `None` if that is none.
+pub(super) fn plane_of(record: &[u8]) -> Option<(Point3, f64)> {
+    let [x, y, z, distance]: [f64; 4] = std::array::from_fn(|k| f64::from(f32::from_bits(u32_at(record, 4 * k))));
+    // A normal of any other length is not the result of rounding: floats have it to 1e-7, and the maps that were examined do.
+    let length = (x * x + y * y + z * z).sqrt();
+    ((length - 1.0).abs() <= 1.0 / 64.0 && distance.is_finite()).then_some(([x, y, z], distance))
 }

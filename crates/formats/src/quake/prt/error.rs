@@ -71,6 +71,35 @@ pub enum PrtItem {
         /// The leaf.
         leaf: usize,
     },
+    /// How many leafs a cluster has.
+    LeafCount {
+        /// The cluster.
+        cluster: usize,
+    },
+    /// Whether a portal is a hint.
+    Hint {
+        /// The portal.
+        portal: usize,
+    },
+    /// How many solid faces there are.
+    Faces,
+    /// How many points a solid face has.
+    FacePoints {
+        /// The face.
+        face: usize,
+    },
+    /// The cluster of a solid face.
+    FaceCluster {
+        /// The face.
+        face: usize,
+    },
+    /// The parenthesis before or behind a point of a solid face, or a coordinate of it.
+    FacePoint {
+        /// The face.
+        face: usize,
+        /// The point.
+        point: usize,
+    },
     /// Nothing more.
     End,
 }
@@ -78,7 +107,7 @@ pub enum PrtItem {
 impl fmt::Display for PrtItem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
-            Self::Magic => f.write_str("PRT1, PRT2 or PRT1-AM"),
+            Self::Magic => f.write_str("PRT1, PRT2, PRT1-AM or the number of clusters"),
             Self::Clusters => f.write_str("the number of clusters"),
             Self::Portals => f.write_str("the number of portals"),
             Self::Leafs => f.write_str("the number of leafs"),
@@ -89,6 +118,12 @@ impl fmt::Display for PrtItem {
             Self::Close { portal, point } => write!(f, "the \")\" behind point {point} of portal {portal}"),
             Self::LeafOfCluster { cluster } => write!(f, "a leaf of cluster {cluster} or -1"),
             Self::ClusterOfLeaf { leaf } => write!(f, "the cluster of leaf {leaf}"),
+            Self::LeafCount { cluster } => write!(f, "the number of leafs of cluster {cluster}"),
+            Self::Hint { portal } => write!(f, "the hint of portal {portal}"),
+            Self::Faces => f.write_str("the number of solid faces"),
+            Self::FacePoints { face } => write!(f, "the number of points of solid face {face}"),
+            Self::FaceCluster { face } => write!(f, "the cluster of solid face {face}"),
+            Self::FacePoint { face, point } => write!(f, "point {point} of solid face {face} in parentheses"),
             Self::End => f.write_str("the end of the file"),
         }
     }
@@ -129,6 +164,16 @@ pub enum PrtErrorKind {
     Coordinate {
         /// The portal.
         portal: usize,
+        /// The point.
+        point: usize,
+        /// What is wrong with it.
+        source: CoordinateError,
+    },
+    /// A coordinate of a solid face cannot be used.
+    #[error("solid face {face}, point {point}: {source}")]
+    FaceCoordinate {
+        /// The face.
+        face: usize,
         /// The point.
         point: usize,
         /// What is wrong with it.
@@ -187,6 +232,14 @@ pub enum PrtErrorKind {
     LeafMissing {
         /// The leaf.
         leaf: usize,
+    },
+    /// A leaf of an earlier cluster than the leaf before, where only the numbers of leafs are written.
+    #[error("leaf {leaf} is of cluster {cluster}, and the leaf before it of a later one")]
+    LeafOrder {
+        /// The leaf.
+        leaf: usize,
+        /// Its cluster.
+        cluster: u32,
     },
     /// Leafs given by a program do not make clusters.
     #[error(transparent)]

@@ -25,7 +25,7 @@ impl Token<'_> {
 }
 
 /// Cuts a text into parentheses and words between whitespace.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Lexer<'t> {
     text: &'t [u8],
     at: usize,

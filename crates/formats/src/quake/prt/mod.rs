@@ -6,13 +6,22 @@
 //! PRT1     clusters portals           portal*
 //! PRT2     leafs clusters portals     portal*  (leaf* -1){clusters}
 //! PRT1-AM  clusters portals leafs     portal*  cluster{leafs}
+//!          clusters portals           count{clusters}  portal*
+//! PRT1     clusters portals faces     hinted*  face*
 //! portal = points a b ("(" x y z ")"){points}
+//! hinted = points a b hint ("(" x y z ")"){points}
+//! face   = points cluster ("(" x y z ")"){points}
 //! ```
+//!
+//! The fourth is of Half-Life: it begins with a number. The last is of Quake III. It begins as the first does, and the pieces behind
+//! the two counts tell them apart ([`PrtDialect::Quake3`]).
 //!
 //! Behind the last piece nothing may follow: more would mean that a count is wrong, or that the file is of a
 //! dialect that only begins alike.
 
+mod dialect;
 mod error;
+mod faces;
 mod graph;
 mod lexer;
 mod orientation;
@@ -20,7 +29,9 @@ mod read;
 mod repeats;
 mod write;
 
+pub use dialect::{LeafList, PrtDialect};
 pub use error::{PrtError, PrtErrorKind, PrtItem};
+pub use faces::SolidFace;
 pub use graph::graph_of_prt;
 pub use read::{line_of_portal, parse_prt};
 pub use write::write_prt;
@@ -28,7 +39,6 @@ pub use write::write_prt;
 use super::{LeafClusters, MAX_CLUSTERS};
 use crate::point::{are_collinear, check_point};
 use sightlines_cells::{Point3, Portal3};
-use std::fmt;
 use std::ops::RangeInclusive;
 
 /// How far the points of a portal may be from a plane, in map units, beside what doubles of their size cannot hold
@@ -42,50 +52,6 @@ pub const MAX_UNEVENNESS: f64 = 0.25;
 /// How many points a portal may have.
 pub const PORTAL_POINTS: RangeInclusive<usize> = 3..=64;
 
-/// A way of writing portals, with the word that such a file begins with.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum PrtDialect {
-    /// `PRT1`: clusters are leafs (Quake), or the map lists which leafs they are made of (Quake II).
-    Prt1,
-    /// `PRT2` of ericw-tools: the leafs of each cluster.
-    Prt2,
-    /// `PRT1-AM` of bjptools: the cluster of each leaf.
-    Prt1Am,
-}
-
-impl PrtDialect {
-    /// All that are read.
-    pub const ALL: [Self; 3] = [Self::Prt1, Self::Prt2, Self::Prt1Am];
-
-    /// The first bytes of files of each.
-    pub const MAGICS: [&'static [u8]; 3] =
-        [Self::ALL[0].magic().as_bytes(), Self::ALL[1].magic().as_bytes(), Self::ALL[2].magic().as_bytes()];
-
-    /// The word that a file begins with.
-    pub const fn magic(self) -> &'static str {
-        match self {
-            Self::Prt1 => "PRT1",
-            Self::Prt2 => "PRT2",
-            Self::Prt1Am => "PRT1-AM",
-        }
-    }
-}
-
-impl fmt::Display for PrtDialect {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.magic())
-    }
-}
-
-/// How leafs that are not clusters are listed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum LeafList {
-    /// The leafs of each cluster, as `PRT2` does.
-    PerCluster,
-    /// The cluster of each leaf, as `PRT1-AM` does.
-    PerLeaf,
-}
-
 /// The clusters of a map and the portals between them, checked: there is a cluster, portals join two
 /// clusters that exist, have 3 to 64 points and coordinates that predicates accept; if leafs are listed, each
 /// is in one cluster; the points of a portal go round an area and are within [`MAX_UNEVENNESS`] of a plane, or lie on
@@ -96,6 +62,8 @@ pub struct Prt {
     portals: Vec<Record>,
     points: Vec<Point3>,
     leafs: Option<(LeafList, LeafClusters)>,
+    /// In Quake III the hints of the portals, and the solid faces.
+    faces: Option<(Vec<u32>, Vec<SolidFace>)>,
 }
 
 /// A portal, without its points: they end at `end`, and begin where those of the portal before end.
@@ -134,7 +102,7 @@ impl Prt {
             let (found, max) = (n_clusters.to_string(), u64::from(MAX_CLUSTERS));
             return Err(PrtErrorKind::Count { item: PrtItem::Clusters, found, min: 1, max });
         }
-        Ok(Self { n_clusters, portals: Vec::new(), points: Vec::new(), leafs: None })
+        Ok(Self { n_clusters, portals: Vec::new(), points: Vec::new(), leafs: None, faces: None })
     }
 
     /// Adds a portal. Its points keep their order; coordinates nearer to zero than 2^-140 become zero.
@@ -177,21 +145,28 @@ impl Prt {
         Err(wrong)
     }
 
-    /// The same portals, but clusters are made of these leafs: a `PRT2` or a `PRT1-AM`.
+    /// The same portals, but clusters are made of these leafs: a `PRT2`, a `PRT1-AM`, or the form of Half-Life.
     ///
     /// # Errors
-    /// [`PrtErrorKind::Leafs`] if a leaf is in a cluster that is not there.
+    /// [`PrtErrorKind::Leafs`] if a leaf is in a cluster that is not there; [`PrtErrorKind::LeafOrder`] if the leafs of clusters do
+    /// not follow each other and the list is of their counts.
     pub fn with_leafs(mut self, list: LeafList, cluster_of_leaf: Vec<u32>) -> Result<Self, PrtErrorKind> {
+        if let (LeafList::Counts, Some(k)) = (list, cluster_of_leaf.windows(2).position(|pair| pair[0] > pair[1])) {
+            return Err(PrtErrorKind::LeafOrder { leaf: k + 1, cluster: cluster_of_leaf[k + 1] });
+        }
+        self.faces = None;
         self.leafs = Some((list, LeafClusters::new(self.n_clusters, cluster_of_leaf)?));
         Ok(self)
     }
 
     /// How it is written.
     pub fn dialect(&self) -> PrtDialect {
-        match &self.leafs {
-            None => PrtDialect::Prt1,
-            Some((LeafList::PerCluster, _)) => PrtDialect::Prt2,
-            Some((LeafList::PerLeaf, _)) => PrtDialect::Prt1Am,
+        match (&self.leafs, &self.faces) {
+            (_, Some(_)) => PrtDialect::Quake3,
+            (None, None) => PrtDialect::Prt1,
+            (Some((LeafList::PerCluster, _)), None) => PrtDialect::Prt2,
+            (Some((LeafList::PerLeaf, _)), None) => PrtDialect::Prt1Am,
+            (Some((LeafList::Counts, _)), None) => PrtDialect::HalfLife,
         }
     }
 

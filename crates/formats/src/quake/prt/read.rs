@@ -2,7 +2,8 @@
 
 use super::error::point_range;
 use super::lexer::{Lexer, Token};
-use super::{LeafList, MAX_CLUSTERS, Prt, PrtDialect, PrtError, PrtErrorKind, PrtItem};
+use super::{LeafList, MAX_CLUSTERS, Prt, PrtDialect, PrtError, PrtErrorKind, PrtItem, SolidFace};
+use crate::point::check_point;
 use sightlines_cells::Point3;
 use std::ops::RangeInclusive;
 
@@ -15,37 +16,37 @@ use std::ops::RangeInclusive;
 ///
 /// # Source
 /// The grammar is what compilers write: `PRT1` of id Software's qbsp, `PRT2` of ericw-tools, `PRT1-AM` of
-/// bjptools. Chosen here: text behind the end is refused, and so are a portal from a cluster to itself and a
+/// bjptools, that of Half-Life's as VHLT's vis reads it, that of Quake III's as id Software's published q3map reads it. Chosen here: text behind
+/// the end is refused, and so are a portal from a cluster to itself and a
 /// leaf in no or two clusters, and portals whose corners go round the wrong way ([`Prt::inside_out`]): through these a search would see
 /// nothing of what is seen in truth. Portals without area are kept ([`PrtPortal::is_degenerate`]).
 ///
 /// [`PrtPortal::is_degenerate`]: super::PrtPortal::is_degenerate
 pub fn parse_prt(text: &[u8]) -> Result<Prt, PrtError> {
     let mut reader = Reader { lexer: Lexer::new(text) };
-    let magic = reader.lexer.next();
-    let dialect = PrtDialect::ALL.into_iter().find(|d| magic.bytes == Some(d.magic().as_bytes()));
-    let dialect = dialect.ok_or_else(|| unexpected(&magic, PrtItem::Magic))?;
-    let header = reader.header(dialect)?;
+    let (magic, header) = reader.header()?;
     let mut prt = Prt::new(header.n_clusters).map_err(|kind| at(&magic, kind))?;
-    let (mut points, mut places) = (Vec::new(), Vec::new());
+    let (mut points, mut places, mut hints) = (Vec::new(), Vec::new(), Vec::new());
     for portal in 0..header.n_portals as usize {
-        places.push(reader.portal(portal, &mut prt, &mut points)?);
+        let (place, hint) = reader.portal(portal, header.dialect, &mut prt, &mut points)?;
+        places.push(place);
+        hints.extend(hint);
     }
     if let Some(portal) = prt.inside_out() {
         let clusters = prt.portal(portal).clusters;
         return Err(at(&places[portal], PrtErrorKind::InsideOut { portal, clusters }));
     }
-    let prt = match dialect {
-        PrtDialect::Prt1 => prt,
-        PrtDialect::Prt2 => {
-            let leafs = reader.leafs_of_clusters(&header)?;
-            prt.with_leafs(LeafList::PerCluster, leafs).map_err(|kind| at(&magic, kind))?
-        }
-        PrtDialect::Prt1Am => {
-            let leafs = reader.clusters_of_leafs(&header)?;
-            prt.with_leafs(LeafList::PerLeaf, leafs).map_err(|kind| at(&magic, kind))?
+    let prt = match header.dialect {
+        PrtDialect::Prt1 => Ok(prt),
+        PrtDialect::Prt2 => prt.with_leafs(LeafList::PerCluster, reader.leafs_of_clusters(&header)?),
+        PrtDialect::Prt1Am => prt.with_leafs(LeafList::PerLeaf, reader.clusters_of_leafs(&header)?),
+        PrtDialect::HalfLife => prt.with_leafs(LeafList::Counts, header.clusters),
+        PrtDialect::Quake3 => {
+            let faces = (0..header.n_faces as usize).map(|face| reader.face(face, header.n_clusters));
+            prt.with_faces(hints, faces.collect::<Result<_, _>>()?)
         }
     };
+    let prt = prt.map_err(|kind| at(&magic, kind))?;
     let end = reader.lexer.next();
     if end.bytes.is_some() { Err(unexpected(&end, PrtItem::End)) } else { Ok(prt) }
 }
@@ -54,20 +55,24 @@ pub fn parse_prt(text: &[u8]) -> Result<Prt, PrtError> {
 /// portals after the text was read.
 pub fn line_of_portal(text: &[u8], portal: usize) -> Option<usize> {
     let mut reader = Reader { lexer: Lexer::new(text) };
-    let magic = reader.lexer.next();
-    let dialect = PrtDialect::ALL.into_iter().find(|d| magic.bytes == Some(d.magic().as_bytes()))?;
-    let header = reader.header(dialect).ok()?;
+    let (_, header) = reader.header().ok()?;
     let mut prt = Prt::new(header.n_clusters).ok()?;
     let n_before = (portal < header.n_portals as usize).then_some(portal)?;
     let mut points = Vec::new();
-    (0..n_before).try_for_each(|k| reader.portal(k, &mut prt, &mut points).map(drop)).ok()?;
-    reader.portal(portal, &mut prt, &mut points).ok().map(|place| place.line)
+    let mut read = |k: usize| reader.portal(k, header.dialect, &mut prt, &mut points);
+    (0..n_before).try_for_each(|k| read(k).map(drop)).ok()?;
+    read(portal).ok().map(|(place, _)| place.line)
 }
 
+/// What stands before the portals.
 struct Header {
+    dialect: PrtDialect,
     n_clusters: u32,
     n_portals: u32,
     n_leafs: u32,
+    n_faces: u32,
+    /// The cluster of each leaf, where the numbers of leafs stand before the portals.
+    clusters: Vec<u32>,
 }
 
 struct Reader<'t> {
@@ -75,21 +80,54 @@ struct Reader<'t> {
 }
 
 impl<'t> Reader<'t> {
-    fn header(&mut self, dialect: PrtDialect) -> Result<Header, PrtError> {
-        let (mut n_clusters, mut n_portals, mut n_leafs) = (0, 0, 0);
-        let order: &[PrtItem] = match dialect {
-            PrtDialect::Prt1 => &[PrtItem::Clusters, PrtItem::Portals],
-            PrtDialect::Prt2 => &[PrtItem::Leafs, PrtItem::Clusters, PrtItem::Portals],
-            PrtDialect::Prt1Am => &[PrtItem::Clusters, PrtItem::Portals, PrtItem::Leafs],
-        };
-        for &item in order {
-            match item {
-                PrtItem::Clusters => n_clusters = self.number(item, 1..=u64::from(MAX_CLUSTERS))?.1,
-                PrtItem::Leafs => n_leafs = self.leaf_count()?,
-                _ => n_portals = self.number(item, 0..=u64::from(u32::MAX))?.1,
-            }
+    /// The first piece, and the header.
+    fn header(&mut self) -> Result<(Token<'t>, Header), PrtError> {
+        let magic = self.lexer.next();
+        let named = PrtDialect::ALL.into_iter().find(|d| d.magic().is_some_and(|m| magic.bytes == Some(m.as_bytes())));
+        let is_number = magic.bytes.is_some_and(|bytes| bytes.iter().all(u8::is_ascii_digit));
+        let dialect = named.or(is_number.then_some(PrtDialect::HalfLife));
+        let dialect = dialect.ok_or_else(|| unexpected(&magic, PrtItem::Magic))?;
+        let (n_clusters, n_portals, clusters) = (0, 0, Vec::new());
+        let mut header = Header { dialect, n_clusters, n_portals, n_leafs: 0, n_faces: 0, clusters };
+        if dialect == PrtDialect::Prt2 {
+            header.n_leafs = self.leaf_count()?;
         }
-        Ok(Header { n_clusters, n_portals, n_leafs })
+        let range = 1..=u64::from(MAX_CLUSTERS);
+        header.n_clusters = match dialect {
+            PrtDialect::HalfLife => whole(&magic, PrtItem::Clusters, range)?,
+            _ => self.number(PrtItem::Clusters, range)?.1,
+        };
+        header.n_portals = self.number(PrtItem::Portals, 0..=u64::from(u32::MAX))?.1;
+        match dialect {
+            PrtDialect::Prt1Am => header.n_leafs = self.leaf_count()?,
+            PrtDialect::HalfLife => header.clusters = self.leaf_counts(header.n_clusters)?,
+            PrtDialect::Prt1 if self.has_faces(header.n_portals) => {
+                header.dialect = PrtDialect::Quake3;
+                header.n_faces = self.number(PrtItem::Faces, 0..=u64::from(u32::MAX))?.1;
+            }
+            _ => {}
+        }
+        Ok((magic, header))
+    }
+
+    /// Whether a `PRT1` is that of Quake III, told by the pieces behind its two counts; see [`PrtDialect::Quake3`].
+    fn has_faces(&self, n_portals: u32) -> bool {
+        let mut ahead = self.lexer.clone();
+        let is_number = |token: Token<'_>| token.bytes.is_some_and(|bytes| bytes.iter().all(u8::is_ascii_digit));
+        let n_numbers = if n_portals == 0 { 1 } else { 5 };
+        (0..n_numbers).all(|_| is_number(ahead.next())) && (n_portals == 0 || ahead.next().bytes == Some(b"("))
+    }
+
+    /// The numbers of leafs of clusters, as the cluster of each leaf. In all there are as many as maps of that kind can have at most.
+    fn leaf_counts(&mut self, n_clusters: u32) -> Result<Vec<u32>, PrtError> {
+        let mut clusters = Vec::new();
+        for cluster in 0..n_clusters {
+            let item = PrtItem::LeafCount { cluster: cluster as usize };
+            let left = u64::from(MAX_CLUSTERS) - clusters.len() as u64;
+            let (_, count) = self.number(item, 0..=left)?;
+            clusters.resize(clusters.len() + count as usize, cluster);
+        }
+        Ok(clusters)
     }
 
     /// The number of leafs, which is believed only if the text is long enough to list them.
@@ -101,24 +139,50 @@ impl<'t> Reader<'t> {
         if fits { Ok(n_leafs) } else { Err(at(&token, PrtErrorKind::LeafClaim { n_leafs, n_bytes })) }
     }
 
-    /// Adds a portal, and returns where it begins.
-    fn portal(&mut self, portal: usize, prt: &mut Prt, points: &mut Vec<Point3>) -> Result<Token<'t>, PrtError> {
+    /// Adds a portal, and returns where it begins, and its hint where the dialect has them.
+    fn portal(
+        &mut self,
+        portal: usize,
+        dialect: PrtDialect,
+        prt: &mut Prt,
+        points: &mut Vec<Point3>,
+    ) -> Result<(Token<'t>, Option<u32>), PrtError> {
         let (place, n_points) = self.number(PrtItem::Points { portal }, point_range())?;
         let clusters = 0..=u64::from(prt.n_clusters() - 1);
         let (_, a) = self.number(PrtItem::Cluster { portal }, clusters.clone())?;
         let (_, b) = self.number(PrtItem::Cluster { portal }, clusters)?;
+        let hint = match dialect {
+            PrtDialect::Quake3 => Some(self.number(PrtItem::Hint { portal }, 0..=u64::from(u32::MAX))?.1),
+            _ => None,
+        };
         points.clear();
         for point in 0..n_points as usize {
             self.sign(b"(", PrtItem::Open { portal, point })?;
-            points.push([
-                self.coordinate(portal, point)?,
-                self.coordinate(portal, point)?,
-                self.coordinate(portal, point)?,
-            ]);
+            points.push(self.point(PrtItem::Coordinate { portal, point })?);
             self.sign(b")", PrtItem::Close { portal, point })?;
         }
         prt.push_portal([a, b], points).map_err(|kind| at(&place, kind))?;
-        Ok(place)
+        Ok((place, hint))
+    }
+
+    /// A solid face of Quake III.
+    fn face(&mut self, face: usize, n_clusters: u32) -> Result<SolidFace, PrtError> {
+        let (place, n_points) = self.number(PrtItem::FacePoints { face }, point_range())?;
+        let (_, cluster) = self.number(PrtItem::FaceCluster { face }, 0..=u64::from(n_clusters - 1))?;
+        let mut points = Vec::new();
+        for point in 0..n_points as usize {
+            let item = PrtItem::FacePoint { face, point };
+            self.sign(b"(", item)?;
+            let p = check_point(self.point(item)?);
+            points.push(p.map_err(|source| at(&place, PrtErrorKind::FaceCoordinate { face, point, source }))?);
+            self.sign(b")", item)?;
+        }
+        Ok(SolidFace { cluster, points })
+    }
+
+    /// Three coordinates.
+    fn point(&mut self, item: PrtItem) -> Result<Point3, PrtError> {
+        Ok([self.coordinate(item)?, self.coordinate(item)?, self.coordinate(item)?])
     }
 
     /// The lists of a `PRT2`, as the cluster of each leaf.
@@ -169,8 +233,7 @@ impl<'t> Reader<'t> {
         if token.bytes == Some(sign) { Ok(()) } else { Err(unexpected(&token, item)) }
     }
 
-    fn coordinate(&mut self, portal: usize, point: usize) -> Result<f64, PrtError> {
-        let item = PrtItem::Coordinate { portal, point };
+    fn coordinate(&mut self, item: PrtItem) -> Result<f64, PrtError> {
         let token = self.token(item)?;
         // Rust would read "nan" and "inf" too; they are not decimals.
         let is_decimal = |b: &u8| matches!(b, b'0'..=b'9' | b'+' | b'-' | b'.' | b'e' | b'E');

@@ -1,6 +1,7 @@
 //! From portals to text.
 
 use super::{LeafList, Prt};
+use sightlines_cells::Point3;
 use std::fmt::Write;
 
 /// Writes a portal file, in the layout of the compilers. Read again it is the same, bit for bit: coordinates are
@@ -13,7 +14,9 @@ pub fn write_prt(prt: &Prt) -> String {
 }
 
 fn write_to(prt: &Prt, out: &mut String) -> std::fmt::Result {
-    writeln!(out, "{}", prt.dialect())?;
+    if let Some(magic) = prt.dialect().magic() {
+        writeln!(out, "{magic}")?;
+    }
     match &prt.leafs {
         None => writeln!(out, "{}\n{}", prt.n_clusters(), prt.n_portals())?,
         Some((LeafList::PerCluster, leafs)) => {
@@ -22,16 +25,28 @@ fn write_to(prt: &Prt, out: &mut String) -> std::fmt::Result {
         Some((LeafList::PerLeaf, leafs)) => {
             writeln!(out, "{}\n{}\n{}", prt.n_clusters(), prt.n_portals(), leafs.n_leafs())?;
         }
-    }
-    for portal in prt.portals() {
-        write!(out, "{} {} {} ", portal.points.len(), portal.clusters[0], portal.clusters[1])?;
-        for [x, y, z] in portal.points {
-            write!(out, "({x} {y} {z}) ")?;
+        Some((LeafList::Counts, leafs)) => {
+            writeln!(out, "{}\n{}", prt.n_clusters(), prt.n_portals())?;
+            (0..leafs.n_clusters()).try_for_each(|cluster| writeln!(out, "{}", leafs.leafs_of(cluster).len()))?;
         }
-        out.push('\n');
+    }
+    let hints = prt.hints();
+    if hints.is_some() {
+        writeln!(out, "{}", prt.solid_faces().len())?;
+    }
+    for (k, portal) in prt.portals().enumerate() {
+        write!(out, "{} {} {} ", portal.points.len(), portal.clusters[0], portal.clusters[1])?;
+        if let Some(hints) = hints {
+            write!(out, "{} ", hints[k])?;
+        }
+        points(portal.points, out)?;
+    }
+    for face in prt.solid_faces() {
+        write!(out, "{} {} ", face.points.len(), face.cluster)?;
+        points(&face.points, out)?;
     }
     match &prt.leafs {
-        None => {}
+        None | Some((LeafList::Counts, _)) => {}
         Some((LeafList::PerCluster, leafs)) => {
             for cluster in 0..leafs.n_clusters() {
                 for leaf in leafs.leafs_of(cluster) {
@@ -46,5 +61,14 @@ fn write_to(prt: &Prt, out: &mut String) -> std::fmt::Result {
             }
         }
     }
+    Ok(())
+}
+
+/// The corners of a polygon, and the end of the line.
+fn points(points: &[Point3], out: &mut String) -> std::fmt::Result {
+    for [x, y, z] in points {
+        write!(out, "({x} {y} {z}) ")?;
+    }
+    out.push('\n');
     Ok(())
 }

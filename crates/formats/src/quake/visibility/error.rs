@@ -15,7 +15,7 @@ pub enum VisibilityError {
         /// Leafs of the map that can be seen.
         map: usize,
     },
-    /// Portals of another map than that of Quake II.
+    /// Portals of another map than that of Quake II or III.
     #[error("the portals are of a map with {portals} clusters, this one has {map}")]
     Clusters {
         /// Clusters that the portal file has.
@@ -82,6 +82,16 @@ pub enum VisibilityError {
         len: usize,
         /// Clusters that it claims.
         n_clusters: u32,
+    },
+    /// The lump is too short for its rows, or these are too short for so many clusters.
+    #[error("the visibility lump of {len} bytes has no room for rows of {n_clusters} clusters of {width} bytes each")]
+    RawRows {
+        /// Bytes of the lump.
+        len: usize,
+        /// Clusters that it claims.
+        n_clusters: u32,
+        /// Bytes of a row that it claims.
+        width: u32,
     },
     /// The lump is for another number of clusters than the map has.
     #[error("the visibility lump is for {lump} clusters, the leafs have {map}")]

@@ -1,16 +1,18 @@
 //! The visibility lump of a map, in the form that engines load.
 //!
 //! Quake has a row of leafs for each leaf; the leafs of a cluster share theirs. Quake II has a row of clusters
-//! for each cluster, and a second one for what can be heard. Rows are coded by [`rle`].
+//! for each cluster, and a second one for what can be heard. Rows are coded by [`rle`]. Quake III has a row of clusters for
+//! each cluster, as it is.
 
-use super::bsp::{AmbientTextures, NewVisibility};
-use super::{Bsp, BspError, BspFormat, LeafClusters, rle};
+use super::bsp::{AmbientTextures, NewVisibility, RowForm};
+use super::{Bsp, BspError, LeafClusters, rle};
 use sightlines_pvs::BitMatrix;
 use sightlines_pvs::bits::{ones, or_words};
 
 mod error;
 mod fit;
 mod orientation;
+mod raw;
 mod read;
 
 pub use error::VisibilityError;
@@ -23,9 +25,10 @@ pub use read::{read_hearing, read_visibility};
 pub struct VisibilityLump {
     /// The lump.
     pub bytes: Vec<u8>,
-    /// For each leaf that can be seen where its row begins in the lump; empty for Quake II.
+    /// For each leaf that can be seen where its row begins in the lump; empty for Quake II and III.
     pub leaf_rows: Vec<u32>,
-    /// For each of those leafs how loud water, sky, slime and lava are; empty for Quake II.
+    /// For each of those leafs how loud water, sky, slime and lava are; empty for formats
+    /// [without such sounds](super::BspFormat::has_sounds).
     pub ambient: Vec<[u8; 4]>,
 }
 
@@ -48,12 +51,12 @@ impl Bsp {
 
 /// Makes the lump for a map, and the loudness of its leafs.
 ///
-/// * `leafs`: the leafs of the clusters, from the portal file; Quake II ignores them.
+/// * `leafs`: the leafs of the clusters, from the portal file; Quake II and III ignore them.
 /// * `seen`: row `a` has the clusters that cluster `a` sees. Written as it is: the caller guarantees that everything
 ///   sees itself and that visibility is symmetric.
 ///
 /// Rows are in the order of clusters, those of Quake II's second kind behind all of the first; a cluster without
-/// leafs has none. Clusters that see the same have equal rows, but not one row. O(clusters × leafs / 8).
+/// leafs has none. Those of Quake III have whole words of 64 bits, as its compilers write them. Clusters that see the same have equal rows, but not one row. O(clusters × leafs / 8).
 ///
 /// # Errors
 /// [`VisibilityError`] if the three do not fit together, if the lump would be too large, or if the
@@ -73,11 +76,13 @@ pub fn lump_with_sounds(
     textures: AmbientTextures,
 ) -> Result<VisibilityLump, VisibilityError> {
     check_match(bsp, leafs)?;
-    match bsp.format() {
-        BspFormat::Quake2 => quake2_lump(&of_leafs(leafs, seen)?),
-        _ => {
+    match bsp.row_form() {
+        RowForm::SeenAndHeard => quake2_lump(&of_leafs(leafs, seen)?),
+        RowForm::Raw => raw::lump(&of_leafs(leafs, seen)?),
+        RowForm::OfLeafs => {
             let (bytes, leaf_rows) = quake_lump(leafs, seen)?;
-            Ok(VisibilityLump { bytes, leaf_rows, ambient: loudness(bsp, leafs, seen, textures)? })
+            let ambient = if bsp.format().has_sounds() { loudness(bsp, leafs, seen, textures)? } else { Vec::new() };
+            Ok(VisibilityLump { bytes, leaf_rows, ambient })
         }
     }
 }
@@ -118,7 +123,7 @@ fn loudness(
 /// # Errors
 /// [`VisibilityError`] with the cluster whose row is wrong, or if the lump would be too large.
 pub fn lump_with_new_hearing(bsp: &Bsp) -> Result<Option<VisibilityLump>, VisibilityError> {
-    let has_rows = bsp.format() == BspFormat::Quake2 && !bsp.visibility().is_empty();
+    let has_rows = bsp.row_form() == RowForm::SeenAndHeard && !bsp.visibility().is_empty();
     has_rows.then(|| quake2_lump(&quake2_rows(bsp, 0)?)).transpose()
 }
 

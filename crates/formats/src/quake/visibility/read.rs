@@ -1,7 +1,7 @@
 //! Reads a map's visibility lump.
 
-use super::{Bsp, LeafClusters, VisibilityError, check_match, rle};
-use crate::quake::bsp::LeafRow;
+use super::{Bsp, LeafClusters, VisibilityError, check_match, raw, rle};
+use crate::quake::bsp::{LeafRow, RowForm};
 use sightlines_pvs::BitMatrix;
 
 /// Which clusters see which according to a map: row `a` has what cluster `a` sees. `None` for a map whose lump
@@ -15,12 +15,14 @@ use sightlines_pvs::BitMatrix;
 pub fn read_visibility(bsp: &Bsp, leafs: &LeafClusters) -> Result<Option<BitMatrix>, VisibilityError> {
     check_match(bsp, leafs)?;
     if bsp.visibility().is_empty() {
-        Ok(None)
-    } else if bsp.format().has_clusters() {
-        quake2_rows(bsp, 0).map(Some)
-    } else {
-        quake_rows(bsp, leafs).map(Some)
+        return Ok(None);
     }
+    let rows = match bsp.row_form() {
+        RowForm::SeenAndHeard => quake2_rows(bsp, 0),
+        RowForm::Raw => raw::rows(bsp),
+        RowForm::OfLeafs => quake_rows(bsp, leafs),
+    };
+    rows.map(Some)
 }
 
 /// Which clusters hear which in a map of Quake II; `None` for an empty lump and for other formats.
@@ -28,7 +30,7 @@ pub fn read_visibility(bsp: &Bsp, leafs: &LeafClusters) -> Result<Option<BitMatr
 /// # Errors
 /// [`VisibilityError`] with the cluster whose row is wrong.
 pub fn read_hearing(bsp: &Bsp) -> Result<Option<BitMatrix>, VisibilityError> {
-    let has_rows = bsp.format().has_clusters() && !bsp.visibility().is_empty();
+    let has_rows = bsp.row_form() == RowForm::SeenAndHeard && !bsp.visibility().is_empty();
     has_rows.then(|| quake2_rows(bsp, 1)).transpose()
 }
 
@@ -64,10 +66,14 @@ fn quake_rows(bsp: &Bsp, leafs: &LeafClusters) -> Result<BitMatrix, VisibilityEr
 /// The rows of one kind of a lump of Quake II: 0 seen, 1 heard.
 pub(super) fn quake2_rows(bsp: &Bsp, kind: usize) -> Result<BitMatrix, VisibilityError> {
     let (lump, n) = (bsp.visibility(), bsp.n_clusters());
-    let number = |at: usize| lump.get(at..at + 4).map(|b| b.iter().rev().fold(0, |n, &b| n << 8 | u32::from(b)));
+    let number = |at: usize| number(lump, at);
     let n_clusters = number(0).ok_or(VisibilityError::Places { len: lump.len(), n_clusters: 0 })?;
     if n_clusters as usize != n {
         return Err(VisibilityError::LumpClusters { lump: n_clusters, map: n });
+    }
+    // Before memory is taken for as many.
+    if lump.len() < 4 + 8 * n {
+        return Err(VisibilityError::Places { len: lump.len(), n_clusters });
     }
     let mut seen = BitMatrix::new(n, n);
     let mut row = vec![0u8; rle::row_len(n)];
@@ -77,13 +83,23 @@ pub(super) fn quake2_rows(bsp: &Bsp, kind: usize) -> Result<BitMatrix, Visibilit
         let bytes = lump.get(offset as usize..).filter(|bytes| !bytes.is_empty());
         let bytes = bytes.ok_or(VisibilityError::ClusterRowPlace { cluster, offset, len: lump.len() })?;
         rle::decode(bytes, &mut row).map_err(|source| VisibilityError::ClusterRow { cluster, offset, source })?;
-        // Bits past the last cluster mean nothing.
-        if let (Some(last), true) = (row.last_mut(), !n.is_multiple_of(8)) {
-            *last &= (1 << (n % 8)) - 1;
-        }
-        for (word, bytes) in seen.row_mut(cluster).iter_mut().zip(row.chunks(8)) {
-            *word = bytes.iter().rev().fold(0, |word, &byte| word << 8 | u64::from(byte));
-        }
+        put_row(&mut row, n, seen.row_mut(cluster));
     }
     Ok(seen)
+}
+
+/// Puts bytes of a row, of at least `n` bits, into a row of a matrix. Bits past the last cluster mean nothing.
+pub(super) fn put_row(bytes: &mut [u8], n: usize, row: &mut [u64]) {
+    let bytes = &mut bytes[..n.div_ceil(8)];
+    if let (Some(last), true) = (bytes.last_mut(), !n.is_multiple_of(8)) {
+        *last &= (1 << (n % 8)) - 1;
+    }
+    for (word, bytes) in row.iter_mut().zip(bytes.chunks(8)) {
+        *word = bytes.iter().rev().fold(0, |word, &byte| word << 8 | u64::from(byte));
+    }
+}
+
+/// Four bytes of a lump as a number; `None` if there are none.
+pub(super) fn number(lump: &[u8], at: usize) -> Option<u32> {
+    lump.get(at..at + 4).map(|b| b.iter().rev().fold(0, |n, &b| n << 8 | u32::from(b)))
 }

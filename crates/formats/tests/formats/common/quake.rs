@@ -1,16 +1,21 @@
 //! Small maps of the Quake family, put together without the code that they test, and what has to hold of
 //! whatever bytes are read as one.
 
+#[path = "convert.rs"]
+pub(crate) mod convert;
+
 use sightlines_formats::quake::bsp::{BspChild, LeafRow};
 use sightlines_formats::quake::prt::{parse_prt, write_prt};
 use sightlines_formats::quake::visibility::{self, VisibilityLump};
 use sightlines_formats::quake::{Bsp, BspFormat, LeafClusters};
 
 /// A portal file of each dialect: three clusters in a row, one of them of two leafs where leafs are listed.
-pub(crate) const SMALL_PRTS: [&str; 3] = [
+pub(crate) const SMALL_PRTS: [&str; 5] = [
     "PRT1\n3\n2\n4 0 1 (0 0 0) (0 8 0) (0 8 8) (0 0 8) \n3 2 1 (64 0 0) (64.25 0 9) (64 1e-3 0.5) \n",
     "PRT2\n4\n3\n2\n4 0 1 (0 0 0) (0 8 0) (0 8 8) (0 0 8) \n3 2 1 (64 0 0) (64.25 0 9) (64 1e-3 0.5) \n2 -1\n0 3 -1\n1 -1\n",
     "PRT1-AM\n3\n2\n4\n4 0 1 (0 0 0) (0 8 0) (0 8 8) (0 0 8) \n3 2 1 (64 0 0) (64.25 0 9) (64 1e-3 0.5) \n1\n2\n0\n1\n",
+    "3\n2\n1\n1\n2\n4 0 1 (0 0 0) (0 8 0) (0 8 8) (0 0 8) \n3 2 1 (64 0 0) (64.25 0 9) (64 1e-3 0.5) \n",
+    "PRT1\n3\n2\n1\n4 0 1 0 (0 0 0) (0 8 0) (0 8 8) (0 0 8) \n3 2 1 1 (64 0 0) (64.25 0 9) (64 1e-3 0.5) \n3 2 (64 0 0) (64.25 0 9) (64 1e-3 0.5) \n",
 ];
 
 /// What a small map is made of.
@@ -21,7 +26,7 @@ pub(crate) struct SmallBsp {
     pub leafs: Vec<Vec<&'static str>>,
     /// How many of them can be seen.
     pub n_visible: usize,
-    /// Clusters of all leafs but the first, for Quake II.
+    /// Clusters of all leafs but the first, for Quake II and III.
     pub clusters: Vec<i16>,
     pub visibility: Vec<u8>,
     /// Names and content of lumps behind the others.
@@ -127,6 +132,8 @@ impl SmallBsp {
         let contents = if leaf == 0 { -2i32 } else { -1 }.to_le_bytes().to_vec();
         let row = (-1i32).to_le_bytes().to_vec();
         match self.format {
+            // Made of another.
+            format if convert::base(format) != format => unreachable!("{format:?}"),
             BspFormat::Bsp29 => [contents, row, shorts, short(first), short(count), vec![9; 4]].concat(),
             BspFormat::Bsp2 => [contents, row, floats, wide(first), wide(count), vec![9; 4]].concat(),
             BspFormat::Bsp2Psb => [contents, row, shorts, wide(first), wide(count), vec![9; 4]].concat(),
@@ -134,11 +141,18 @@ impl SmallBsp {
                 let cluster = leaf.checked_sub(1).map_or(-1, |k| self.clusters[k]).to_le_bytes().to_vec();
                 [contents, cluster, vec![0; 2], shorts, short(first), short(count), vec![0; 4]].concat()
             }
+            _ => unreachable!("all that are no others"),
         }
     }
 
     /// The content of each lump, in the order of the directory.
     pub(crate) fn lumps(&self) -> Vec<Vec<u8>> {
+        let base = convert::base(self.format);
+        if base != self.format {
+            let mut lumps = convert::lumps(Self { format: base, ..self.clone() }.lumps(), self.format);
+            lumps[self.format.visibility_lump()] = self.visibility.clone();
+            return lumps;
+        }
         let n = self.format.lump_names().len();
         // Lumps that are not read hold bytes of their own, of lengths that are no multiples of four.
         let mut lumps: Vec<Vec<u8>> = (0..n).map(|k| vec![b'a' + k as u8; 3 + k % 5]).collect();
@@ -223,9 +237,13 @@ pub(crate) fn small_bsps() -> Vec<Vec<u8>> {
         files.push(map.file(false));
         map.visibility = match format {
             // Three clusters, of which 0 and 1, and 1 and 2 see each other.
-            BspFormat::Quake2 => {
+            BspFormat::Quake2 | BspFormat::Qbism => {
                 let places: Vec<u8> = [3u32, 28, 31, 29, 31, 30, 31].iter().flat_map(|n| n.to_le_bytes()).collect();
                 [&places[..], &[3, 7, 6, 7]].concat()
+            }
+            BspFormat::Quake3 | BspFormat::Wolfenstein => {
+                let rows: Vec<u8> = [3, 7, 6].into_iter().flat_map(u64::to_le_bytes).collect();
+                [&[3, 0, 0, 0, 8, 0, 0, 0], &rows[..]].concat()
             }
             _ => vec![0b1111, 0, 1],
         };
@@ -237,7 +255,11 @@ pub(crate) fn small_bsps() -> Vec<Vec<u8>> {
 
 /// A small map of each format with a tree and with corners.
 pub(crate) fn small_worlds() -> Vec<Vec<u8>> {
-    BspFormat::ALL.into_iter().map(|format| SmallBsp::with_world(format).file(true)).collect()
+    let world = |format: BspFormat| match convert::base(format) {
+        base if base == format => SmallBsp::with_world(format).file(true),
+        base => convert::map(&SmallBsp::with_world(base).file(true), format),
+    };
+    BspFormat::ALL.into_iter().map(world).collect()
 }
 
 /// Reads the tree and the faces of a world; whether it could. What a fuzz target does.
@@ -260,6 +282,8 @@ pub(crate) fn check_world(bytes: &[u8]) -> bool {
     }
     if let Ok(faces) = &faces {
         let n_corners: usize = (0..faces.n_faces()).map(|k| faces.corners(k).len()).sum();
+        let of_polygons = (0..faces.n_faces()).flat_map(|k| faces.polygons(k)).map(<[_]>::len);
+        assert_eq!(of_polygons.sum::<usize>(), n_corners);
         assert!(n_corners <= bytes.len() && faces.range().len() == faces.n_faces());
     }
     if let Ok(lists) = &lists {
@@ -286,7 +310,9 @@ pub(crate) fn difference_besides_visibility(before: &Bsp, after: &Bsp) -> Option
             for bytes in [&mut old, &mut new] {
                 for leaf in bytes.chunks_exact_mut(len).skip(1).take(n) {
                     leaf[4..8].fill(0);
-                    leaf[len - 4..].fill(0);
+                    if format.has_sounds() {
+                        leaf[len - 4..].fill(0);
+                    }
                 }
             }
         }
