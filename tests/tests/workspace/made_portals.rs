@@ -58,7 +58,7 @@ fn portals_of_generated_maps_are_those_of_their_worlds() {
     let (mut n_equal, mut n_larger, mut n_only) = (0, 0, 0);
     for (k, world) in worlds.iter().enumerate() {
         let prt = prt_of_world(world);
-        let bytes = bsp_bytes(world, BspFormat::ALL[k % 4]);
+        let bytes = bsp_bytes(world, BspFormat::ALL[k % BspFormat::ALL.len()]);
         let MapPortals { prt: made, .. } = portals_of_map(&Bsp::parse(bytes.clone()).unwrap()).unwrap();
         let n = prt.n_clusters();
         let is_cell = |cluster: u32| (cluster < n).then_some(cluster);

@@ -100,7 +100,7 @@ fn damaged_maps_are_refused() {
                 n_refused += 1;
             }
         }
-        folder.write("map.bsp", b"IBSP\x2E\0\0\0aaaaaaaaaaaaaaaaaaaaaaaaaaaaa");
+        folder.write("map.bsp", b"IBSP\x2D\0\0\0aaaaaaaaaaaaaaaaaaaaaaaaaaaaa");
         let error = folder.refused(&["vis", "map.bsp"]);
         assert!(error.starts_with("map.bsp: not a map: it begins with "), "{error}");
     }

@@ -43,7 +43,7 @@ fn leafs_are_read() {
         assert_eq!((bsp.format(), bsp.leafs().len()), (format, 6));
         assert!(bsp.visibility().is_empty() && bsp.extra_lumps().is_empty());
         let leaf = bsp.leafs()[2];
-        let contents = if matches!(format, BspFormat::Quake3 | BspFormat::Wolfenstein) { 0 } else { -1 };
+        let contents = if format.has_clusters() { 0 } else { -1 };
         assert_eq!((leaf.contents, leaf.mins, leaf.maxs), (contents, [0.0; 3], [64.0; 3]));
         assert_eq!((leaf.first_face, leaf.n_faces), (1, 2));
         let rows: Vec<LeafRow> = bsp.leafs().iter().map(|l| l.row).collect();
@@ -190,7 +190,8 @@ fn hearing_is_made_from_visibility() {
     let text = lump_with_new_hearing(&Bsp::parse(map.file(false)).unwrap()).unwrap_err().to_string();
     assert_eq!(text, "cluster 2: its row begins at byte 30 of the 30 bytes of the visibility lump");
     let none = |file: &[u8]| lump_with_new_hearing(&Bsp::parse(file.to_vec()).unwrap()).unwrap().is_none();
-    assert_eq!(small_bsps().iter().filter(|file| none(file)).count(), 7);
+    // One of Quake II and one of Qbism has rows.
+    assert_eq!(small_bsps().iter().filter(|file| !none(file)).count(), 2);
 }
 
 /// Each kind of texture is silent when it is turned off, and no other.

@@ -23,7 +23,7 @@ pub fn check_match(bsp: &Bsp, leafs: &LeafClusters) -> Result<(), VisibilityErro
 ///
 /// Portals do stick out where a cluster has solid detail, which is not in its leafs: one in twenty sides on the maps
 /// that were examined, none on maps without detail, and all of them with the portals of another map. So the limit is
-/// half of them. Of what is beyond all leafs, the nearest point that is not counts. It catches mistakes and does not affect visibility.
+/// half of them. Of a portal that goes on beyond all leafs it is enough to meet those bounds. It catches mistakes and does not affect visibility.
 ///
 /// # Errors
 /// [`VisibilityError::Leafs`], [`VisibilityError::Clusters`], [`VisibilityError::OtherMap`]; [`VisibilityError::InsideOut`] for the first portal whose
@@ -41,13 +41,18 @@ pub fn check_portals(bsp: &Bsp, prt: &Prt) -> Result<(), VisibilityError> {
         for cluster in portal.clusters {
             let (low, high) = boxes[cluster as usize];
             // Bounds are whole numbers in most formats, and may have been rounded.
-            let is_inside = |p: &[f64; 3]| {
-                (0..3)
-                    .map(|k| (k, p[k].max(all.0[k]).min(all.1[k])))
-                    .all(|(k, x)| low[k] - 1.0 <= x && x <= high[k] + 1.0)
+            let is_between = |p: &[f64; 3], low: &[f64; 3], high: &[f64; 3]| {
+                (0..3).all(|k| low[k] - 1.0 <= p[k] && p[k] <= high[k] + 1.0)
             };
+            let is_inside = |p: &[f64; 3]| is_between(p, &low, &high);
+            let meets = (0..3).all(|k| {
+                let x = portal.points.iter().map(|p| p[k]);
+                x.clone().fold(f64::INFINITY, f64::min) <= high[k] + 1.0
+                    && x.fold(f64::NEG_INFINITY, f64::max) >= low[k] - 1.0
+            });
+            let goes_on = portal.points.iter().any(|p| !is_between(p, &all.0, &all.1));
             n_sides += 1;
-            n_outside += usize::from(!portal.points.iter().all(is_inside));
+            n_outside += usize::from(!(portal.points.iter().all(is_inside) || goes_on && meets));
         }
     }
     if 2 * n_outside > n_sides {

@@ -114,6 +114,9 @@ impl SmallBsp {
         lumps[self.lump("faces")] = (0..places.len()).flat_map(face).collect();
         let marks = if self.format == BspFormat::Quake2 { "leaffaces" } else { "marksurfaces" };
         lumps[self.lump(marks)] = (0..places.len()).flat_map(|k| self.index(k)).collect();
+        if self.format == BspFormat::Quake2 {
+            lumps[self.lump("texinfo")] = vec![0; 76 * places.len()];
+        }
         let run = [int(0), int(places.len() as i32)].concat();
         lumps[self.lump("models")] = match self.format {
             BspFormat::Quake2 => [vec![0; 36], int(0).to_vec(), run].concat(),
@@ -129,7 +132,8 @@ impl SmallBsp {
         let bounds = [west, 0, 0, west + 64, 64, 64i16];
         let shorts: Vec<u8> = bounds.iter().flat_map(|b| b.to_le_bytes()).collect();
         let floats: Vec<u8> = bounds.iter().flat_map(|b| f32::from(*b).to_le_bytes()).collect();
-        let contents = if leaf == 0 { -2i32 } else { -1 }.to_le_bytes().to_vec();
+        let codes = if self.format == BspFormat::Quake2 { [1, 0] } else { [-2i32, -1] };
+        let contents = codes[usize::from(leaf > 0)].to_le_bytes().to_vec();
         let row = (-1i32).to_le_bytes().to_vec();
         match self.format {
             // Made of another.
