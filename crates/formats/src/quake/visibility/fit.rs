@@ -4,14 +4,24 @@ use super::orientation::inside_out;
 use super::{Bsp, LeafClusters, VisibilityError};
 use crate::quake::Prt;
 
+/// Whether portals of Quake II have more clusters than the map, and list those that are the map's as leafs: the others are what can be seen through, as
+/// portals that are made from a map may have it.
+pub(super) fn has_more_clusters(bsp: &Bsp, leafs: &LeafClusters) -> bool {
+    bsp.format().has_clusters() && leafs.n_clusters() > bsp.n_clusters() && leafs.n_leafs() == bsp.n_clusters()
+}
+
 /// Checks by their counts that portals and map belong together: visible leafs (Quake), or clusters (Quake II).
 ///
 /// # Errors
 /// [`VisibilityError::Leafs`], [`VisibilityError::Clusters`].
 pub fn check_match(bsp: &Bsp, leafs: &LeafClusters) -> Result<(), VisibilityError> {
     if bsp.format().has_clusters() {
-        let (portals, map) = (leafs.n_leafs(), bsp.n_clusters());
-        return if portals == map { Ok(()) } else { Err(VisibilityError::Clusters { portals, map }) };
+        let (portals, map) = (leafs.n_clusters(), bsp.n_clusters());
+        return if portals == map || has_more_clusters(bsp, leafs) {
+            Ok(())
+        } else {
+            Err(VisibilityError::Clusters { portals, map })
+        };
     }
     let (portals, map) = (leafs.n_leafs(), bsp.n_visible_leafs());
     if portals == map { Ok(()) } else { Err(VisibilityError::Leafs { portals, map }) }

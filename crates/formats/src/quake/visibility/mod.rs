@@ -8,6 +8,7 @@ use super::bsp::{AmbientTextures, NewVisibility, RowForm};
 use super::{Bsp, BspError, LeafClusters, rle};
 use sightlines_pvs::BitMatrix;
 use sightlines_pvs::bits::{ones, or_words};
+use std::borrow::Cow;
 
 mod error;
 mod fit;
@@ -16,6 +17,7 @@ mod raw;
 mod read;
 
 pub use error::VisibilityError;
+use fit::has_more_clusters;
 pub use fit::{check_match, check_portals, clusters_of_leafs};
 use read::quake2_rows;
 pub use read::{read_hearing, read_visibility};
@@ -77,8 +79,8 @@ pub fn lump_with_sounds(
 ) -> Result<VisibilityLump, VisibilityError> {
     check_match(bsp, leafs)?;
     match bsp.row_form() {
-        RowForm::SeenAndHeard => quake2_lump(&of_leafs(leafs, seen)?),
-        RowForm::Raw => raw::lump(&of_leafs(leafs, seen)?),
+        RowForm::SeenAndHeard => quake2_lump(of_map(bsp, leafs, seen)?.as_ref()),
+        RowForm::Raw => raw::lump(of_map(bsp, leafs, seen)?.as_ref()),
         RowForm::OfLeafs => {
             let (bytes, leaf_rows) = quake_lump(leafs, seen)?;
             let ambient = if bsp.format().has_sounds() { loudness(bsp, leafs, seen, textures)? } else { Vec::new() };
@@ -133,8 +135,11 @@ fn check_square(seen: &BitMatrix, n_clusters: usize) -> Result<(), VisibilityErr
     if fits { Ok(()) } else { Err(VisibilityError::Matrix { n_rows, n_cols, n_clusters }) }
 }
 
-/// Which leafs see which: those of clusters that do.
-fn of_leafs(leafs: &LeafClusters, seen: &BitMatrix) -> Result<BitMatrix, VisibilityError> {
+/// Which clusters of a map of Quake II see which.
+fn of_map<'s>(bsp: &Bsp, leafs: &LeafClusters, seen: &'s BitMatrix) -> Result<Cow<'s, BitMatrix>, VisibilityError> {
+    if !has_more_clusters(bsp, leafs) {
+        return Ok(Cow::Borrowed(seen));
+    }
     check_square(seen, leafs.n_clusters())?;
     let n = leafs.n_leafs();
     let mut rows = BitMatrix::new(n, n);
@@ -143,7 +148,7 @@ fn of_leafs(leafs: &LeafClusters, seen: &BitMatrix) -> Result<BitMatrix, Visibil
             leafs.leafs_of(other).iter().for_each(|&other| rows.set(leaf, other as usize, true));
         }
     }
-    Ok(rows)
+    Ok(Cow::Owned(rows))
 }
 
 /// Rows of leafs, and where the row of each leaf begins.
