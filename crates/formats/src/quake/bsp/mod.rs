@@ -26,6 +26,7 @@ mod rewrite;
 mod surfaces;
 mod tree;
 mod triangles;
+mod world_faces;
 
 pub use covers::FaceCover;
 pub use error::{BspError, BspLumpId};
@@ -35,8 +36,9 @@ pub(in crate::quake) use layout::RowForm;
 pub use leaf::{BspLeaf, LeafRow};
 pub use places::ClusterPlaces;
 pub(in crate::quake) use rewrite::NewVisibility;
-pub use surfaces::{LeafFaces, WorldFaces};
+pub use surfaces::LeafFaces;
 pub use tree::{BspChild, BspNode, BspTree};
+pub use world_faces::WorldFaces;
 
 use std::ops::Range;
 

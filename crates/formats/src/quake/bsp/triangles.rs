@@ -1,6 +1,6 @@
 //! Faces of Quake III: runs of vertices, as triangles or as the grid of a curved face.
 
-use super::surfaces::WorldFaces;
+use super::world_faces::WorldFaces;
 use super::{Bsp, BspError, i32_at};
 use sightlines_geometry::Point3;
 use std::ops::Range;

@@ -256,3 +256,10 @@ impl From<PrtError> for crate::ReadErrorKind {
         Self::content(error)
     }
 }
+
+impl PrtErrorKind {
+    /// A number that is not in a range.
+    pub(super) fn count(item: PrtItem, found: impl ToString, range: std::ops::RangeInclusive<u64>) -> Self {
+        Self::Count { item, found: found.to_string(), min: *range.start(), max: *range.end() }
+    }
+}

@@ -1,6 +1,6 @@
 //! Hints of portals, and solid faces: what files of Quake III have besides. Visibility does not need them.
 
-use super::{PORTAL_POINTS, Prt, PrtErrorKind, PrtItem, read};
+use super::{PORTAL_POINTS, Prt, PrtErrorKind, PrtItem};
 use crate::point::check_point;
 use sightlines_cells::Point3;
 
@@ -22,7 +22,7 @@ impl Prt {
     pub fn with_faces(mut self, hints: Vec<u32>, mut faces: Vec<SolidFace>) -> Result<Self, PrtErrorKind> {
         let n = self.n_portals() as u64;
         if hints.len() as u64 != n {
-            return Err(read::count_error(
+            return Err(PrtErrorKind::count(
                 PrtItem::Hint { portal: hints.len().min(self.n_portals()) },
                 hints.len(),
                 n..=n,
@@ -31,10 +31,10 @@ impl Prt {
         let max = u64::from(self.n_clusters() - 1);
         for (face, solid) in faces.iter_mut().enumerate() {
             if !PORTAL_POINTS.contains(&solid.points.len()) {
-                return Err(read::count_error(PrtItem::FacePoints { face }, solid.points.len(), 3..=64));
+                return Err(PrtErrorKind::count(PrtItem::FacePoints { face }, solid.points.len(), 3..=64));
             }
             if u64::from(solid.cluster) > max {
-                return Err(read::count_error(PrtItem::FaceCluster { face }, solid.cluster, 0..=max));
+                return Err(PrtErrorKind::count(PrtItem::FaceCluster { face }, solid.cluster, 0..=max));
             }
             for (point, p) in solid.points.iter_mut().enumerate() {
                 *p = check_point(*p).map_err(|source| PrtErrorKind::FaceCoordinate { face, point, source })?;

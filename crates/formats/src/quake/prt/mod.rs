@@ -112,11 +112,11 @@ impl Prt {
     pub fn push_portal(&mut self, clusters: [u32; 2], points: &[Point3]) -> Result<(), PrtErrorKind> {
         let portal = self.portals.len();
         if !PORTAL_POINTS.contains(&points.len()) {
-            return Err(read::count_error(PrtItem::Points { portal }, points.len(), 3..=64));
+            return Err(PrtErrorKind::count(PrtItem::Points { portal }, points.len(), 3..=64));
         }
         let max = u64::from(self.n_clusters - 1);
         if let Some(&cluster) = clusters.iter().find(|&&c| c >= self.n_clusters) {
-            return Err(read::count_error(PrtItem::Cluster { portal }, cluster, 0..=max));
+            return Err(PrtErrorKind::count(PrtItem::Cluster { portal }, cluster, 0..=max));
         }
         if clusters[0] == clusters[1] {
             return Err(PrtErrorKind::SelfPortal { portal, cluster: clusters[0] });

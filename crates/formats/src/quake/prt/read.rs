@@ -251,11 +251,7 @@ fn whole(token: &Token<'_>, item: PrtItem, range: RangeInclusive<u64>) -> Result
         return Err(unexpected(token, item));
     }
     let number = text.parse::<u64>().ok().filter(|n| range.contains(n)).and_then(|n| u32::try_from(n).ok());
-    number.ok_or_else(|| at(token, count_error(item, token.shown(), range)))
-}
-
-pub(super) fn count_error(item: PrtItem, found: impl ToString, range: RangeInclusive<u64>) -> PrtErrorKind {
-    PrtErrorKind::Count { item, found: found.to_string(), min: *range.start(), max: *range.end() }
+    number.ok_or_else(|| at(token, PrtErrorKind::count(item, token.shown(), range)))
 }
 
 fn at(token: &Token<'_>, kind: PrtErrorKind) -> PrtError {

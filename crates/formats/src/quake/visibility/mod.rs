@@ -10,6 +10,7 @@ use sightlines_pvs::BitMatrix;
 use sightlines_pvs::bits::{ones, or_words};
 use std::borrow::Cow;
 
+mod bytes;
 mod error;
 mod fit;
 mod orientation;

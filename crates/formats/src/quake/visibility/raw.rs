@@ -1,6 +1,6 @@
 //! Rows as they are, those of Quake III: the number of clusters, the bytes of a row, and a row for each.
 
-use super::read::{number, put_row};
+use super::bytes::{number, put_row};
 use super::{Bsp, VisibilityError, VisibilityLump, check_square, place};
 use sightlines_pvs::BitMatrix;
 
