@@ -25,14 +25,17 @@ pub struct Opening {
 
 /// How many cuts of a polygon by a plane are made for each node, on average. Real maps take some hundred; a tree that was made to be slow would
 /// take as many as it has nodes.
-const MOST_CUTS: u64 = 1 << 14;
+const MOST_CUTS: u64 = 1 << 12;
+/// How many openings are found for each node, on average, beside some for small trees. Real maps have two.
+const MOST_OPENINGS: u64 = 64;
+const FEW_OPENINGS: u64 = 1 << 16;
 
 /// All pairs of regions that meet in an area, for which `is_wanted` says so, within a cube of `size` in all directions from the origin.
 /// Sorted by their node, and in the order of the tree below it. Parallel; the same for any number of threads.
 ///
 /// Whether two regions meet is decided exactly. A region without volume meets nothing.
 ///
-/// `None` if the tree takes more than 2^14 cuts for each node, as only a hostile one does.
+/// `None` if the tree takes more than 2^12 cuts or has more than 64 openings for each node, as only a hostile one does.
 ///
 /// # Panics
 /// If `size` is not a power of two from 1 to 2^60.
@@ -50,7 +53,8 @@ pub fn openings(tree: &Tree, size: f64, is_wanted: impl Fn([Region; 2]) -> bool 
             planes.add(Plane { normal, distance }).id
         })
     });
-    let walk = Walk { tree, planes, of_node, walls, n_cuts: AtomicU64::new(0) };
+    let (n_cuts, n_openings) = (AtomicU64::new(0), AtomicU64::new(0));
+    let walk = Walk { tree, planes, of_node, walls, n_cuts, n_openings };
     let found: Option<Vec<Vec<Opening>>> =
         (0..tree.nodes().len()).into_par_iter().map(|node| walk.openings_of(node, &is_wanted)).collect();
     found.map(|found| found.into_iter().flatten().collect())
@@ -64,10 +68,11 @@ struct Walk<'t> {
     /// The planes of the cube.
     walls: [[PlaneId; 2]; 3],
     n_cuts: AtomicU64,
+    n_openings: AtomicU64,
 }
 
 impl Walk<'_> {
-    /// The openings on the plane of a node. `None` if the cuts are used up.
+    /// The openings on the plane of a node. `None` if cuts or openings are used up.
     fn openings_of(&self, node: usize, is_wanted: &(impl Fn([Region; 2]) -> bool + Sync)) -> Option<Vec<Opening>> {
         let mut all = Vec::new();
         let Some(polygon) = self.polygon(node)? else { return Some(all) };
@@ -75,6 +80,10 @@ impl Walk<'_> {
             for (back, part) in self.below(node, 1, part)? {
                 let regions = [front, back];
                 if is_wanted(regions) {
+                    let limit = FEW_OPENINGS + MOST_OPENINGS * self.tree.nodes().len() as u64;
+                    if self.n_openings.fetch_add(1, Ordering::Relaxed) >= limit {
+                        return None;
+                    }
                     let corners = self.corners(node, part.corners());
                     all.push(Opening { node: node as u32, regions, corners });
                 }

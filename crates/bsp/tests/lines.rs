@@ -203,18 +203,31 @@ fn a_plane_below_itself_divides_nothing() {
     }
 }
 
+/// Strips along x in front of a plane and along y behind it: as many openings as there are pairs of strips.
+fn strips(n: u32) -> Tree {
+    let node = |normal: [f64; 3], distance: f64, front: Child, back: Child| Node {
+        plane: Plane { normal, distance },
+        children: [front, back],
+    };
+    let mut nodes = vec![node([0.0, 0.0, 1.0], 0.0, Child::Node(1), Child::Node(n + 1))];
+    for (axis, first) in [(0, 1), (1, n + 1)] {
+        for k in 0..n {
+            let mut normal = [0.0; 3];
+            normal[axis] = 1.0;
+            let next = if k + 1 < n { Child::Node(first + k + 1) } else { Child::Leaf(n) };
+            nodes.push(node(normal, f64::from(k) / 8.0, next, Child::Leaf(k)));
+        }
+    }
+    Tree::new(nodes).unwrap()
+}
+
 #[test]
 fn hostile_trees_are_given_up() {
-    // Hundreds of planes through one region, each cutting all others: more cuts than a map takes, but not endless.
-    let n = 600;
-    let rows: Vec<Row> = (0..n).map(|k| [1 + k * k % 97, 1 + k % 89, 1 + k % 83, k % 7]).collect();
-    let nodes = rows.iter().enumerate().map(|(k, row)| {
-        let [x, y, z, d] = row.map(|x| x as f64);
-        let next = if k + 1 < rows.len() { Child::Node(k as u32 + 1) } else { Child::Leaf(0) };
-        Node { plane: Plane { normal: [x, y, z], distance: d }, children: [next, Child::Leaf(k as u32)] }
-    });
-    let tree = Tree::new(nodes.collect()).unwrap();
-    // A chain divides a region once for each plane, so this one ends.
-    let found = openings(&tree, SIZE, |_| true);
-    assert!(found.is_some_and(|found| found.len() >= 3));
+    let n = 64;
+    let found = openings(&strips(n), SIZE, |_| true).unwrap();
+    // Between strips across each other, and between neighbours.
+    assert_eq!(found.len() as u32, (n + 1) * (n + 1) + 2 * n);
+    assert_eq!(openings(&strips(400), SIZE, |_| true), None);
+    // What is not wanted costs no memory.
+    assert_eq!(openings(&strips(400), SIZE, |_| false), Some(Vec::new()));
 }

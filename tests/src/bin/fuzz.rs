@@ -5,7 +5,7 @@
 //! that replays it. Run by `cargo xtask fuzz`.
 
 use sightlines::bake::from_table::{convex_graph, planar_graph};
-use sightlines::bake::quake::{StateKey, state};
+use sightlines::bake::quake::{StateKey, portals_of_map, state};
 use sightlines::bake::reject::{RejectOptions, reject_wad};
 use sightlines::bake::{PlanBakeOptions, PortalMode, PrtOptions, SceneBakeOptions, bake_plan, bake_prt, bake_scene};
 use sightlines::cells::Scene;
@@ -13,7 +13,8 @@ use sightlines::formats::doom::{DoomMap, DoomMapSource, ML_TWOSIDED, SourceLine,
 use sightlines::formats::geojson::{parse_plan, write_plan};
 use sightlines::formats::input::{FORMATS, Source, detect};
 use sightlines::formats::levels::{LevelFile, LevelsIndex, parse_levels_index, write_levels_index};
-use sightlines::formats::quake::{graph_of_prt, prt::parse_prt};
+use sightlines::formats::quake::prt::{parse_prt, write_prt};
+use sightlines::formats::quake::{Bsp, BspFormat, graph_of_prt};
 use sightlines::formats::scene::{SceneFile, parse_glb, parse_glb_with_source, parse_obj, write_glb};
 use sightlines::formats::view_cells::parse_view_cells;
 use sightlines::formats::wad::WadKind;
@@ -21,6 +22,7 @@ use sightlines::formats::{LumpName, Wad, WadBuilder};
 use sightlines::geometry::check_coordinate;
 use sightlines::kdtree::{SceneOptions, subdivide_scene};
 use sightlines::pvs::{CellId, PlaceBuffer, Table};
+use sightlines::scenes::world::{BspWorldOptions, bsp_world};
 use sightlines::scenes::{self, TowerOptions, tower};
 use sightlines::stabtree::{ConvexOptions, ConvexSearch, Zones, shoot_axial_chords};
 use sightlines_capi::fuzz::drive;
@@ -30,6 +32,7 @@ use sightlines_tests::certificates;
 use sightlines_tests::simplified::SmallMesh;
 use sightlines_tests::surfaces::SmallShot;
 use sightlines_tests::volumes::SmallWorld;
+use sightlines_tests::world_files::bsp_bytes;
 use std::panic::catch_unwind;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
@@ -46,7 +49,7 @@ struct Target {
     check: fn(&[u8]) -> bool,
 }
 
-const TARGETS: [Target; 21] = [
+const TARGETS: [Target; 22] = [
     Target { name: "wad", seeds: wads, check: check_wad },
     Target { name: "reject", seeds: wads, check: check_reject },
     Target { name: "textmap", seeds: texts, check: check_text },
@@ -64,6 +67,7 @@ const TARGETS: [Target; 21] = [
     Target { name: "packed", seeds: packed_tables, check: check_packed },
     Target { name: "prt", seeds: prts, check: check_prt },
     Target { name: "bsp", seeds: maps, check: check_map },
+    Target { name: "portals", seeds: map_worlds, check: check_made_portals },
     Target { name: "vis-state", seeds: vis_states, check: check_vis_state },
     Target { name: "certificates", seeds: certificates::seeds, check: certificates::check },
     Target { name: "capi", seeds: calls, check: check_calls },
@@ -485,6 +489,22 @@ fn maps() -> Vec<Vec<u8>> {
 
 fn check_map(bytes: &[u8]) -> bool {
     quake_files::check_bsp(bytes) | quake_files::check_world(bytes)
+}
+
+/// Maps with trees and faces, of each format.
+fn map_worlds() -> Vec<Vec<u8>> {
+    let worlds =
+        (0..2).map(|seed| bsp_world(BspWorldOptions { seed, ..BspWorldOptions::default() }).expect("a small world"));
+    let files = worlds.flat_map(|world| BspFormat::ALL.map(|format| bsp_bytes(&world, format)));
+    quake_files::small_worlds().into_iter().chain(files).collect()
+}
+
+fn check_made_portals(bytes: &[u8]) -> bool {
+    let Ok(bsp) = Bsp::parse(bytes.to_vec()) else { return false };
+    let Ok(made) = portals_of_map(&bsp) else { return false };
+    let again = parse_prt(write_prt(&made.prt).as_bytes()).expect("what was made is read");
+    assert_eq!(again, made.prt);
+    true
 }
 
 fn check_anything(bytes: &[u8]) -> bool {

@@ -49,7 +49,7 @@ pub enum PortalsError {
     #[error("the map's tree: {0}")]
     Tree(#[from] TreeError),
     /// The planes of the tree cut each other so often that it is none of a map.
-    #[error("the map's tree takes more than 2^14 cuts for each of its {n_nodes} nodes")]
+    #[error("the map's tree takes more than 2^12 cuts, or has more than 64 openings, for each of its {n_nodes} nodes")]
     TooManyCuts {
         /// Its nodes.
         n_nodes: usize,
