@@ -182,7 +182,7 @@ pub fn reject_wad(wad: &Wad, options: &RejectOptions<'_>) -> Result<RejectOutcom
     // A map may be skipped among others, but to do nothing at all is an error.
     let insist = is_named || !chosen.iter().any(|m| is_readable(m));
     let mut maps = Vec::with_capacity(chosen.len());
-    let mut lumps = Vec::new();
+    let (mut lumps, mut n_bytes) = (Vec::new(), 0u64);
     for map in chosen {
         let start = Instant::now();
         let (n_sectors, status, bytes) = match do_map(wad, map, insist, options) {
@@ -190,6 +190,11 @@ pub fn reject_wad(wad: &Wad, options: &RejectOptions<'_>) -> Result<RejectOutcom
             Err(error) => (0, MapStatus::Failed(Box::new(error)), None),
             Ok(done) => done,
         };
+        n_bytes += bytes.as_ref().map_or(0, |b| b.len() as u64);
+        // A file with maps that share their lumps may ask for any number of large tables.
+        if i32::try_from(n_bytes).is_err() {
+            return Err(WadError::TooLarge { lump: lumps.len(), end: n_bytes }.into());
+        }
         lumps.extend(bytes.map(|b| (map, b)));
         maps.push(MapOutcome { name: map.name(), n_sectors, status, time: start.elapsed() });
     }
@@ -220,10 +225,15 @@ fn choose<'m>(all: &'m [MapLumps], names: &[String]) -> Result<Vec<&'m MapLumps>
     Ok(all.iter().filter(requested).collect())
 }
 
-/// The table that an engine reads from a lump: bytes past its end do not count. `None` if it is short.
+/// How many bytes a table may have behind its end: less than what some tools fill lumps up to.
+const PADDING: usize = 4;
+
+/// The table of a lump, which may be padded. `None` for one of any other length: it is of the map as it was before a sector came or went, and read as that of
+/// this one it would be taken for one with effects.
 fn old_table(n_sectors: u32, bytes: &[u8]) -> Option<RejectTable> {
-    let length = usize::try_from(RejectTable::byte_len(n_sectors)).ok()?;
-    RejectTable::from_bytes(n_sectors, bytes.get(..length)?).ok()
+    let (table, rest) = bytes.split_at_checked(usize::try_from(RejectTable::byte_len(n_sectors)).ok()?)?;
+    let is_padding = rest.len() < PADDING && rest.iter().all(|&byte| byte == 0);
+    if is_padding { RejectTable::from_bytes(n_sectors, table).ok() } else { None }
 }
 
 type Done = (u32, MapStatus, Option<Vec<u8>>);

@@ -27,6 +27,7 @@ mod numbers;
 mod output;
 mod picture;
 mod place;
+mod plain;
 mod progress;
 mod reasons;
 mod region;

@@ -18,6 +18,9 @@ set "WORD=%~1"
 if "%WORD%"=="-o" (
     set "OUT=%~2"
     shift
+) else if "%WORD%"=="--output" (
+    set "OUT=%~2"
+    shift
 ) else if "%WORD:~0,2%"=="-o" (
     set "OUT=%WORD:~2%"
 )
@@ -26,7 +29,7 @@ goto next
 
 :build
 "%ZDBSP%" %ALL% >"%OUT%.log" 2>&1
-if errorlevel 1 (
+if not "%errorlevel%"=="0" (
     type "%OUT%.log" 1>&2
     echo error: zdbsp failed 1>&2
     del "%OUT%.log"
@@ -34,7 +37,7 @@ if errorlevel 1 (
 )
 del "%OUT%.log"
 "%SIGHTLINES%" -q reject "%OUT%" -o "%OUT%" --strict >nul
-if errorlevel 1 (
+if not "%errorlevel%"=="0" (
     echo error: no REJECT lump was built in "%OUT%" 1>&2
     exit /b 2
 )

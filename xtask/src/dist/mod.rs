@@ -20,7 +20,17 @@ use std::process::Command;
 /// The programs of a release.
 const PROGRAMS: [&str; 2] = ["sightlines", "sightlines-vis"];
 /// Texts that lie beside them.
-const TEXTS: [&str; 4] = ["README.md", "CHANGELOG.md", "LICENSE-MIT", "LICENSE-APACHE"];
+const TEXTS: [&str; 9] = [
+    "README.md",
+    "CHANGELOG.md",
+    "LICENSE-MIT",
+    "LICENSE-APACHE",
+    "docs/guides/quake.md",
+    "docs/guides/doom.md",
+    "docs/guides/udb/sightlines.cfg",
+    "docs/guides/udb/zdbsp-reject.cmd",
+    "docs/guides/udb/zdbsp-reject.sh",
+];
 /// The name of the file with the licences of others.
 const NOTICES: &str = "THIRD-PARTY-LICENSES.txt";
 
@@ -108,7 +118,7 @@ fn stage(tree: &Path, built: &Path, release: &Release) -> Result<(), Failure> {
     empty(tree)?;
     let (bin, share) = (tree.join("bin"), tree.join("share"));
     let doc = share.join("doc/sightlines");
-    for folder in [&bin, &doc] {
+    for folder in [&bin, &doc.join("docs/guides/udb")] {
         in_file(folder, fs::create_dir_all(folder))?;
     }
     for program in PROGRAMS {

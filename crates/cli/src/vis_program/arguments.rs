@@ -24,9 +24,9 @@ pub(super) struct VisProgramArgs {
     /// Compute the exact answer, as without this option
     #[arg(long, help_heading = "Method", overrides_with = "fast")]
     pub(super) full: bool,
-    /// Test level, 0 to 4; all give the same, exact answer
-    #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u8).range(0..=4))]
-    pub(super) level: u8,
+    /// Test level; all give the same, exact answer
+    #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 4)]
+    pub(super) level: i64,
     /// Number of threads; 0 uses every core
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::numbers::threads)]
     pub(super) threads: usize,
@@ -41,8 +41,11 @@ pub(super) struct VisProgramArgs {
     #[arg(long, help_heading = "Resuming")]
     pub(super) nostate: bool,
     /// Keep the state after the end, in MAP.vis-state
-    #[arg(long, help_heading = "Resuming")]
+    #[arg(long, help_heading = "Resuming", overrides_with = "autoclean")]
     pub(super) noautoclean: bool,
+    /// Remove the state at the end, as without this option
+    #[arg(long, help_heading = "Resuming", overrides_with = "noautoclean")]
+    pub(super) autoclean: bool,
     /// Seconds between two savings of the state
     #[arg(long, help_heading = "Resuming", hide = true, value_name = "SECONDS", default_value_t = 30)]
     pub(super) save_every: u64,
@@ -64,7 +67,7 @@ pub(super) struct VisProgramArgs {
     pub(super) noambientlava: bool,
 
     /// Print more
-    #[arg(long, help_heading = "Messages", visible_alias = "v")]
+    #[arg(long, help_heading = "Messages", visible_aliases = ["v", "vv"])]
     pub(super) verbose: bool,
     /// Print less: as -nopercent -nostat -noprogress
     #[arg(long, help_heading = "Messages", visible_alias = "noverbose")]
@@ -174,7 +177,10 @@ fn with_two_dashes(command: &clap::Command, line: impl IntoIterator<Item = OsStr
         };
         let mut option = OsString::from(format!("--{name}"));
         match value {
-            Some(value) if !takes_value && value == OFF => continue,
+            Some(value) if !takes_value && value == OFF => match INVERSES.iter().find(|(flag, _)| *flag == name) {
+                Some((_, inverse)) => option = OsString::from(format!("--{inverse}")),
+                None => continue,
+            },
             Some(value) if takes_value || !is_switch(&value) => {
                 option.push("=");
                 option.push(value);
@@ -189,6 +195,8 @@ fn with_two_dashes(command: &clap::Command, line: impl IntoIterator<Item = OsStr
 /// What may be behind a flag, and turns it on or off.
 const SWITCHES: [&str; 3] = [OFF, "1", "-1"];
 const OFF: &str = "0";
+/// Flags that say what holds without them; turned off, they are these.
+const INVERSES: [(&str, &str); 2] = [("autoclean", "noautoclean"), ("nolog", "log")];
 
 /// What is behind the dashes of an option.
 fn option_name(argument: &OsStr) -> Option<&str> {
@@ -230,6 +238,11 @@ mod tests {
         assert_eq!(parse("-path -log -path b a").unwrap().path, ["-log", "b"]);
         let flags = ["", " 1", " -1", " 0"].map(|value| parse(&format!("-lowpriority{value} a")).unwrap().lowpriority);
         assert_eq!(flags, [true, true, true, false]);
+        let cleans = |line: &str| !parse(line).unwrap().noautoclean;
+        let all =
+            ["a", "-autoclean a", "-autoclean 0 a", "-noautoclean a", "-noautoclean 0 a", "-noautoclean -autoclean a"];
+        assert_eq!(all.map(cleans), [true, true, false, false, true, true]);
+        assert!(parse("-nolog 0 a").unwrap().log && parse("-vv -level 5 a").unwrap().verbose);
         // The last of two that contradict each other counts.
         let fast = |line: &str| parse(line).map(|args| (args.fast, args.full)).unwrap();
         assert_eq!([fast("-fast -full a"), fast("-full -fast a")], [(false, true), (true, false)]);
@@ -240,7 +253,7 @@ mod tests {
         for (line, what) in [
             ("-nosuch a", "error: there is no option -nosuch\n"),
             ("a ---NoSuch=3", "error: there is no option ---NoSuch=3\n"),
-            ("-level 5 a", "invalid value '5' for '--level <N>'"),
+            ("-level x a", "invalid value 'x' for '--level <N>'"),
             ("-threads many a", "invalid value 'many' for '--threads <N>'"),
             ("a -level", "a value is required for '--level <N>'"),
             ("-fast=2 a", "unexpected value '2' for '--fast'"),

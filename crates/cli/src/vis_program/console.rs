@@ -57,7 +57,11 @@ impl Console {
         if let Some(log) = &self.log {
             log.line(line);
         }
-        output::stdout(|out| writeln!(out, "{line}"))
+        match output::stdout(|out| writeln!(out, "{line}")) {
+            // An editor that stops reading still wants its map.
+            Err(error) if crate::is_closed_pipe(&error) => Ok(()),
+            said => said,
+        }
     }
 
     /// Lets warnings go to standard error and to the log from now on.
@@ -66,7 +70,7 @@ impl Console {
         let writer = move || Both { log: log.clone() };
         tracing_subscriber::fmt()
             .with_writer(writer)
-            .with_ansi(self.colours)
+            .with_ansi(self.colours && self.log.is_none())
             .with_max_level(if self.verbose { LevelFilter::INFO } else { LevelFilter::WARN })
             .with_target(false)
             .without_time()

@@ -11,6 +11,7 @@ mod priority;
 
 use crate::Answer;
 use crate::commands::vis::{Beginning, Manner, Sound, StateUse, VisArgs, compute};
+use crate::map_portals::MADE;
 use crate::output::{bytes, count};
 use arguments::VisProgramArgs;
 use clap::CommandFactory;
@@ -69,7 +70,9 @@ fn see(args: &VisProgramArgs, map: &Path, console: &Console) -> Result<(), Error
         let clusters = count(prt.n_clusters(), "cluster");
         let all = count(prt.n_portals() as u64, "portal");
         console.say(Kind::Progress, &format!("map        {}: {}", map.display(), bsp.format().name()))?;
-        console.say(Kind::Progress, &format!("portals    {}: {}", prt_path.display(), prt.dialect()))?;
+        let portals =
+            if prt_path == map { MADE.to_owned() } else { format!("{}: {}", prt_path.display(), prt.dialect()) };
+        console.say(Kind::Progress, &format!("portals    {portals}"))?;
         console.say(Kind::Statistics, &format!("counts     {leafs}, {clusters}, {all}"))?;
         if resumed {
             console.say(Kind::Progress, "resumed    from where an earlier run was stopped")?;

@@ -6,13 +6,14 @@
 /// before there are others. Fails, with the reason, where there is no such program.
 #[cfg(unix)]
 pub(super) fn lower() -> Result<(), String> {
+    use crate::plain::plain;
     use std::process::{Command, Stdio, id};
     let mut renice = Command::new("renice");
     renice.args(["-n", "10", "-p", &id().to_string()]).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
     match renice.status() {
         Ok(status) if status.success() => Ok(()),
         Ok(status) => Err(format!("renice failed, {status}")),
-        Err(error) => Err(format!("renice does not run: {error}")),
+        Err(error) => Err(format!("renice does not run: {}", plain(&error.to_string()))),
     }
 }
 

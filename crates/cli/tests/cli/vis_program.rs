@@ -7,6 +7,7 @@ use sightlines::formats::quake::visibility::{VisibilityLump, lump, read_hearing,
 use sightlines::formats::quake::{Bsp, BspFormat, LeafClusters};
 use sightlines::pvs::BitMatrix;
 use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
 
 /// How editors call their `vis`, `MAP` being the map without extension, and whether a coarse bound is asked for.
 ///
@@ -293,7 +294,7 @@ fn low_priority_changes_no_byte() {
     folder.run(&["vis", "Größe 1.bsp", "-o", "reference.bsp"]).expect(0);
     let run = folder.run_vis(&["-lowpriority", "Größe 1"]).expect(0);
     assert!(folder.read("Größe 1.bsp") == folder.read("reference.bsp") && run.err.is_empty());
-    let path = std::process::Command::new(env!("CARGO_BIN_EXE_sightlines-vis"))
+    let path = Command::new(env!("CARGO_BIN_EXE_sightlines-vis"))
         .args(["-lowpriority", "Größe 1"])
         .env("PATH", folder.path("."))
         .current_dir(folder.path("."))
@@ -301,6 +302,7 @@ fn low_priority_changes_no_byte() {
         .expect("the program was built");
     let out = String::from_utf8_lossy(&path.stdout);
     assert!(path.status.success() && out.contains("note       -lowpriority has no effect: "), "{out}");
+    assert!(!out.to_lowercase().contains("error"), "{out}");
 }
 
 #[test]
@@ -313,4 +315,39 @@ fn help_and_version_are_printed() {
     }
     let version = folder.run_vis(&["-version"]).expect(0).out;
     assert_eq!(version, format!("sightlines-vis {}\n", env!("CARGO_PKG_VERSION")));
+}
+
+/// A program that calls this one may stop to read what it prints, and still gets its map.
+#[test]
+fn a_closed_pipe_is_no_reason_to_give_up_the_map() {
+    let folder = Folder::new();
+    let map = rooms(3, 2);
+    folder.write("map.bsp", &map.bsp);
+    folder.write("map.prt", &map.prt);
+    folder.write("other.bsp", &map.bsp);
+    folder.write("other.prt", &map.prt);
+    folder.run_vis(&["other"]).expect(0);
+    let mut command = Command::new(env!("CARGO_BIN_EXE_sightlines-vis"));
+    let mut child = command.arg("map").current_dir(folder.path(".")).stdout(Stdio::piped()).spawn().expect("a program");
+    drop(child.stdout.take());
+    assert!(child.wait().expect("it ends").success());
+    assert!(folder.read("map.bsp") == folder.read("other.bsp") && folder.read("map.bsp") != map.bsp);
+}
+
+/// What cannot be saved or read beside a map is a warning, without the word that editors look for.
+#[test]
+fn warnings_do_not_have_the_word_for_failures() {
+    let folder = Folder::new();
+    let map = rooms(3, 2);
+    folder.write("map.bsp", &map.bsp);
+    folder.write("map.prt", &map.prt);
+    std::fs::create_dir(folder.path("map.vis-state")).expect("a folder");
+    let run = folder.run_vis(&["map"]).expect(0);
+    let text = (run.out + &run.err).to_lowercase();
+    assert!(text.contains("the state of this run is not saved") && !text.contains("error"), "{text}");
+    // An empty state is none.
+    std::fs::remove_dir(folder.path("map.vis-state")).expect("a folder");
+    folder.write("map.vis-state", b"");
+    let run = folder.run_vis(&["map"]).expect(0);
+    assert!(run.err.is_empty() && !folder.names().contains(&"map.vis-state".to_owned()), "{}", run.err);
 }

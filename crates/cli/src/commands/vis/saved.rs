@@ -2,6 +2,7 @@
 
 use super::Error;
 use crate::error::InputError;
+use crate::plain::plain;
 use sightlines::bake::quake::{StateKey, state};
 use sightlines::cells::{CellGraph, Convex};
 use sightlines::formats::atomic_write;
@@ -62,10 +63,10 @@ impl Saved {
             Ok(state) => state,
             Err(error) if usage == StateUse::ResumeIfItFits => {
                 if matches!(error, Error::State { .. }) {
-                    tracing::warn!("{}; beginning anew", error.without_advice());
+                    tracing::warn!("{}; beginning anew", plain(&error.without_advice()));
                 } else {
                     saved.every = None;
-                    tracing::warn!("{}; the state of this run is not saved", error.without_advice());
+                    tracing::warn!("{}; the state of this run is not saved", plain(&error.without_advice()));
                 }
                 None
             }
@@ -91,6 +92,10 @@ impl Saved {
         };
         let mut bytes = Vec::new();
         file.by_ref().take(state::MAGIC.len() as u64).read_to_end(&mut bytes).map_err(open)?;
+        // What a run leaves that is stopped as it begins to write, on some file systems.
+        if bytes.is_empty() {
+            return Ok(None);
+        }
         if !state::is_state(&bytes) {
             return Err(Error::NotState(path.clone()));
         }
@@ -122,7 +127,7 @@ impl Saved {
         }
         // A state that cannot be written is lost only if the run is stopped, so the run continues.
         if let Err(error) = atomic_write(&self.path, &state::encode(&self.key, state)) {
-            tracing::warn!("{error}; a run that is stopped cannot be resumed");
+            tracing::warn!("{}; a run that is stopped cannot be resumed", plain(&error.to_string()));
         }
         (self.last, self.stage) = (Instant::now(), Some(state.stage));
     }
@@ -134,7 +139,7 @@ impl Saved {
         }
         match fs::remove_file(&self.path) {
             Err(error) if error.kind() != io::ErrorKind::NotFound => {
-                tracing::warn!("{}: cannot be removed: {error}", self.path.display());
+                tracing::warn!("{}: cannot be removed: {}", self.path.display(), plain(&error.to_string()));
             }
             _ => {}
         }
