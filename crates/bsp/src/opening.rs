@@ -18,16 +18,16 @@ pub struct Opening {
     /// What is in front of that plane, and what is behind it.
     pub regions: [Region; 2],
     /// At least three corners, in scene units, counter-clockwise as seen from in front. They are rounded outwards: the polygon that
-    /// they go round has all of the exact one within, seen along the axis that the plane is nearest to be across of. Corners that
+    /// they go round has all of the exact one within, seen along the axis nearest to the plane's normal. Corners that
     /// doubles hold are exact.
     pub corners: Vec<Point3>,
 }
 
-/// How many cuts of a polygon by a plane are made for each node, on average. Real maps take some hundred; a tree that was made to be slow would
-/// take as many as it has nodes.
-const MOST_CUTS: u64 = 1 << 12;
+/// How many corners of polygons are compared with planes for each node, on average. Real maps take some hundred; a tree that was made to be slow would
+/// take many times as many as it has nodes.
+const MOST_CUTS: u64 = 1 << 15;
 /// How many openings are found for each node, on average, beside some for small trees. Real maps have two.
-const MOST_OPENINGS: u64 = 64;
+const MOST_OPENINGS: u64 = 32;
 const FEW_OPENINGS: u64 = 1 << 16;
 
 /// All pairs of regions that meet in an area, for which `is_wanted` says so, within a cube of `size` in all directions from the origin.
@@ -35,7 +35,8 @@ const FEW_OPENINGS: u64 = 1 << 16;
 ///
 /// Whether two regions meet is decided exactly. A region without volume meets nothing.
 ///
-/// `None` if the tree takes more than 2^12 cuts or has more than 64 openings for each node, as only a hostile one does.
+/// `None` if, for each node, the tree takes more than 2^15 comparisons of a corner with a plane, or has more than 32 openings (and 2^16 more), as
+/// only a hostile one does.
 ///
 /// # Panics
 /// If `size` is not a power of two from 1 to 2^60.
@@ -97,7 +98,7 @@ impl Walk<'_> {
         let mut polygon = Polygon::of_plane(self.of_node[node].id, &self.walls, &self.planes);
         for (above, side) in self.tree.above(node) {
             let Some(whole) = polygon else { break };
-            self.count()?;
+            self.count(whole.corners().len())?;
             let plane = self.of_node[above];
             polygon = whole.on_side(plane.id, plane.sign_of(side), &self.planes);
         }
@@ -117,7 +118,7 @@ impl Walk<'_> {
                 Child::Node(below) => below,
             };
             let plane = self.of_node[at as usize];
-            self.count()?;
+            self.count(polygon.corners().len())?;
             let on = |sign: i32| Region { node: at, side: plane.side_of(sign) as u8, leaf: 0 };
             match polygon.cut(plane.id, &self.planes) {
                 Cut::Whole(sign) => open.push((on(sign), polygon)),
@@ -142,9 +143,9 @@ impl Walk<'_> {
         own.sign_of(side) * if agrees { 1 } else { -1 }
     }
 
-    fn count(&self) -> Option<()> {
+    fn count(&self, n: usize) -> Option<()> {
         let limit = MOST_CUTS * self.tree.nodes().len() as u64;
-        (self.n_cuts.fetch_add(1, Ordering::Relaxed) < limit).then_some(())
+        (self.n_cuts.fetch_add(n as u64, Ordering::Relaxed) < limit).then_some(())
     }
 
     /// Corners as doubles, counter-clockwise as seen from in front of the node.

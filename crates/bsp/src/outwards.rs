@@ -54,7 +54,8 @@ fn places(corners: &[(Point3, bool)], near: f64) -> Vec<Place> {
 /// The places, moved outwards; none for a sliver.
 fn moved(places: &[Place], normal: Point3, largest: f64) -> Option<Vec<Point3>> {
     let n = places.len();
-    if n < 3 {
+    // Narrower than that, rounded corners may go round either way.
+    if n < 3 || width(places, normal) < 4.0 * largest * ONE_PLACE {
         return None;
     }
     let unit = |from: Point3, to: Point3| {
@@ -78,9 +79,22 @@ fn moved(places: &[Place], normal: Point3, largest: f64) -> Option<Vec<Point3>> 
         if by.is_nan() || by > largest * SLIVER {
             return None;
         }
+        // Along the plane: the way is rounded.
+        let way = difference(way, scaled(normal, dot(way, normal)));
         all.push(sum(place.at, scaled(way, by / length(way))));
     }
     Some(all)
+}
+
+/// How wide places are across the longest way between two of them.
+fn width(places: &[Place], normal: Point3) -> f64 {
+    let ways = places.iter().flat_map(|p| places.iter().map(move |q| difference(q.at, p.at)));
+    let longest = ways.max_by(|a, b| length(*a).total_cmp(&length(*b))).unwrap_or_default();
+    let across = cross(normal, longest);
+    let across = scaled(across, 1.0 / length(across));
+    let heights = places.iter().map(|p| dot(difference(p.at, places[0].at), across));
+    let (low, high) = heights.fold((0.0, 0.0), |(low, high): (f64, f64), h| (low.min(h), high.max(h)));
+    high - low
 }
 
 /// A rectangle around all corners, along the longest way between two of them.

@@ -6,14 +6,16 @@
 //! cluster without leafs behind the others, of which nothing is known but its holes, so that every line through two of them counts. The sky is
 //! closed like what is solid. Liquids are seen through, as many engines draw them so.
 
-use super::covered::Covers;
+use super::covered::{Covers, is_sliver};
+use rayon::prelude::*;
 use sightlines_bsp::{Child, Node, Opening, Plane, Region, Tree, TreeError, openings};
 use sightlines_formats::quake::bsp::{BspChild, BspTree, LeafKind};
-use sightlines_formats::quake::prt::{LeafList, PrtErrorKind};
+use sightlines_formats::quake::prt::{LeafList, PORTAL_POINTS, PrtErrorKind};
 use sightlines_formats::quake::{Bsp, BspError, Prt};
+use sightlines_geometry::Point3;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
-/// Coordinates are within twice the largest distance of a plane, and at least this.
+/// The cube in which leafs are looked for is as large as twice the largest distance of a plane and twice the bounds of the leafs, and at least this.
 const LEAST_SIZE: f64 = 65536.0;
 /// The largest distance of a plane, in map units.
 const MOST_DISTANCE: f64 = 1_073_741_824.0;
@@ -27,7 +29,7 @@ pub struct MapPortals {
     pub n_passages: u32,
 }
 
-/// Why a map has no portals that could be made.
+/// Why no portals can be made from a map.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PortalsError {
@@ -37,7 +39,7 @@ pub enum PortalsError {
     /// The map has no leafs that can be seen, or too many; or a portal is beyond what portal files hold.
     #[error(transparent)]
     Prt(#[from] PrtErrorKind),
-    /// A plane is no plane, or farther from the origin than 2^30 map units.
+    /// A plane has no normal, or is farther from the origin than 2^30 map units.
     #[error("node {node} of the map: its plane has no normal, or a distance of {distance}")]
     Plane {
         /// The node, as the file counts them.
@@ -45,18 +47,18 @@ pub enum PortalsError {
         /// The distance.
         distance: f64,
     },
-    /// The tree is none.
+    /// The nodes are not a tree.
     #[error("the map's tree: {0}")]
     Tree(#[from] TreeError),
     /// The planes of the tree cut each other so often that it is none of a map.
-    #[error("the map's tree takes more than 2^12 cuts, or has more than 64 openings, for each of its {n_nodes} nodes")]
+    #[error("the map's tree takes more cuts, or has more openings, than {n_nodes} nodes of a map explain")]
     TooManyCuts {
         /// Its nodes.
         n_nodes: usize,
     },
 }
 
-/// Makes the portals of a map from its tree of planes. O(nodes × some hundred); parallel, the same for any number of threads.
+/// Makes the portals of a map from its tree of planes. O(nodes × some hundred + openings × faces of their plane); parallel, the same for any number of threads.
 ///
 /// Corners of portals are rounded outwards. Nothing of an opening is left out, however small, so there may be slivers that compilers drop.
 /// Detail brushes, which compilers leave out of their portals, are solid here: less is visible.
@@ -65,8 +67,9 @@ pub enum PortalsError {
 /// [`PortalsError`] with the place in the map.
 pub fn portals_of_map(bsp: &Bsp) -> Result<MapPortals, PortalsError> {
     let source = bsp.world_tree()?;
-    let (tree, size) = tree_of(&source)?;
+    let (tree, size) = tree_of(bsp, &source)?;
     let n_clusters = if bsp.format().has_clusters() { bsp.n_clusters() } else { bsp.n_visible_leafs() } as u32;
+    Prt::new(n_clusters)?;
     let places = Places { bsp, n_clusters };
     let all = openings(&tree, size, |_| true);
     let all = all.ok_or(PortalsError::TooManyCuts { n_nodes: tree.nodes().len() })?;
@@ -76,19 +79,23 @@ pub fn portals_of_map(bsp: &Bsp) -> Result<MapPortals, PortalsError> {
     let mut prt = Prt::new(n_clusters + passages.n)?;
     for (opening, _) in all.iter().zip(&covered).filter(|(_, is_covered)| !**is_covered) {
         let cluster = |k: usize| places.cluster(opening.regions[k]);
+        let passage = |k: usize| passages.of_region.get(&opening.regions[k]).map(|k| n_clusters + k);
         let pair = match places.between(opening.regions) {
             Between::Inside => continue,
-            Between::Open => [cluster(0), cluster(1)],
+            // A leaf that the map has no cluster for is part of a passage.
+            Between::Open => [0, 1].map(|k| cluster(k).or_else(|| passage(k))),
             Between::DrawnFrom(side) => {
-                let hole = passages.of_region.get(&opening.regions[1 - side]).map(|k| n_clusters + k);
-                if side == 0 { [cluster(0), hole] } else { [hole, cluster(1)] }
+                let (room, hole) = (cluster(side).or_else(|| passage(side)), passage(1 - side));
+                if side == 0 { [room, hole] } else { [hole, room] }
             }
         };
         // Seen from in front, corners go round counter-clockwise: so does a portal's from inside its second cluster.
         if let [Some(front), Some(back)] = pair
             && front != back
         {
-            prt.push_portal([back, front], &opening.corners)?;
+            for piece in pieces(&opening.corners) {
+                prt.push_portal([back, front], &piece)?;
+            }
         }
     }
     // Clusters without leafs; what Quake II calls clusters are the leafs of such a file.
@@ -98,9 +105,25 @@ pub fn portals_of_map(bsp: &Bsp) -> Result<MapPortals, PortalsError> {
     Ok(MapPortals { prt, n_passages: passages.n })
 }
 
+/// A convex polygon in parts of no more corners than a portal may have.
+fn pieces(corners: &[Point3]) -> Vec<Vec<Point3>> {
+    let most = *PORTAL_POINTS.end();
+    if corners.len() <= most {
+        return vec![corners.to_vec()];
+    }
+    // Fans around the first corner, each beginning where the one before ends.
+    let starts = (1..corners.len() - 1).step_by(most - 2);
+    starts.map(|k| [&corners[..1], &corners[k..corners.len().min(k + most - 1)]].concat()).collect()
+}
+
 /// The tree, and the size of a cube that has all of the map.
-fn tree_of(source: &BspTree) -> Result<(Tree, f64), PortalsError> {
+fn tree_of(bsp: &Bsp, source: &BspTree) -> Result<(Tree, f64), PortalsError> {
     let mut size = LEAST_SIZE;
+    let bounds = bsp.leafs().iter().flat_map(|leaf| [leaf.mins, leaf.maxs]).flatten().map(|x| f64::from(x).abs());
+    let farthest = bounds.filter(|x| *x <= MOST_DISTANCE).fold(0.0, f64::max);
+    while size < 2.0 * farthest {
+        size *= 2.0;
+    }
     let mut nodes = Vec::with_capacity(source.nodes().len());
     for node in source.nodes() {
         let distance = node.distance;
@@ -177,11 +200,11 @@ fn covered(bsp: &Bsp, tree: &BspTree, places: &Places<'_>, all: &[Opening]) -> R
         let from = |side: usize| covers.cover((node.normal, node.distance), side, &opening.corners);
         match places.between(opening.regions) {
             Between::Open => false,
-            Between::DrawnFrom(side) => from(side),
+            Between::DrawnFrom(side) => is_sliver(node.normal, &opening.corners) || from(side),
             Between::Inside => from(0) || from(1),
         }
     };
-    Ok(all.iter().map(is_covered).collect())
+    Ok(all.par_iter().map(is_covered).collect())
 }
 
 /// Ways through what is solid.
@@ -196,7 +219,9 @@ impl Passages {
     /// pockets inside of what is solid: compilers leave many, and do not draw them.
     fn new(places: &Places<'_>, all: &[Opening], covered: &[bool]) -> Self {
         let is_room = rooms(places, all);
-        let is_room = |region: Region| places.kind(region) == LeafKind::Open && is_room[region.leaf as usize];
+        let is_room = |region: Region| {
+            places.kind(region) == LeafKind::Open && places.cluster(region).is_some() && is_room[region.leaf as usize]
+        };
         // What is inside of the solid, with the openings between, and those to rooms.
         let mut ways: HashMap<Region, Vec<Region>> = HashMap::new();
         let mut holes: BTreeMap<Region, BTreeSet<u32>> = BTreeMap::new();

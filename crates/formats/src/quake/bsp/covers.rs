@@ -21,6 +21,9 @@ enum Says {
 
 /// Where both are in a record: behind 8 floats.
 const SAID: usize = 32;
+/// How the names of textures of Quake and Half-Life begin that are seen through, or not drawn.
+const NOT_OPAQUE: [&str; 11] =
+    ["{", "*", "!", "skip", "hint", "null", "clip", "nodraw", "trigger", "aaatrigger", "origin"];
 /// Bytes of a texture's name.
 const NAME_LEN: usize = 16;
 
@@ -102,6 +105,6 @@ impl Bsp {
         };
         let begins =
             |name: &[u8], with: &str| name.get(..with.len()).is_some_and(|n| n.eq_ignore_ascii_case(with.as_bytes()));
-        !name().is_some_and(|name| ["{", "*", "!", "skip"].into_iter().any(|with| begins(name, with)))
+        !name().is_some_and(|name| NOT_OPAQUE.into_iter().any(|with| begins(name, with)))
     }
 }

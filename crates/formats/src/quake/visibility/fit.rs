@@ -7,7 +7,9 @@ use crate::quake::Prt;
 /// Whether portals of Quake II have more clusters than the map, and list those that are the map's as leafs: the others are what can be seen through, as
 /// portals that are made from a map may have it.
 pub(super) fn has_more_clusters(bsp: &Bsp, leafs: &LeafClusters) -> bool {
-    bsp.format().has_clusters() && leafs.n_clusters() > bsp.n_clusters() && leafs.n_leafs() == bsp.n_clusters()
+    let is_identity = || leafs.cluster_of_leaf().iter().zip(0..).all(|(&cluster, leaf)| cluster == leaf);
+    let n = bsp.n_clusters();
+    bsp.format().has_clusters() && leafs.n_clusters() > n && leafs.n_leafs() == n && is_identity()
 }
 
 /// Checks by their counts that portals and map belong together: visible leafs (Quake), or clusters (Quake II).
@@ -50,6 +52,10 @@ pub fn check_portals(bsp: &Bsp, prt: &Prt) -> Result<(), VisibilityError> {
     for portal in prt.portals() {
         for cluster in portal.clusters {
             let (low, high) = boxes[cluster as usize];
+            // Of a cluster without leafs nothing is known.
+            if low[0] > high[0] {
+                continue;
+            }
             // Bounds are whole numbers in most formats, and may have been rounded.
             let is_between = |p: &[f64; 3], low: &[f64; 3], high: &[f64; 3]| {
                 (0..3).all(|k| low[k] - 1.0 <= p[k] && p[k] <= high[k] + 1.0)
