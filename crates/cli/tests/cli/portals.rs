@@ -39,19 +39,24 @@ fn a_map_without_its_portal_file_has_portals() {
 /// A row of leafs whose second is solid, without faces: a fence.
 #[test]
 fn what_is_solid_without_faces_is_seen_through() {
-    let folder = Folder::new();
-    let mut map = row_of_leafs(BspFormat::Bsp29).bsp;
-    let leafs = sightlines::formats::Bsp::parse(map.clone()).expect("a sound map");
-    let at = leafs.lumps()[BspFormat::Bsp29.leaf_lump()].start;
-    map[at + 2 * 28..][..4].copy_from_slice(&(-2i32).to_le_bytes());
-    folder.write("map.bsp", map);
-    let reply = folder.run(&["portals", "map.bsp", "-o", "made.prt", "--json"]).expect(0).json();
-    assert_eq!((&reply["n_passages"], &reply["portal_format"]), (&json!(1), &json!("PRT2")));
-    folder.run(&["build", "map.bsp", "-o", "map.pvs"]).expect(0);
-    let seen = folder.run(&["explain", "map.pvs", "0", "2", "--json"]).expect(0).json();
-    assert_eq!((&seen["answer"], &seen["checked"]), (&json!("visible"), &json!(true)));
-    folder.run(&["vis", "map.bsp", "-o", "out.bsp"]).expect(0);
-    folder.run(&["verify", "out.bsp", "map.bsp"]).expect(0);
+    for (format, solid, [a, b]) in [(BspFormat::Bsp29, -2i32, ["0", "2"]), (BspFormat::Quake2, 1, ["2", "1"])] {
+        let folder = Folder::new();
+        let mut map = row_of_leafs(format).bsp;
+        let leafs = sightlines::formats::Bsp::parse(map.clone()).expect("a sound map");
+        let at = leafs.lumps()[format.leaf_lump()].start;
+        map[at + 2 * 28..][..4].copy_from_slice(&solid.to_le_bytes());
+        folder.write("map.bsp", map);
+        let reply = folder.run(&["portals", "map.bsp", "-o", "made.prt", "--json"]).expect(0).json();
+        assert_eq!((&reply["n_passages"], &reply["portal_format"]), (&json!(1), &json!("PRT2")), "{format:?}");
+        folder.run(&["build", "map.bsp", "-o", "map.pvs"]).expect(0);
+        let seen = folder.run(&["explain", "map.pvs", a, b, "--json"]).expect(0).json();
+        assert_eq!((&seen["answer"], &seen["checked"]), (&json!("visible"), &json!(true)));
+        folder.run(&["vis", "map.bsp", "-o", "out.bsp"]).expect(0);
+        folder.run(&["vis", "map.bsp", "-o", "again.bsp", "--prt", "made.prt"]).expect(0);
+        assert_eq!(folder.read("out.bsp"), folder.read("again.bsp"), "{format:?}");
+        folder.run(&["verify", "out.bsp", "map.bsp"]).expect(0);
+        folder.run(&["verify", "map.pvs", "map.bsp"]).expect(0);
+    }
 }
 
 #[test]

@@ -64,7 +64,8 @@ fn leafs_of(bsp: &Bsp, leafs: &LeafClusters) -> Vec<Vec<usize>> {
         let of = |cluster| leafs.leafs_of(cluster).iter().map(|&leaf| leaf as usize + 1).collect();
         return (0..leafs.n_clusters()).map(of).collect();
     }
-    let mut lists = vec![Vec::new(); bsp.n_clusters()];
+    // Portals that were made from the map may have passages behind its clusters.
+    let mut lists = vec![Vec::new(); leafs.n_clusters().max(bsp.n_clusters())];
     for (leaf, record) in bsp.leafs().iter().enumerate() {
         if let Some(list) = record.cluster().and_then(|cluster| lists.get_mut(usize::from(cluster))) {
             list.push(leaf);
