@@ -138,7 +138,7 @@ fn by_package(debian: &Debian, dist: &Path) -> Result<(), Failure> {
 fn by_cargo(debian: &Debian) -> Result<(), Failure> {
     let packages = metadata::published()?;
     let unpacked = package::unpacked(&packages)?;
-    let (crates, home) = (debian.inside("/crates"), debian.inside("/root/.cargo"));
+    let (crates, home) = (debian.inside("/crates"), debian.inside("/cargo"));
     for folder in [&crates, &home] {
         in_file(folder, fs::create_dir_all(folder))?;
     }
@@ -161,7 +161,7 @@ fn by_cargo(debian: &Debian) -> Result<(), Failure> {
     let toolchain = PathBuf::from(step::output(Command::new("rustc").args(["--print", "sysroot"]))?.trim());
     let program = packages.iter().find(|p| p.name == "sightlines-cli").map(package::folder_name).unwrap_or_default();
     let install = format!(
-        "export CARGO_HTTP_CAINFO=/etc/ssl/certs/ca-certificates.crt; cargo install --path /crates/{program} --root /usr/local"
+        "export CARGO_HOME=/cargo CARGO_HTTP_CAINFO=/etc/ssl/certs/ca-certificates.crt; cargo install --path /crates/{program} --root /usr/local"
     );
     debian.shell_with(&install, Some(&toolchain))?;
     debian.try_program()
