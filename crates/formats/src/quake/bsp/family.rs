@@ -25,7 +25,7 @@ pub(super) fn told_apart(begins: BspFormat, bytes: &[u8]) -> Result<BspFormat, B
 /// models of Hexen II or of five of Quake, the faces of models do: compilers give each model the faces behind those of
 /// the one before, and the world some. What is read at other places would have to be so by chance. Where neither or both of them
 /// have such runs, the map counts as Quake's: for one of Hexen II the tree is the same, and the number of visible leafs is another, which
-/// portals then contradict.
+/// a portal file then contradicts; portals that are made from the map take the leafs beyond that number for parts of passages.
 fn is_hexen2(bytes: &[u8]) -> bool {
     let [quake, hexen] = [BspFormat::Bsp29, BspFormat::Hexen2].map(BspFormat::layout);
     let range = |lump: usize| lump_range(BspFormat::Bsp29, bytes, lump);
