@@ -32,6 +32,8 @@ pub use sightlines_frame as frame;
 pub use sightlines_from_region as from_region;
 #[cfg(feature = "geometry")]
 pub use sightlines_geometry as geometry;
+#[cfg(feature = "isovist")]
+pub use sightlines_isovist as isovist;
 #[cfg(feature = "kdtree")]
 pub use sightlines_kdtree as kdtree;
 #[cfg(feature = "line-space")]

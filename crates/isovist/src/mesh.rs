@@ -1,0 +1,193 @@
+//! The triangulation of the plane between walls.
+
+use crate::MeshError;
+use crate::build::Builder;
+use crate::constructed::low_part;
+use crate::corner::{Corner, Exact, orient_exact, orient_filter};
+use crate::locate::Locator;
+use sightlines_cells::{LineId, Plan};
+use sightlines_geometry::{Aabb, Point2, Segment2, orient2d};
+
+/// No triangle, no wall.
+pub(crate) const NONE: u32 = u32::MAX;
+
+/// One edge of a triangle, running counter-clockwise: the triangle is on its left. Edges `3 t` to `3 t + 2` are those of
+/// triangle `t`.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Edge {
+    /// The corner where it starts.
+    pub(crate) from: u32,
+    /// The edge of the neighbouring triangle that runs the other way; [`NONE`] on the frame.
+    pub(crate) twin: u32,
+    /// The line of the plan that it is a piece of; [`NONE`] if sight passes.
+    pub(crate) wall: u32,
+}
+
+/// The next edge of the same triangle.
+#[inline(always)]
+pub(crate) fn next(edge: u32) -> u32 {
+    if edge % 3 == 2 { edge - 2 } else { edge + 1 }
+}
+
+/// The edge before it in the same triangle.
+#[inline(always)]
+pub(crate) fn previous(edge: u32) -> u32 {
+    if edge.is_multiple_of(3) { edge + 2 } else { edge - 1 }
+}
+
+/// A floor plan, prepared for questions about points: triangles that fill a frame around the plan, with every wall along
+/// their edges.
+///
+/// Walls are the opaque lines of the plan; they may cross, overlap and touch. Where they cross, the mesh has a corner at the
+/// exact crossing, so nothing that is decided with it is rounded.
+#[derive(Debug, Clone)]
+pub struct WallMesh {
+    pub(crate) corners: Vec<Corner>,
+    /// The walls that cross in each corner behind the ends of walls.
+    pub(crate) crossings: Vec<[Segment2; 2]>,
+    /// What is missing of each crossing's coordinates.
+    pub(crate) low: Vec<Point2>,
+    pub(crate) edges: Vec<Edge>,
+    /// The lines of the plan.
+    pub(crate) walls: Vec<Segment2>,
+    frame: Aabb<2>,
+    pub(crate) locator: Locator,
+}
+
+impl WallMesh {
+    /// Prepares a plan within a frame that leaves a quarter of its larger side free around it.
+    ///
+    /// Cost: O(n log n) for n walls with few crossings; 0.1 s for 10,000 walls.
+    ///
+    /// # Errors
+    /// [`MeshError::Empty`] for a plan without opaque lines, [`MeshError::Vertex`] for coordinates that cannot be triangulated.
+    pub fn new(plan: &Plan) -> Result<Self, MeshError> {
+        let walls = plan.lines().iter().filter(|line| line.opaque);
+        let bounds = Aabb::around(walls.flat_map(|line| [line.a, line.b]).map(|p| [p.x, p.y]));
+        if bounds.is_empty() {
+            return Err(MeshError::Empty);
+        }
+        let size = (bounds.max[0] - bounds.min[0]).max(bounds.max[1] - bounds.min[1]);
+        let margin = |x: f64| 0.25 * size + 4.0 * f64::EPSILON * x.abs();
+        let limit = 2.0 * sightlines_geometry::coordinate::MAX_MAGNITUDE;
+        let min = bounds.min.map(|x| (x - margin(x)).max(-limit));
+        let max = bounds.max.map(|x| (x + margin(x)).min(limit));
+        Self::with_frame(plan, Aabb { min, max })
+    }
+
+    /// Prepares a plan within a frame, at which every view ends.
+    ///
+    /// # Errors
+    /// [`MeshError::Frame`] if an opaque line is not strictly inside the frame, and those of [`WallMesh::new`] but `Empty`.
+    pub fn with_frame(plan: &Plan, frame: Aabb<2>) -> Result<Self, MeshError> {
+        let inside = |p: Point2| {
+            let inside = |k: usize, x: f64| frame.min[k] < x && x < frame.max[k];
+            inside(0, p.x) && inside(1, p.y)
+        };
+        let mut walls = Vec::new();
+        for (line, id) in plan.lines().iter().zip(0u32..).filter(|(line, _)| line.opaque) {
+            if !inside(line.a) || !inside(line.b) {
+                return Err(MeshError::Frame { line: id as usize });
+            }
+            walls.push((Segment2::new(line.a, line.b), id));
+        }
+        let builder = Builder::new(&walls, &frame)?;
+        let (corners, crossings, edges) = builder.finish();
+        let locator = Locator::new(&corners, &edges, &frame);
+        let first = corners.len() - crossings.len();
+        let low = crossings.iter().zip(&corners[first..]);
+        let low = low.map(|([l, m], corner)| low_part(Exact::Crossing(*l, *m), corner.at)).collect();
+        let walls = plan.lines().iter().map(|line| Segment2::new(line.a, line.b)).collect();
+        Ok(Self { corners, crossings, low, edges, walls, frame, locator })
+    }
+
+    /// The box at which every view ends.
+    pub const fn frame(&self) -> Aabb<2> {
+        self.frame
+    }
+
+    /// Number of triangles.
+    pub const fn n_triangles(&self) -> usize {
+        self.edges.len() / 3
+    }
+
+    /// Number of corners where walls cross at a point that is the end of none.
+    pub const fn n_crossings(&self) -> usize {
+        self.crossings.len()
+    }
+
+    /// The line of the plan that an edge is a piece of.
+    pub(crate) fn wall_of(&self, edge: u32) -> Option<LineId> {
+        let wall = self.edges[edge as usize].wall;
+        (wall != NONE).then_some(LineId(wall))
+    }
+
+    /// Start and end of an edge, as corners.
+    #[inline(always)]
+    pub(crate) fn ends(&self, edge: u32) -> (u32, u32) {
+        (self.edges[edge as usize].from, self.edges[next(edge) as usize].from)
+    }
+
+    /// A corner in exact form.
+    pub(crate) fn exact(&self, corner: u32) -> Exact {
+        exact_of(&self.corners, &self.crossings, corner)
+    }
+
+    /// The orientation of an eye and two corners: positive if `v` lies to the left of the ray from the eye through `u`. Exact.
+    #[inline(always)]
+    pub(crate) fn orient(&self, eye: Point2, u: u32, v: u32) -> f64 {
+        let (a, b) = (self.corners[u as usize], self.corners[v as usize]);
+        orient_filter(a, b, Corner::exact(eye)).unwrap_or_else(|| self.orient_slow(eye, u, v))
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn orient_slow(&self, eye: Point2, u: u32, v: u32) -> f64 {
+        let (a, b) = (self.corners[u as usize], self.corners[v as usize]);
+        if a.reach == 0.0 && b.reach == 0.0 {
+            return orient2d(eye, a.at, b.at);
+        }
+        orient_exact(Exact::Point(eye), self.exact(u), self.exact(v))
+    }
+
+    /// The side of corner `w` of the line from `a` to `b`: positive to the left. Exact.
+    #[inline(always)]
+    pub(crate) fn side(&self, a: Point2, b: Point2, w: u32) -> f64 {
+        let c = self.corners[w as usize];
+        orient_filter(Corner::exact(a), Corner::exact(b), c).unwrap_or_else(|| self.side_slow(a, b, w))
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn side_slow(&self, a: Point2, b: Point2, w: u32) -> f64 {
+        let c = self.corners[w as usize];
+        if c.reach == 0.0 {
+            orient2d(a, b, c.at)
+        } else {
+            orient_exact(Exact::Point(a), Exact::Point(b), self.exact(w))
+        }
+    }
+
+    /// Whether a point is on a corner. Exact.
+    pub(crate) fn is_at(&self, p: Point2, corner: u32) -> bool {
+        let c = self.corners[corner as usize];
+        if c.reach == 0.0 {
+            return c.at == p;
+        }
+        if (c.at - p).abs().max_element() > 2.0 * c.reach {
+            return false;
+        }
+        // The corner is where two lines cross, so it is the only point on both.
+        let [l, m] = self.crossings[corner as usize - (self.corners.len() - self.crossings.len())];
+        orient2d(l.a, l.b, p) == 0.0 && orient2d(m.a, m.b, p) == 0.0
+    }
+}
+
+/// A corner in exact form; crossings are the last corners.
+pub(crate) fn exact_of(corners: &[Corner], crossings: &[[Segment2; 2]], corner: u32) -> Exact {
+    let first = corners.len() - crossings.len();
+    match (corner as usize).checked_sub(first) {
+        Some(crossing) => Exact::Crossing(crossings[crossing][0], crossings[crossing][1]),
+        None => Exact::Point(corners[corner as usize].at),
+    }
+}
