@@ -5,6 +5,7 @@ pub mod bits;
 pub mod chart;
 pub mod child;
 pub mod codings;
+pub mod cpu;
 pub mod path;
 pub mod program;
 pub mod quake;

@@ -90,6 +90,10 @@ pub(crate) fn low_part(e: Exact, at: Point2) -> Point2 {
     Point2::new(rest(x, at.x), rest(y, at.y))
 }
 
+/// Bound on the relative error of an operation on sums of two doubles, and of a difference by that of its terms: 2^-98, where 2^-100 would do. A
+/// corner's own error of 2^-100 of its coordinates may be more than that of its difference to the eye, so it is counted by coordinates.
+const UNIT: f64 = f64::from_bits((1023 - 98) << 52);
+
 /// Where the line from an eye through a corner meets the line of a wall, each coordinate rounded to the nearest double.
 ///
 /// Computed in sums of two doubles with a bound on the error; where that leaves the rounding open, in fractions. The lines are
@@ -101,19 +105,24 @@ pub(crate) fn meet(eye: Point2, through: &Target, wall: &Segment2) -> Point2 {
     };
     let dx = difference(through.at.x, through.low.x, eye.x);
     let dy = difference(through.at.y, through.low.y, eye.y);
-    let (ux, uy) = (two_sum(wall.b.x, -wall.a.x), two_sum(wall.b.y, -wall.a.y));
     let (wx, wy) = (two_sum(wall.a.x, -eye.x), two_sum(wall.a.y, -eye.y));
-    let (n1, n2) = (wx.times(uy), wy.times(ux));
-    let (d1, d2) = (dx.times(uy), dy.times(ux));
-    let (n, d) = (n1.minus(n2), d1.minus(d2));
-    let t = n.over(d);
-    // Each operation is within 2^-100 of its result, a difference within that of its terms. A corner's own error of 2^-100 of
-    // its coordinates is more than that of `dx` where these nearly cancel, so it is counted by coordinates.
-    const UNIT: f64 = f64::from_bits((1023 - 98) << 52);
     let corner = if through.low == Point2::ZERO { Point2::ZERO } else { through.at.abs() };
-    let error_n = UNIT * (n1.hi.abs() + n2.hi.abs());
-    let error_d = UNIT * (d1.hi.abs() + d2.hi.abs() + corner.x * uy.hi.abs() + corner.y * ux.hi.abs());
-    let relative = error_n / n.hi.abs() + error_d / d.hi.abs() + UNIT;
+    // On a wall along an axis one coordinate is known, and gives the share of the way.
+    let known = [0, 1].map(|k| (wall.a[k] == wall.b[k]).then_some(wall.a[k]));
+    let (t, relative) = match known {
+        [Some(_), _] => (wx.over(dx), UNIT * (2.0 + corner.x / dx.hi.abs())),
+        [_, Some(_)] => (wy.over(dy), UNIT * (2.0 + corner.y / dy.hi.abs())),
+        [None, None] => {
+            let (ux, uy) = (two_sum(wall.b.x, -wall.a.x), two_sum(wall.b.y, -wall.a.y));
+            let (n1, n2) = (wx.times(uy), wy.times(ux));
+            let (d1, d2) = (dx.times(uy), dy.times(ux));
+            let (n, d) = (n1.minus(n2), d1.minus(d2));
+            let error_n = UNIT * (n1.hi.abs() + n2.hi.abs());
+            let by_corner = corner.x * uy.hi.abs() + corner.y * ux.hi.abs();
+            let error_d = UNIT * (d1.hi.abs() + d2.hi.abs() + by_corner);
+            (n.over(d), error_n / n.hi.abs() + error_d / d.hi.abs() + UNIT)
+        }
+    };
     // A relative error of the denominator near one would make the quotient's first-order bound wrong.
     if relative < 1e-6 {
         let place = |from: f64, step: Double2, own: f64| {
@@ -123,7 +132,9 @@ pub(crate) fn meet(eye: Point2, through: &Target, wall: &Segment2) -> Point2 {
             let surely = sum.hi + (sum.lo + error) == sum.hi && sum.hi + (sum.lo - error) == sum.hi;
             surely.then_some(sum.hi)
         };
-        if let (Some(x), Some(y)) = (place(eye.x, dx, corner.x), place(eye.y, dy, corner.y)) {
+        let x = known[0].or_else(|| place(eye.x, dx, corner.x));
+        let y = known[1].or_else(|| place(eye.y, dy, corner.y));
+        if let (Some(x), Some(y)) = (x, y) {
             return Point2::new(x + 0.0, y + 0.0);
         }
     }
