@@ -4,7 +4,7 @@
 //!
 //! - **Owns**: the WAD container ([`wad`]), the maps inside ([`doom`]), their REJECT lumps ([`reject`]),
 //!   plans ([`plan`]) as GeoJSON ([`geojson`]) and DXF ([`dxf`]), scenes in space ([`scene`]) and simplified levels of them
-//!   ([`levels`]), view cells ([`view_cells`]), maps of the Quake family and their visibility
+//!   ([`levels`]), view cells ([`view_cells`]), points ([`points`]), maps of the Quake family and their visibility
 //!   ([`quake`]), files that are replaced as a whole ([`files::atomic_write`]), the list of all formats and how they are recognised
 //!   ([`input`]), and errors that name the file and the place in it ([`ReadError`]).
 //! - **Out of scope**: how a plan is cut into cells, what a sight line is, how a REJECT table is computed.
@@ -23,6 +23,7 @@ pub mod input;
 pub mod levels;
 pub mod plan;
 mod point;
+pub mod points;
 pub mod quake;
 pub mod reject;
 pub mod scene;

@@ -15,6 +15,7 @@ use sightlines::formats::dxf::parse_dxf;
 use sightlines::formats::geojson::{parse_plan, write_plan};
 use sightlines::formats::input::{FORMATS, Source, detect};
 use sightlines::formats::levels::{LevelFile, LevelsIndex, parse_levels_index, write_levels_index};
+use sightlines::formats::points::{NamedPoint, parse_points};
 use sightlines::formats::quake::prt::{parse_prt, write_prt};
 use sightlines::formats::quake::{Bsp, BspFormat, graph_of_prt};
 use sightlines::formats::scene::{SceneFile, parse_glb, parse_glb_with_source, parse_obj, write_glb};
@@ -53,12 +54,13 @@ struct Target {
     check: fn(&[u8]) -> bool,
 }
 
-const TARGETS: [Target; 23] = [
+const TARGETS: [Target; 24] = [
     Target { name: "wad", seeds: wads, check: check_wad },
     Target { name: "reject", seeds: wads, check: check_reject },
     Target { name: "textmap", seeds: texts, check: check_text },
     Target { name: "geojson", seeds: plans, check: check_geojson },
     Target { name: "dxf", seeds: drawings, check: check_dxf },
+    Target { name: "points", seeds: point_files, check: check_points },
     Target { name: "glb", seeds: glbs, check: check_glb },
     Target { name: "obj", seeds: objs, check: check_obj },
     Target { name: "view-cells", seeds: view_cells, check: check_view_cells },
@@ -161,6 +163,14 @@ fn drawings() -> Vec<Vec<u8>> {
     let lines = scenes::maze(1, 3, 2).into_iter().flat_map(|plan| plan.lines().to_vec());
     let lines = lines.fold(Dxf::new(), |dxf, line| dxf.line("Walls", line.a.to_array(), line.b.to_array()));
     vec![dxf_files::small_drawing(), lines.model(&Dxf::new())]
+}
+
+/// Points as CSV in two forms, and as GeoJSON.
+fn point_files() -> Vec<Vec<u8>> {
+    let plain = "1.5,2,door\n# none\n-3e1,0.25\n7,8,\"a, \"\"b\"\"\"\n";
+    let named = "name;Y;x;floor\nK\u{fc}che;2;1;0\n;4.5;-3;1\n";
+    let json = r#"{"type":"Feature","id":3,"geometry":{"type":"MultiPoint","coordinates":[[1,2],[3.5,-4]]}}"#;
+    [plain, named, json].map(|text| text.as_bytes().to_vec()).to_vec()
 }
 
 /// A triangle in glTF as text, through all that a document may hold: nested nodes, a buffer inside the text,
@@ -334,6 +344,21 @@ fn check_dxf(bytes: &[u8]) -> bool {
         assert!(all.plan.points().all(|p| check_coordinate(p.x).is_ok() && check_coordinate(p.y).is_ok()));
     }
     true
+}
+
+/// Points are read or refused with their place; those that are read are in range.
+fn check_points(bytes: &[u8]) -> bool {
+    match parse_points(bytes) {
+        Ok(points) => {
+            let is_sound = |p: &NamedPoint| [p.point.x, p.point.y].into_iter().all(|x| check_coordinate(x).is_ok());
+            assert!(!points.is_empty() && points.iter().all(is_sound));
+            true
+        }
+        Err(error) => {
+            assert!(error.line > 0 || bytes.is_empty(), "{error}");
+            false
+        }
+    }
 }
 
 fn check_scene(file: &SceneFile) -> bool {
