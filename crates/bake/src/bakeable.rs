@@ -80,7 +80,7 @@ impl Bakeable {
     /// [`BakeableError`]
     pub fn new(input: Input, map: Option<&str>, portals: Option<Prt>) -> Result<Self, BakeableError> {
         match input {
-            Input::Plan(plan) => Ok(Self::Plan { plan, map: None }),
+            Input::Plan(file) => Ok(Self::Plan { plan: file.plan, map: None }),
             Input::Wad(wad) => Self::of_wad(&wad, map),
             Input::Scene(file) => match file.info.simplified {
                 Some(Simplified { occluder: false }) => Err(BakeableError::Moved),

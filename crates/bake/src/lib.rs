@@ -10,7 +10,8 @@
 //!   from-region methods and backends by name ([`methods`]), and the choice of methods from the properties of an input
 //!   ([`auto`]); the frame of a scene that does not stand along the axes of its file ([`Framed`]); cells for scenes without
 //!   walls along axes ([`places`]); the REJECT lumps of a WAD ([`reject_wad`]), the visibility of Quake maps and the state of an interrupted
-//!   search ([`quake`]), the table of a changing scene ([`live`]), lines of sight for the pairs of a table ([`lines`]).
+//!   search ([`quake`]), the table of a changing scene ([`live`]), lines of sight for the pairs of a table ([`lines`]);
+//!   the floor plan of a scene at a height ([`floor_cut`]).
 //! - **Out of scope**: paths, the command line, pictures.
 //! - **Invariants**: the same scene and options give the same table, byte for byte, with any number of
 //!   threads; every approximation on the way errs towards visible.
@@ -22,6 +23,7 @@ mod baked;
 mod certify;
 mod doors;
 mod error;
+mod floor;
 mod framed;
 pub mod from_table;
 mod gap;
@@ -54,6 +56,7 @@ pub use baked::{Baked, BakedMap, BakedPlan, BakedPrt, BakedRegions, BakedScene};
 pub use certify::{Certified, CertifyError, Proofs, certify_table};
 pub use doors::DoorPortals;
 pub use error::BakeError;
+pub use floor::{FloorCut, FloorCutError, floor_cut};
 pub use framed::{Along, Framed, growth_of_cells};
 pub use gap::Gap;
 pub use graph::{GraphRef, OtherGraph, TableGraph};

@@ -12,6 +12,7 @@ use crate::commands::{
     light::LightArgs,
     multifocal::MultifocalArgs,
     pack::{PackArgs, UnpackArgs},
+    plan::PlanCommandArgs,
     portals::PortalsArgs,
     query::QueryArgs,
     reject::RejectArgs,
@@ -57,6 +58,8 @@ pub(crate) enum Command {
     Vis(VisArgs),
     /// Write the portal file of a Quake map, made from its tree of planes
     Portals(PortalsArgs),
+    /// Write a floor plan as GeoJSON: a scene in space cut at a height, a DXF drawing, or a Doom map
+    Plan(PlanCommandArgs),
     /// Check a table, or the visibility in a Quake or Doom map, against its scene; exit code 1 for a violation
     Verify(VerifyArgs),
     /// List the cells and objects visible from a point, or in a view from there

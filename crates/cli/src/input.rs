@@ -2,7 +2,7 @@
 //! error.
 
 use crate::error::InputError;
-use crate::surfaces;
+use crate::{plans, surfaces};
 use sightlines::bake::from_table::planar_graph;
 use sightlines::bake::{Bakeable, BakeableError};
 use sightlines::cells::{CellGraph, Planar};
@@ -10,7 +10,7 @@ use sightlines::formats::doom::{DoomMap, MapChoiceError, choose_map, list_maps};
 use sightlines::formats::input::HEAD;
 use sightlines::formats::quake::Prt;
 use sightlines::formats::scene::{SceneReadOptions, Simplified, read_scene_with};
-use sightlines::formats::{Input, InputKind, ReadError, SceneFile, Source, Wad, detect_file};
+use sightlines::formats::{Input, InputKind, PlanReadOptions, ReadError, SceneFile, Source, Wad, detect_file};
 use sightlines::pvs::Table;
 use std::fs::File;
 use std::io::Read;
@@ -66,13 +66,19 @@ pub(crate) fn graph(table: &Table, path: &Path) -> Result<CellGraph<Planar>, Inp
 }
 
 /// What `build` takes, in the words of errors.
-const BUILDABLE: &str = "a WAD nor a GeoJSON plan nor a GLB, glTF or OBJ nor a Quake map or portal file";
+const BUILDABLE: &str = "a WAD nor a GeoJSON or DXF plan nor a GLB, glTF or OBJ nor a Quake map or portal file";
 
-/// Reads a file from which a table can be built: a WAD, a GeoJSON file, a scene in space, a portal file, or a Quake map. `map` is
+/// Reads a file from which a table can be built: a WAD, a plan as GeoJSON or DXF, a scene in space, a portal file, or a Quake map. `map` is
 /// refused for all but WADs.
 ///
 /// * `options`: of scenes in space
-pub(crate) fn read(path: &Path, map: Option<&str>, options: &SceneReadOptions) -> Result<Input, InputError> {
+/// * `plan`: of plans
+pub(crate) fn read(
+    path: &Path,
+    map: Option<&str>,
+    options: &SceneReadOptions,
+    plan: &PlanReadOptions,
+) -> Result<Input, InputError> {
     let format = detect_file(path)?.filter(|format| is_source(format.kind));
     let format = format.ok_or_else(|| InputError::Kind { path: path.to_owned(), expected: BUILDABLE })?;
     if map.is_some() && format.kind != InputKind::Wad {
@@ -80,6 +86,9 @@ pub(crate) fn read(path: &Path, map: Option<&str>, options: &SceneReadOptions) -
     }
     if format.kind == InputKind::Scene {
         return Ok(Input::Scene(scene(path, options)?));
+    }
+    if format.kind == InputKind::Plan {
+        return Ok(Input::Plan(plans::read(path, plan)?));
     }
     Ok(Source::File(path).read_as(format)?)
 }

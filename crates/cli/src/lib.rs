@@ -28,6 +28,7 @@ mod output;
 mod picture;
 mod place;
 mod plain;
+mod plans;
 mod progress;
 mod reasons;
 mod region;
@@ -104,6 +105,7 @@ fn run(arguments: &Arguments) -> Result<Answer, Box<dyn Error>> {
         Command::Reject(args) => commands::reject::run(args, show_progress)?,
         Command::Vis(args) => commands::vis::run(args, show_progress, arguments.verbose > 0)?,
         Command::Verify(args) => commands::verify::run(args, show_progress)?,
+        Command::Plan(args) => commands::plan::run(args)?,
         Command::Portals(args) => commands::portals::run(args)?,
         Command::Query(args) => commands::query::run(args)?,
         Command::Walk(args) => commands::walk::run(args, show_progress)?,

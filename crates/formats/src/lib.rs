@@ -3,8 +3,8 @@
 //! # Scope
 //!
 //! - **Owns**: the WAD container ([`wad`]), the maps inside ([`doom`]), their REJECT lumps ([`reject`]),
-//!   GeoJSON plans ([`geojson`]), scenes in space ([`scene`]) and simplified levels of them
-//!   ([`levels`]), view cells ([`view_cells`]), maps of the Quake family and their visibility
+//!   plans ([`plan`]) as GeoJSON ([`geojson`]) and DXF ([`dxf`]), scenes in space ([`scene`]) and simplified levels of them
+//!   ([`levels`]), view cells ([`view_cells`]), points ([`points`]), maps of the Quake family and their visibility
 //!   ([`quake`]), files that are replaced as a whole ([`files::atomic_write`]), the list of all formats and how they are recognised
 //!   ([`input`]), and errors that name the file and the place in it ([`ReadError`]).
 //! - **Out of scope**: how a plan is cut into cells, what a sight line is, how a REJECT table is computed.
@@ -15,12 +15,15 @@
 
 mod beside;
 pub mod doom;
+pub mod dxf;
 pub mod error;
 pub mod files;
 pub mod geojson;
 pub mod input;
 pub mod levels;
+pub mod plan;
 mod point;
+pub mod points;
 pub mod quake;
 pub mod reject;
 pub mod scene;
@@ -28,11 +31,13 @@ pub mod view_cells;
 pub mod wad;
 
 pub use doom::{DoomError, DoomMap, MapLumps};
+pub use dxf::DxfError;
 pub use error::{ReadError, ReadErrorKind};
 pub use files::{WriteError, atomic_write};
 pub use geojson::GeoJsonError;
 pub use input::{Input, InputKind, Source, detect_file, read_input};
 pub use levels::{LevelFile, LevelsIndex, LevelsIndexError};
+pub use plan::{DroppedLines, PlanFile, PlanReadOptions};
 pub use quake::{Bsp, Prt};
 pub use reject::RejectTable;
 pub use scene::{GltfSource, SceneFile, SceneInfo, SceneReadError, Simplified};

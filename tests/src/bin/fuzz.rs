@@ -4,21 +4,24 @@
 //! Each target begins with small files, breaks them at random, and checks. A failure prints the seed
 //! that replays it. Run by `cargo xtask fuzz`.
 
+use dxf_files::Dxf;
 use sightlines::bake::from_table::{convex_graph, planar_graph};
 use sightlines::bake::quake::{StateKey, portals_of_map, state};
 use sightlines::bake::reject::{RejectOptions, reject_wad};
 use sightlines::bake::{PlanBakeOptions, PortalMode, PrtOptions, SceneBakeOptions, bake_plan, bake_prt, bake_scene};
 use sightlines::cells::Scene;
 use sightlines::formats::doom::{DoomMap, DoomMapSource, ML_TWOSIDED, SourceLine, SourceThing, list_maps};
+use sightlines::formats::dxf::parse_dxf;
 use sightlines::formats::geojson::{parse_plan, write_plan};
 use sightlines::formats::input::{FORMATS, Source, detect};
 use sightlines::formats::levels::{LevelFile, LevelsIndex, parse_levels_index, write_levels_index};
+use sightlines::formats::points::{NamedPoint, parse_points};
 use sightlines::formats::quake::prt::{parse_prt, write_prt};
 use sightlines::formats::quake::{Bsp, BspFormat, graph_of_prt};
 use sightlines::formats::scene::{SceneFile, parse_glb, parse_glb_with_source, parse_obj, write_glb};
 use sightlines::formats::view_cells::parse_view_cells;
 use sightlines::formats::wad::WadKind;
-use sightlines::formats::{LumpName, Wad, WadBuilder};
+use sightlines::formats::{LumpName, PlanReadOptions, Wad, WadBuilder};
 use sightlines::geometry::check_coordinate;
 use sightlines::kdtree::{SceneOptions, subdivide_scene};
 use sightlines::pvs::{CellId, PlaceBuffer, Table};
@@ -37,6 +40,8 @@ use std::panic::catch_unwind;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
+#[path = "../../../crates/formats/tests/formats/common/dxf.rs"]
+mod dxf_files;
 #[path = "../../../crates/formats/tests/formats/common/quake.rs"]
 mod quake_files;
 #[path = "../../../crates/formats/tests/formats/common/udmf.rs"]
@@ -49,11 +54,13 @@ struct Target {
     check: fn(&[u8]) -> bool,
 }
 
-const TARGETS: [Target; 22] = [
+const TARGETS: [Target; 24] = [
     Target { name: "wad", seeds: wads, check: check_wad },
     Target { name: "reject", seeds: wads, check: check_reject },
     Target { name: "textmap", seeds: texts, check: check_text },
     Target { name: "geojson", seeds: plans, check: check_geojson },
+    Target { name: "dxf", seeds: drawings, check: check_dxf },
+    Target { name: "points", seeds: point_files, check: check_points },
     Target { name: "glb", seeds: glbs, check: check_glb },
     Target { name: "obj", seeds: objs, check: check_obj },
     Target { name: "view-cells", seeds: view_cells, check: check_view_cells },
@@ -149,6 +156,21 @@ fn plans() -> Vec<Vec<u8>> {
     let small = scenes::maze(1, 3, 2).into_iter().chain(scenes::doom_like(1, 1));
     let families = scenes::degenerate::all().into_iter().map(|(_, plan)| plan);
     small.chain(families).map(|plan| write_plan(&plan).into_bytes()).collect()
+}
+
+/// A drawing with every entity that is read, and one with lines only, in which more of the damage is survived.
+fn drawings() -> Vec<Vec<u8>> {
+    let lines = scenes::maze(1, 3, 2).into_iter().flat_map(|plan| plan.lines().to_vec());
+    let lines = lines.fold(Dxf::new(), |dxf, line| dxf.line("Walls", line.a.to_array(), line.b.to_array()));
+    vec![dxf_files::small_drawing(), lines.model(&Dxf::new())]
+}
+
+/// Points as CSV in two forms, and as GeoJSON.
+fn point_files() -> Vec<Vec<u8>> {
+    let plain = "1.5,2,door\n# none\n-3e1,0.25\n7,8,\"a, \"\"b\"\"\"\n";
+    let named = "name;Y;x;floor\nK\u{fc}che;2;1;0\n;4.5;-3;1\n";
+    let json = r#"{"type":"Feature","id":3,"geometry":{"type":"MultiPoint","coordinates":[[1,2],[3.5,-4]]}}"#;
+    [plain, named, json].map(|text| text.as_bytes().to_vec()).to_vec()
 }
 
 /// A triangle in glTF as text, through all that a document may hold: nested nodes, a buffer inside the text,
@@ -311,6 +333,32 @@ fn check_geojson(bytes: &[u8]) -> bool {
     let Ok(plan) = parse_plan(bytes) else { return false };
     assert_eq!(parse_plan(write_plan(&plan).as_bytes()).expect("what was written is read"), plan);
     true
+}
+
+/// What is read of a drawing is a plan that GeoJSON keeps, with curves as coarse as they are by themselves, and with finer ones.
+fn check_dxf(bytes: &[u8]) -> bool {
+    let Ok(file) = parse_dxf(bytes, &PlanReadOptions::default()) else { return false };
+    assert_eq!(parse_plan(write_plan(&file.plan).as_bytes()).expect("what was written is read"), file.plan);
+    let all = PlanReadOptions { layers: Some(file.layers), deviation: Some(1e-3) };
+    if let Ok(all) = parse_dxf(bytes, &all) {
+        assert!(all.plan.points().all(|p| check_coordinate(p.x).is_ok() && check_coordinate(p.y).is_ok()));
+    }
+    true
+}
+
+/// Points are read or refused with their place; those that are read are in range.
+fn check_points(bytes: &[u8]) -> bool {
+    match parse_points(bytes) {
+        Ok(points) => {
+            let is_sound = |p: &NamedPoint| [p.point.x, p.point.y].into_iter().all(|x| check_coordinate(x).is_ok());
+            assert!(!points.is_empty() && points.iter().all(is_sound));
+            true
+        }
+        Err(error) => {
+            assert!(error.line > 0 || bytes.is_empty(), "{error}");
+            false
+        }
+    }
 }
 
 fn check_scene(file: &SceneFile) -> bool {

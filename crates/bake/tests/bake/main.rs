@@ -2,6 +2,8 @@
 
 mod any_input;
 mod bakeable;
+mod doubled;
+mod floor;
 mod limit;
 mod line_space;
 mod live;

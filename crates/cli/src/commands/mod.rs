@@ -11,6 +11,7 @@ pub(crate) mod levels;
 pub(crate) mod light;
 pub(crate) mod multifocal;
 pub(crate) mod pack;
+pub(crate) mod plan;
 pub(crate) mod portals;
 pub(crate) mod query;
 pub(crate) mod reject;

@@ -39,11 +39,11 @@ fn files_of_the_wrong_kind_are_named() {
     let build = |input: &str| folder.refused(&["build", input, "-o", "out.pvs"]);
     assert_eq!(
         build("noise"),
-        "noise: neither a WAD nor a GeoJSON plan nor a GLB, glTF or OBJ nor a Quake map or portal file"
+        "noise: neither a WAD nor a GeoJSON or DXF plan nor a GLB, glTF or OBJ nor a Quake map or portal file"
     );
     assert_eq!(
         build("office.pvs"),
-        "office.pvs: neither a WAD nor a GeoJSON plan nor a GLB, glTF or OBJ nor a Quake map or portal file"
+        "office.pvs: neither a WAD nor a GeoJSON or DXF plan nor a GLB, glTF or OBJ nor a Quake map or portal file"
     );
     assert!(build("noise.wad").starts_with("noise.wad: "));
     assert!(build("empty.wad").starts_with("empty.wad: "));
@@ -51,7 +51,7 @@ fn files_of_the_wrong_kind_are_named() {
     let error = folder.refused(&["info", "noise"]);
     assert_eq!(
         error,
-        "noise: neither a table nor a WAD nor a GeoJSON plan nor a GLB, glTF or OBJ nor a Quake map or portal file"
+        "noise: neither a table nor a WAD nor a GeoJSON or DXF plan nor a GLB, glTF or OBJ nor a Quake map or portal file"
     );
     assert!(folder.refused(&["reject", "office.geojson", "-o", "out.wad"]).starts_with("office.geojson: "));
     assert_eq!(

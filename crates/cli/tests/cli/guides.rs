@@ -1,5 +1,6 @@
 //! The guides: every command in them works, in order, on input of the kind that they speak of.
 
+use crate::common::dxf::small_drawing;
 use crate::common::quake::row_of_leafs;
 use crate::common::{Folder, levels};
 use sightlines::formats::quake::BspFormat;
@@ -225,7 +226,10 @@ fn the_guide_for_doom_works() {
 
 #[test]
 fn the_guide_for_floor_plans_works() {
-    assert!(follow(&Folder::new(), "floor-plans.md") >= 6);
+    let folder = Folder::new();
+    folder.write("drawing.dxf", small_drawing());
+    folder.run(&["generate", "tower", "--floors", "2", "--rooms-x", "2", "-o", "building.glb"]).expect(0);
+    assert!(follow(&folder, "floor-plans.md") >= 11);
 }
 
 #[test]

@@ -3,10 +3,11 @@
 use crate::common::Folder;
 
 /// All commands, with those that have others below them.
-const COMMANDS: [&str; 21] = [
+const COMMANDS: [&str; 22] = [
     "build",
     "reject",
     "vis",
+    "plan",
     "portals",
     "verify",
     "query",

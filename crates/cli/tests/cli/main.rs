@@ -24,6 +24,7 @@ mod outputs;
 mod own;
 mod pack;
 mod places;
+mod plans;
 mod portals;
 mod progress;
 mod region;

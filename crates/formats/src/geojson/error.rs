@@ -132,9 +132,6 @@ pub enum GeoJsonErrorKind {
     /// A number that cannot be a coordinate.
     #[error(transparent)]
     Coordinate(#[from] CoordinateError),
-    /// A line or ring without two different positions.
-    #[error("a {0} needs two different positions")]
-    NoExtent(GeometryKind),
     /// A property that concerns sight, with a value that is not understood.
     #[error("property \"{property}\" is not {expected}")]
     Property {

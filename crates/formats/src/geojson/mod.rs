@@ -11,7 +11,8 @@
 //! | `"name"`, else `"id"` | what its points are called |
 //! | `"object": "box"` | its points are corners of one object, not an object each |
 //!
-//! Other properties and members mean nothing here. The reader works as it goes and keeps nothing but the
+//! A member `crs` of the whole, as older files have, is kept as it is and written again ([`write_plan_file`]). Lines without length and
+//! lines that repeat others are dropped and counted ([`PlanFile`](crate::PlanFile)). Other properties and members mean nothing here. The reader works as it goes and keeps nothing but the
 //! plan and one geometry, so a large file that is no plan costs no memory.
 
 mod context;
@@ -25,8 +26,8 @@ mod read;
 mod write;
 
 pub use error::{GeoJsonError, GeoJsonErrorKind, GeoJsonPlace, GeometryKind};
-pub use read::{parse_plan, read_plan};
-pub use write::write_plan;
+pub use read::{parse_plan, parse_plan_file, read_plan, read_plan_file};
+pub use write::{write_plan, write_plan_file};
 
 /// Groups are below this number, because tables over groups follow.
 pub const MAX_GROUPS: u32 = 1 << 20;

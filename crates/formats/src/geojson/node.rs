@@ -9,6 +9,7 @@ use super::geometry::Geometry;
 use super::plan_builder::PlanBuilder;
 use super::properties::{Properties, PropertiesSeed, Scalar, ScalarSeed};
 use serde::de::{DeserializeSeed, Deserializer, IgnoredAny, MapAccess, SeqAccess, Visitor};
+use serde_json::value::RawValue;
 use std::fmt;
 
 /// Which object is expected.
@@ -114,6 +115,10 @@ impl Node<'_> {
                 members.id = map.next_value_seed(ScalarSeed)?.into_name();
                 None
             }
+            "crs" if top => {
+                let crs = map.next_value::<Box<RawValue>>()?;
+                builder.crs.replace(crs.get().to_owned()).map(|_| "crs")
+            }
             _ => {
                 map.next_value::<IgnoredAny>()?;
                 None
@@ -161,9 +166,8 @@ fn understand_geometry(kind: &str, members: Members, index: Option<usize>) -> Re
     let coordinates = members.coordinates.ok_or(GeoJsonErrorKind::Missing("coordinates"))?;
     match (coordinates.depth, kind) {
         (Some(depth), _) if depth == kind.depth() => Ok(vec![Geometry { kind, coordinates, index }]),
-        // Empty lists of many are what programs write for nothing at all.
-        (None, GeometryKind::MultiPoint | GeometryKind::MultiLineString | GeometryKind::MultiPolygon) => Ok(vec![]),
-        (None, GeometryKind::LineString | GeometryKind::Polygon) => Err(GeoJsonErrorKind::NoExtent(kind)),
+        // Empty lists are what programs write for nothing at all.
+        (None, kind) if kind != GeometryKind::Point => Ok(vec![]),
         _ => Err(GeoJsonErrorKind::Depth(kind)),
     }
 }

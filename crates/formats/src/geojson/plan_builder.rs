@@ -5,25 +5,28 @@ use super::coordinates::Coordinates;
 use super::error::{GeoJsonError, GeoJsonErrorKind, GeoJsonPlace, GeometryKind};
 use super::geometry::Geometry;
 use super::properties::{Properties, wrong};
-use sightlines_cells::{LineId, Plan, PlanLine, PlanObject};
+use crate::plan::{PlanFile, PlanLines};
+use sightlines_cells::{PlanLine, PlanObject};
 use sightlines_geometry::{Aabb, Point2};
 
 /// The plan so far, and where in the text the reader is.
 #[derive(Debug, Default)]
 pub(super) struct PlanBuilder {
-    lines: Vec<PlanLine>,
+    lines: PlanLines,
     objects: Vec<PlanObject>,
-    mirrors: Vec<LineId>,
+    /// The JSON text of the member `crs`.
+    pub(super) crs: Option<String>,
     pub(super) context: Context,
 }
 
 impl PlanBuilder {
     /// The plan, when all is read.
-    pub(super) fn finish(self) -> Result<Plan, GeoJsonError> {
+    pub(super) fn finish(self) -> Result<PlanFile, GeoJsonError> {
         let place = GeoJsonPlace::default();
         // Coordinates and lengths were checked on the way; only the number of lines is left.
-        let plan = Plan::new(self.lines, self.objects).and_then(|plan| plan.with_mirrors(self.mirrors));
-        plan.map_err(|e| GeoJsonError { line: 1, column: 1, place, kind: e.into() })
+        let file = self.lines.finish(self.objects);
+        let file = file.map_err(|e| GeoJsonError { line: 1, column: 1, place, kind: e.into() })?;
+        Ok(PlanFile { crs: self.crs, ..file })
     }
 
     /// Adds the geometries of one feature to the plan.
@@ -35,7 +38,7 @@ impl PlanBuilder {
             self.context.place.geometry = geometry.index;
             match geometry.kind {
                 GeometryKind::Point | GeometryKind::MultiPoint => self.add_points(&geometry.coordinates.points, about),
-                kind => self.add_lines(kind, &geometry.coordinates, about)?,
+                kind => self.add_lines(kind, &geometry.coordinates, about),
             }
         }
         self.context.place.geometry = None;
@@ -56,31 +59,19 @@ impl PlanBuilder {
         }
     }
 
-    fn add_lines(
-        &mut self,
-        kind: GeometryKind,
-        coordinates: &Coordinates,
-        about: &Properties,
-    ) -> Result<(), GeoJsonErrorKind> {
+    fn add_lines(&mut self, kind: GeometryKind, coordinates: &Coordinates, about: &Properties) {
         let closed = matches!(kind, GeometryKind::Polygon | GeometryKind::MultiPolygon);
-        let first = self.lines.len();
-        for (part, points) in coordinates.parts().enumerate() {
-            let before = self.lines.len();
+        for points in coordinates.parts() {
+            if points.iter().all(|point| *point == points[0]) {
+                self.lines.count_without_length();
+                continue;
+            }
             let back = closed.then(|| (points[points.len() - 1], points[0]));
             let steps = points.windows(2).map(|pair| (pair[0], pair[1])).chain(back);
-            self.lines.extend(steps.filter(|(a, b)| a != b).map(|(a, b)| {
+            for (a, b) in steps.filter(|(a, b)| a != b) {
                 let &Properties { transparent, left, right, .. } = about;
-                PlanLine { a, b, opaque: !transparent, left, right }
-            }));
-            if self.lines.len() == before {
-                self.context.place.part = Some(part);
-                return Err(GeoJsonErrorKind::NoExtent(kind));
+                self.lines.push(PlanLine { a, b, opaque: !transparent, left, right }, about.is_mirror);
             }
         }
-        if about.is_mirror {
-            // More lines than ids are refused in the end.
-            self.mirrors.extend((first..self.lines.len()).filter_map(|line| u32::try_from(line).ok().map(LineId)));
-        }
-        Ok(())
     }
 }

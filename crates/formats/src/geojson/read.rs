@@ -3,7 +3,7 @@
 use super::error::{GeoJsonError, GeoJsonPlace};
 use super::node::{Level, Node};
 use super::plan_builder::PlanBuilder;
-use crate::{ReadError, ReadErrorKind};
+use crate::{PlanFile, ReadError, ReadErrorKind};
 use serde::de::DeserializeSeed;
 use sightlines_cells::Plan;
 use std::fs::File;
@@ -15,12 +15,20 @@ const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
 
 /// Reads a plan from a GeoJSON text; see the module for what means what.
 ///
-/// Lines come in the order of the text. Rings are closed. Positions that repeat the one before them are
-/// dropped as long as the line has two different ones. A byte order mark is skipped. O(length).
+/// Lines come in the order of the text. Rings are closed. Positions that repeat the one before them are dropped, and so are lines
+/// without two different positions and lines that repeat others. A byte order mark is skipped. O(length).
 ///
 /// # Errors
 /// [`GeoJsonError`] with line and column, and where known the feature, geometry and position.
 pub fn parse_plan(text: &[u8]) -> Result<Plan, GeoJsonError> {
+    Ok(parse_plan_file(text)?.plan)
+}
+
+/// As [`parse_plan`], with what was dropped and what passes through.
+///
+/// # Errors
+/// As [`parse_plan`].
+pub fn parse_plan_file(text: &[u8]) -> Result<PlanFile, GeoJsonError> {
     let text = text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text);
     let mut builder = PlanBuilder::default();
     let result = run(&mut builder, &mut serde_json::Deserializer::from_slice(text));
@@ -33,7 +41,15 @@ pub fn parse_plan(text: &[u8]) -> Result<Plan, GeoJsonError> {
 /// # Errors
 /// [`ReadError`] with the file and what is wrong.
 pub fn read_plan(path: impl AsRef<Path>) -> Result<Plan, ReadError> {
-    let read = || -> Result<Plan, ReadErrorKind> {
+    Ok(read_plan_file(path)?.plan)
+}
+
+/// As [`read_plan`], with what was dropped and what passes through.
+///
+/// # Errors
+/// As [`read_plan`].
+pub fn read_plan_file(path: impl AsRef<Path>) -> Result<PlanFile, ReadError> {
+    let read = || -> Result<PlanFile, ReadErrorKind> {
         let mut file = BufReader::new(File::open(path.as_ref())?);
         if file.fill_buf()?.starts_with(BYTE_ORDER_MARK) {
             file.consume(BYTE_ORDER_MARK.len());

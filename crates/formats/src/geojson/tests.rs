@@ -1,7 +1,9 @@
 use super::*;
+use crate::{DroppedLines, PlanFile};
 use proptest::prelude::*;
 use sightlines_cells::{LineId, Plan, PlanLine, PlanObject};
 use sightlines_geometry::{Aabb, Point2};
+use std::collections::BTreeSet;
 
 fn error(text: &str) -> String {
     parse_plan(text.as_bytes()).unwrap_err().to_string()
@@ -22,6 +24,7 @@ fn walls(text: &str) -> Vec<[f64; 4]> {
     plan.lines().iter().map(|l| [l.a.x, l.a.y, l.b.x, l.b.y]).collect()
 }
 
+const OTHER: &str = r#"{"type":"LineString","coordinates":[[0,2],[1,2]]}"#;
 const LINE: &str = r#"{"type":"LineString","coordinates":[[0,0],[1,0]]}"#;
 
 #[test]
@@ -36,30 +39,95 @@ fn every_kind_of_geometry_is_read() {
         assert_eq!(walls(&format!(r#"{{"type":"MultiPolygon","coordinates":[{rings}]}}"#)), ring);
     }
     let nested = format!(
-        r#"{{"geometries":[{LINE},{{"type":"GeometryCollection","geometries":[{LINE}]}}],"type":"GeometryCollection"}}"#
+        r#"{{"geometries":[{LINE},{{"type":"GeometryCollection","geometries":[{OTHER}]}}],"type":"GeometryCollection"}}"#
     );
     assert_eq!(walls(&nested).len(), 2);
     assert_eq!(walls(&format!(r#"{{"properties":null,"geometry":{nested},"type":"Feature"}}"#)).len(), 2);
-    assert_eq!(walls(&collection(&[(LINE, "{}"), ("null", "null"), (&nested, "{}")])).len(), 3);
-    assert_eq!(walls(r#"{"type":"MultiPolygon","coordinates":[]}"#).len(), 0);
+    let third = r#"{"type":"LineString","coordinates":[[0,3],[1,3]]}"#;
+    assert_eq!(walls(&collection(&[(third, "{}"), ("null", "null"), (&nested, "{}")])).len(), 3);
+    for kind in ["LineString", "Polygon", "MultiPoint", "MultiLineString", "MultiPolygon"] {
+        let empty = format!(r#"{{"type":"{kind}","coordinates":[]}}"#);
+        let file = parse_plan_file(empty.as_bytes()).unwrap();
+        assert!(file.plan.lines().is_empty() && file.dropped == DroppedLines::default());
+    }
     assert_eq!(walls(&format!("\u{FEFF} {LINE} ")), line);
 }
 
 #[test]
-fn repeated_positions_are_dropped_but_not_whole_lines() {
+fn repeated_positions_and_lines_without_length_are_dropped() {
     let text = r#"{"type":"LineString","coordinates":[[0,0],[0,-0.0],[1,0],[1,0],[1,1]]}"#;
     assert_eq!(walls(text), [[0., 0., 1., 0.], [1., 0., 1., 1.]]);
-    for (kind, coordinates) in
-        [("LineString", "[[1,2],[1,2]]"), ("LineString", "[[1,2]]"), ("Polygon", "[[[1,2],[1,2],[1,2]]]")]
-    {
+    assert!(parse_plan_file(text.as_bytes()).unwrap().warnings.is_empty());
+    for (kind, coordinates) in [
+        ("LineString", "[[1,2],[1,2]]"),
+        ("LineString", "[[1,2]]"),
+        ("Polygon", "[[[1,2],[1,2],[1,2]]]"),
+        ("MultiLineString", "[[[1,2],[1,2]]]"),
+    ] {
         let geometry = format!(r#"{{"type":"{kind}","coordinates":{coordinates}}}"#);
-        let found = error(&collection(&[(LINE, "{}"), (&geometry, "{}")]));
-        assert!(found.ends_with(&format!(": feature 1: part 0: a {kind} needs two different positions")), "{found}");
+        let text = collection(&[(LINE, "{}"), (&geometry, r#"{"mirror":true}"#), (OTHER, r#"{"mirror":true}"#)]);
+        let file = parse_plan_file(text.as_bytes()).unwrap();
+        assert_eq!(file.dropped, DroppedLines { n_without_length: 1, n_doubled: 0 }, "{geometry}");
+        assert_eq!((file.plan.lines().len(), file.plan.mirrors()), (2, &[LineId(1)][..]));
+        assert_eq!(file.warnings, ["dropped 1 line without length"]);
     }
-    assert!(
-        error(r#"{"type":"LineString","coordinates":[]}"#)
-            .ends_with("feature 0: a LineString needs two different positions")
-    );
+}
+
+#[test]
+fn lines_that_repeat_others_are_dropped() {
+    let line = |a: u8, b: u8| format!(r#"{{"type":"LineString","coordinates":[[{a},0],[{b},0]]}}"#);
+    let (there, back) = (line(0, 1), line(1, 0));
+    let n_kept = |properties: [&str; 2], second: &str| {
+        let text = collection(&[(&there, properties[0]), (second, properties[1])]);
+        let PlanFile { plan, dropped, warnings, .. } = parse_plan_file(text.as_bytes()).unwrap();
+        assert_eq!(plan.lines().len() + dropped.n_doubled, 2);
+        assert_eq!(warnings.len(), dropped.n_doubled);
+        plan.lines().len()
+    };
+    for same in [&there, &back] {
+        assert_eq!(n_kept(["{}", "{}"], same), 1);
+        assert_eq!(n_kept([r#"{"mirror":true}"#; 2], same), 1);
+        assert_eq!(n_kept([r#"{"sight":"transparent"}"#; 2], same), 1);
+        // What differs stays.
+        assert_eq!(n_kept(["{}", r#"{"sight":"transparent"}"#], same), 2);
+        assert_eq!(n_kept(["{}", r#"{"mirror":true}"#], same), 2);
+        assert_eq!(n_kept(["{}", r#"{"left_group":0}"#], same), 2);
+    }
+    // Left and right are those of the direction.
+    let groups = [r#"{"left_group":1,"right_group":2}"#, r#"{"left_group":2,"right_group":1}"#];
+    assert_eq!([n_kept(groups, &there), n_kept(groups, &back)], [2, 1]);
+    assert_eq!([n_kept([groups[0]; 2], &there), n_kept([groups[0]; 2], &back)], [1, 2]);
+    assert_eq!(n_kept(["{}", "{}"], &line(0, 2)), 2);
+    let thrice = collection(&[(&there, "{}"), (&back, "{}"), (&there, "{}")]);
+    let file = parse_plan_file(thrice.as_bytes()).unwrap();
+    assert_eq!(file.warnings, ["dropped 2 lines that repeat others"]);
+}
+
+#[test]
+fn the_reference_system_passes_through() {
+    let crs = "{ \"type\": \"name\",\n  \"properties\": {\"name\": \"urn:ogc:def:crs:EPSG::25832\", \"x\": 1e999} }";
+    for whole in [LINE.to_owned(), format!(r#"{{"type":"Feature","geometry":{LINE}}}"#), collection(&[(LINE, "{}")])] {
+        for crs in [crs, "null", "\"EPSG:25832\""] {
+            let with = whole.replacen('{', &format!("{{\"crs\": {crs} ,"), 1);
+            let file = parse_plan_file(with.as_bytes()).unwrap();
+            assert_eq!((file.crs.as_deref(), &file.warnings[..]), (Some(crs), &[][..]));
+            assert_eq!(file.plan, parse_plan(whole.as_bytes()).unwrap());
+            let written = write_plan_file(&file);
+            assert_eq!(parse_plan_file(written.as_bytes()).unwrap(), file);
+            // A file is read as a text is.
+            let folder = tempfile::tempdir().unwrap();
+            std::fs::write(folder.path().join("a.geojson"), &with).unwrap();
+            assert_eq!(read_plan_file(folder.path().join("a.geojson")).unwrap(), file);
+            // Without it the same is written as before.
+            assert_eq!(write_plan_file(&PlanFile { crs: None, ..file.clone() }), write_plan(&file.plan));
+            assert_ne!(written, write_plan(&file.plan));
+        }
+    }
+    // Coordinates of a national grid stay what they are.
+    let grid = r#"{"crs":{},"type":"LineString","coordinates":[[565432.125,5934321.0625],[565433,5934321.1]]}"#;
+    assert_eq!(walls(grid), [[565432.125, 5934321.0625, 565433.0, 5934321.1]]);
+    assert!(error(&grid.replacen('{', "{\"crs\":1,", 1)).ends_with("there are two members \"crs\""));
+    assert!(error(&grid.replacen("{}", "{]", 1)).ends_with("not JSON that can be read"));
 }
 
 #[test]
@@ -199,7 +267,14 @@ fn plans() -> impl Strategy<Value = Plan> {
     let object = (any::<String>(), point(), point())
         .prop_map(|(name, a, b)| PlanObject { name, bounds: Aabb::around([a.to_array(), b.to_array()]) });
     (prop::collection::vec(line, 0..8), prop::collection::vec(object, 0..4), any::<u8>()).prop_map(
-        |(lines, objects, marks)| {
+        |(mut lines, objects, marks)| {
+            // Of lines with the same ends one is kept.
+            let mut seen = BTreeSet::new();
+            lines.retain(|line| {
+                let mut ends = [line.a, line.b].map(|p| [p.x, p.y].map(|x| (x + 0.0).to_bits()));
+                ends.sort_unstable();
+                seen.insert(ends)
+            });
             let walls = (0u32..).zip(&lines).filter(|(k, line)| line.opaque && marks >> k & 1 == 1);
             let mirrors = walls.map(|(k, _)| LineId(k)).collect();
             Plan::new(lines, objects).unwrap().with_mirrors(mirrors).unwrap()
@@ -234,13 +309,15 @@ proptest! {
 
 #[test]
 fn mirrors_are_marked() {
-    let feature = |properties: &str| {
-        format!(
-            r#"{{"type":"Feature","properties":{properties},"geometry":{{"type":"LineString","coordinates":[[0,0],[4,0],[4,4]]}}}}"#
-        )
+    let feature = |properties: &'static str| {
+        move |k: usize| {
+            format!(
+                r#"{{"type":"Feature","properties":{properties},"geometry":{{"type":"LineString","coordinates":[[{k},0],[4,{k}],[4,9]]}}}}"#
+            )
+        }
     };
-    let all = |features: &[&str]| {
-        let features: Vec<String> = features.iter().map(|f| feature(f)).collect();
+    let all = |features: &[&'static str]| {
+        let features: Vec<String> = features.iter().enumerate().map(|(k, f)| feature(f)(k)).collect();
         parse_plan(format!(r#"{{"type":"FeatureCollection","features":[{}]}}"#, features.join(",")).as_bytes())
     };
     let plan = all(&["{}", r#"{"mirror":true}"#, r#"{"mirror":false}"#, r#"{"mirror":null}"#]).unwrap();

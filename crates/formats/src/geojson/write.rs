@@ -1,5 +1,6 @@
 //! Writing: a feature per line and per object, one on each row of the text.
 
+use crate::PlanFile;
 use sightlines_cells::{LineId, Plan, PlanLine, PlanObject};
 use std::fmt::Write;
 
@@ -8,11 +9,26 @@ use std::fmt::Write;
 /// Lines come first, then objects, in the plan's order: lines as LineStrings, objects as Points, or as
 /// MultiPoints of two corners if they have extent. Numbers are the shortest decimals that mean them.
 /// Only groups below [`super::MAX_GROUPS`] are read back.
+///
+/// Of a plan with doubled lines, which [`Plan::new`] allows, they are dropped when it is read again.
 pub fn write_plan(plan: &Plan) -> String {
+    write_with(plan, None)
+}
+
+/// As [`write_plan`], with the member `crs` of the plan's file as it was.
+pub fn write_plan_file(file: &PlanFile) -> String {
+    write_with(&file.plan, file.crs.as_deref())
+}
+
+fn write_with(plan: &Plan, crs: Option<&str>) -> String {
     let is_mirror = |id: LineId| plan.mirrors().binary_search(&id).is_ok();
     let lines = (0u32..).map(LineId).zip(plan.lines()).map(|(id, line)| line_feature(line, is_mirror(id)));
     let features = lines.chain(plan.objects().iter().map(object_feature));
-    let mut text = String::from("{\"type\":\"FeatureCollection\",\"features\":[");
+    let mut text = String::from("{\"type\":\"FeatureCollection\",");
+    if let Some(crs) = crs {
+        text.extend(["\"crs\":", crs, ","]);
+    }
+    text.push_str("\"features\":[");
     for (index, feature) in features.enumerate() {
         text.push_str(if index == 0 { "\n" } else { ",\n" });
         text.push_str(&feature);

@@ -2,6 +2,7 @@
 
 use super::members::{has_member, is_object};
 use super::{Input, Source};
+use crate::dxf::is_dxf;
 use crate::error::ReadErrorKind;
 use std::path::Path;
 
@@ -60,6 +61,8 @@ pub enum Sign {
     JsonMember(&'static str),
     /// All other JSON.
     Json,
+    /// By its first groups, which open a section; or as binary DXF, which is recognised to be refused.
+    Dxf,
     /// Not at all: only the name decides.
     Name,
 }
@@ -72,6 +75,7 @@ impl Sign {
             Self::MagicOrNamedJson(magic) => head.starts_with(magic),
             Self::JsonMember(member) => has_member(head, member) && !has_member(head, "type"),
             Self::Json => is_object(head),
+            Self::Dxf => is_dxf(head),
             Self::Name => false,
         }
     }

@@ -10,8 +10,8 @@
 //! let text = br#"{"type": "LineString", "coordinates": [[0, 0], [4, 0]]}"#;
 //! assert_eq!(detect("walls.json".as_ref(), text).unwrap().name, "geojson");
 //! let walls = Source::Memory { name: "walls.json".as_ref(), bytes: text, beside: None };
-//! let Some(Input::Plan(plan)) = walls.read().unwrap() else { panic!("a plan") };
-//! assert_eq!(plan.lines().len(), 1);
+//! let Some(Input::Plan(file)) = walls.read().unwrap() else { panic!("a plan") };
+//! assert_eq!(file.plan.lines().len(), 1);
 //! ```
 
 mod format;
@@ -25,8 +25,7 @@ pub use registry::{FORMATS, detect};
 use crate::error::ReadErrorKind;
 use crate::quake::prt::parse_prt;
 use crate::quake::{Bsp, Prt, portals_beside};
-use crate::{LevelsIndex, ReadError, SceneFile, ViewCells, Wad};
-use sightlines_cells::Plan;
+use crate::{LevelsIndex, PlanFile, ReadError, SceneFile, ViewCells, Wad};
 use sightlines_pvs::Table;
 use std::borrow::Cow;
 use std::fs::{self, File};
@@ -42,7 +41,7 @@ pub const HEAD: usize = 4096;
 #[expect(clippy::large_enum_variant, reason = "there is one for each file that is read")]
 pub enum Input {
     /// A scene in the plane.
-    Plan(Plan),
+    Plan(PlanFile),
     /// The maps of a Doom game; [`choose_map`](crate::doom::choose_map) picks one.
     Wad(Wad),
     /// A scene in space.

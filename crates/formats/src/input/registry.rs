@@ -5,13 +5,13 @@ use super::{Folder, Input, Source};
 use crate::error::ReadErrorKind;
 use crate::quake::prt::{self, PrtDialect};
 use crate::quake::{Bsp, BspFormat};
-use crate::{Wad, geojson, levels, scene, view_cells};
+use crate::{PlanReadOptions, Wad, dxf, geojson, levels, scene, view_cells};
 use sightlines_pvs::{Table, format};
 use std::path::Path;
 
 /// The formats that are read. What lies further up is recognised first.
 #[rustfmt::skip]
-pub static FORMATS: [Format; 11] = [
+pub static FORMATS: [Format; 12] = [
     Format { name: "wad", noun: "a WAD", extensions: &["wad"], sign: Sign::Magic(&[b"IWAD", b"PWAD"]), kind: InputKind::Wad, read: wad },
     Format { name: "pvs", noun: "a table", extensions: &["pvs"], sign: Sign::Magic(&[&format::MAGIC]), kind: InputKind::Table, read: table },
     Format { name: "pvz", noun: "a packed table", extensions: &["pvz"], sign: Sign::Magic(&[PACKED]), kind: InputKind::Packed, read: |_| Ok(Input::Packed) },
@@ -20,6 +20,7 @@ pub static FORMATS: [Format; 11] = [
     Format { name: "obj", noun: "a scene", extensions: &["obj"], sign: Sign::Name, kind: InputKind::Scene, read: obj },
     Format { name: "prt", noun: "a portal file", extensions: &["prt"], sign: Sign::Magic(&PrtDialect::MAGICS), kind: InputKind::Prt, read: portals },
     Format { name: "bsp", noun: "a Quake map", extensions: &["bsp"], sign: Sign::Magic(&BspFormat::MAGICS), kind: InputKind::Bsp, read: bsp },
+    Format { name: "dxf", noun: "a DXF drawing", extensions: &["dxf"], sign: Sign::Dxf, kind: InputKind::Plan, read: dxf },
     Format { name: "levels", noun: "an index of levels", extensions: &["json"], sign: Sign::JsonMember("sightlines_levels"), kind: InputKind::Levels, read: levels },
     Format { name: "view-cells", noun: "view cells", extensions: &["json"], sign: Sign::JsonMember("cells"), kind: InputKind::ViewCells, read: view_cells },
     Format { name: "geojson", noun: "JSON, such as a floor plan", extensions: &["geojson", "json"], sign: Sign::Json, kind: InputKind::Plan, read: plan },
@@ -86,10 +87,14 @@ fn view_cells(source: &Source<'_>) -> Result<Input, ReadErrorKind> {
     Ok(Input::ViewCells(view_cells::parse_view_cells(&source.bytes()?)?))
 }
 
+fn dxf(source: &Source<'_>) -> Result<Input, ReadErrorKind> {
+    Ok(Input::Plan(dxf::parse_dxf(&source.bytes()?, &PlanReadOptions::default())?))
+}
+
 /// A plan in a file is read as it goes: a large file that is no plan costs no memory.
 fn plan(source: &Source<'_>) -> Result<Input, ReadErrorKind> {
     Ok(Input::Plan(match *source {
-        Source::File(path) => geojson::read_plan(path).map_err(|error| error.kind)?,
-        Source::Memory { bytes, .. } => geojson::parse_plan(bytes)?,
+        Source::File(path) => geojson::read_plan_file(path).map_err(|error| error.kind)?,
+        Source::Memory { bytes, .. } => geojson::parse_plan_file(bytes)?,
     }))
 }

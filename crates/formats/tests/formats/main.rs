@@ -1,6 +1,7 @@
 //! Readers and writers of maps and scenes, on small, random, broken and real files.
 
 mod common;
+mod dxf;
 mod maps;
 mod materials;
 mod motion;

@@ -20,6 +20,8 @@ const GLTF: &str = r#"{"asset": {"version": "2.0"}, "buffers": [{"byteLength": 3
     "bufferViews": [{"buffer": 0, "byteLength": 36}],
     "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
     "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "nodes": [{"mesh": 0}]}"#;
+/// A line as DXF of any version.
+const DXF: &str = "  0\nSECTION\n  2\nENTITIES\n  0\nLINE\n 10\n1.5\n 20\n0\n 11\n4\n 21\n0\n  0\nENDSEC\n  0\nEOF\n";
 const OBJ: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
 /// What files of a format are like, each with the ending of its name.
@@ -34,6 +36,9 @@ fn samples(format: &Format) -> Vec<(&'static str, Vec<u8>)> {
         "obj" => vec![("obj", OBJ.as_bytes().to_vec())],
         "prt" => SMALL_PRTS.map(|text| ("prt", text.as_bytes().to_vec())).to_vec(),
         "bsp" => BspFormat::ALL.map(|kind| ("bsp", small(kind))).to_vec(),
+        "dxf" => {
+            ["", "999\nmade by hand\n", "\u{FEFF}"].map(|head| ("dxf", format!("{head}{DXF}").into_bytes())).to_vec()
+        }
         "levels" => {
             let index = LevelsIndex { n_triangles: 3, budget: 0.5, levels: Vec::new(), cells: vec![None] };
             vec![("json", write_levels_index(&index).into_bytes())]

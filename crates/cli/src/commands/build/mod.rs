@@ -29,6 +29,7 @@ use crate::input::{self, refuse};
 use crate::map_portals::MADE;
 use crate::numbers::duration;
 use crate::output;
+use crate::plans::{self, PlanArgs};
 use crate::progress::Bar;
 use crate::surfaces::{SurfaceArgs, Surfaces};
 use options::BakeArgs;
@@ -55,6 +56,8 @@ pub(crate) struct BuildArgs {
     prt: Option<PathBuf>,
     #[command(flatten)]
     surfaces: SurfaceArgs,
+    #[command(flatten)]
+    plans: PlanArgs,
     #[command(flatten)]
     bake: BakeArgs,
     #[command(flatten, next_help_heading = "Method")]
@@ -93,7 +96,8 @@ pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Resul
     }
     output::check(&[path], &[out])?;
     args.certify.check(path, out)?;
-    let input = input::read(path, args.map.as_deref(), &args.surfaces.options())?;
+    let reading = args.plans.options(path)?;
+    let input = input::read(path, args.map.as_deref(), &args.surfaces.options(), &reading)?;
     args.refuse_meaningless(&input)?;
     let chosen = (args.map.as_deref(), args.prt.as_deref());
     let mut source = Source::new(path, input, chosen, out, &args.bake)?;
@@ -125,6 +129,7 @@ pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Resul
     clock.warn(path, &baked.report);
     let (baked, stab) = stab::add(path, baked, args.stab_trees, options.threads, show_progress)?;
     let (baked, given_doors) = doors::add(path, baked, &args.doors);
+    let baked = plans::state(baked, &reading);
     let bytes = baked.table.to_bytes();
     // Proofs that contradict the table leave an older one untouched.
     let proofs = args.certify.write(path, out, &baked, options.threads, show_progress)?;

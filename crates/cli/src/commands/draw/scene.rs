@@ -6,14 +6,14 @@ use crate::same_scene::difference;
 use crate::surfaces::SurfaceArgs;
 use sightlines::cells::Scene;
 use sightlines::formats::quake::Bsp;
-use sightlines::formats::{Input, ReadError};
+use sightlines::formats::{Input, PlanReadOptions, ReadError};
 use sightlines::pvs::Table;
 use sightlines::report::Surfaces;
 use std::path::Path;
 
 /// Reads the surfaces of a scene in space, and refuses one that the table was not made of.
 pub(super) fn surfaces(path: &Path, table: &Table) -> Result<Surfaces, Error> {
-    match input::read(path, None, &SurfaceArgs::default().options_with(table.info()))? {
+    match input::read(path, None, &SurfaceArgs::default().options_with(table.info()), &PlanReadOptions::default())? {
         Input::Scene(file) => of_scene(path, &file.scene, table),
         Input::Bsp(bsp) => of_map(path, &bsp, table),
         Input::Prt(_) => Err(other(path, "a portal file has nothing to draw; name its map")),

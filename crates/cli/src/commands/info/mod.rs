@@ -12,6 +12,7 @@ use crate::facts::{DigestFacts, DoorFacts, Facts, FrameFacts, Source, StabFacts,
 use crate::file_error::{FileError, from_file_error};
 use crate::input;
 use crate::output::{self, bytes, count};
+use crate::plans::PlanArgs;
 use crate::surfaces::SurfaceArgs;
 use serde::Serialize;
 use sightlines::formats::InputKind;
@@ -33,12 +34,14 @@ from_file_error!(Error);
 /// Arguments of `info`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct InfoArgs {
-    /// A table (plain or packed), a WAD, a GeoJSON floor plan, a scene as GLB, glTF or OBJ, a Quake map, or a portal
+    /// A table (plain or packed), a WAD, a GeoJSON or DXF floor plan, a scene as GLB, glTF or OBJ, a Quake map, or a portal
     /// file
     #[arg(value_name = "FILE")]
     file: PathBuf,
     #[command(flatten)]
     surfaces: SurfaceArgs,
+    #[command(flatten)]
+    plans: PlanArgs,
     /// Tables: also list the objects, with node and primitive in the glTF that the table was made of
     #[arg(long, help_heading = "Output")]
     objects: bool,
@@ -56,18 +59,20 @@ pub(crate) fn run(args: &InfoArgs) -> Result<Answer, Error> {
     if !matches!(kind, Some(InputKind::Table | InputKind::Packed)) {
         input::refuse(path, &[("--objects", args.objects)], "tables", "none")?;
     }
+    let reading = args.plans.options(path)?;
     match kind {
         Some(InputKind::Table) => {
             output::print(args.json, &TableInfo::new(path, &input::table(path)?, args.objects))?;
         }
         Some(InputKind::Packed) => output::print(args.json, &packed::PackedInfo::read(path, args.objects)?)?,
         Some(InputKind::Wad) => output::print(args.json, &wad::WadInfo::read(path)?)?,
-        Some(InputKind::Plan) => output::print(args.json, &plan::PlanInfo::read(path)?)?,
+        Some(InputKind::Plan) => output::print(args.json, &plan::PlanInfo::read(path, &reading)?)?,
         Some(InputKind::Scene) => output::print(args.json, &scene::SceneInfo::read(path, &args.surfaces.options())?)?,
         Some(InputKind::Prt) => output::print(args.json, &quake::PrtInfo::read(path)?)?,
         Some(InputKind::Bsp) => output::print(args.json, &quake::BspInfo::read(path)?)?,
         _ => {
-            let expected = "a table nor a WAD nor a GeoJSON plan nor a GLB, glTF or OBJ nor a Quake map or portal file";
+            let expected =
+                "a table nor a WAD nor a GeoJSON or DXF plan nor a GLB, glTF or OBJ nor a Quake map or portal file";
             return Err(InputError::Kind { path: path.clone(), expected }.into());
         }
     }

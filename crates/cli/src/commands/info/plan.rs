@@ -1,8 +1,9 @@
-//! What a GeoJSON plan holds.
+//! What a floor plan holds.
 
 use super::Error;
+use crate::plans;
 use serde::Serialize;
-use sightlines::formats::geojson;
+use sightlines::formats::{PlanReadOptions, detect_file};
 use std::fmt;
 use std::path::Path;
 
@@ -20,33 +21,51 @@ pub(super) struct PlanInfo {
     max: Option<[f64; 2]>,
     /// Whether every line is parallel to an axis.
     axial: bool,
+    /// Lines of the file that were dropped.
+    n_without_length: usize,
+    n_doubled: usize,
+    has_crs: bool,
+    /// Of DXF.
+    layers: Vec<String>,
 }
 
 impl PlanInfo {
-    pub(super) fn read(path: &Path) -> Result<Self, Error> {
-        let plan = geojson::read_plan(path)?;
+    pub(super) fn read(path: &Path, options: &PlanReadOptions) -> Result<Self, Error> {
+        let file = plans::read(path, options)?;
+        let plan = file.plan;
         let n_walls = plan.lines().iter().filter(|line| line.opaque).count();
         let bounds = Some(plan.bounds()).filter(|bounds| !bounds.is_empty());
         Ok(Self {
             file: path.display().to_string(),
-            kind: "geojson",
+            kind: detect_file(path)?.map_or("geojson", |format| format.name),
             n_walls,
             n_transparent: plan.lines().len() - n_walls,
             n_objects: plan.objects().len(),
             min: bounds.map(|b| b.min),
             max: bounds.map(|b| b.max),
             axial: plan.is_axial(),
+            n_without_length: file.dropped.n_without_length,
+            n_doubled: file.dropped.n_doubled,
+            has_crs: file.crs.is_some(),
+            layers: file.layers,
         })
     }
 }
 
 impl fmt::Display for PlanInfo {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{}: GeoJSON plan", self.file)?;
+        writeln!(f, "{}: {} plan", self.file, if self.kind == "dxf" { "DXF" } else { "GeoJSON" })?;
         let axial = if self.axial { ", all parallel to an axis" } else { "" };
         writeln!(f, "walls          {}{axial}", self.n_walls)?;
         writeln!(f, "transparent    {}", self.n_transparent)?;
         writeln!(f, "objects        {}", self.n_objects)?;
+        if self.n_without_length + self.n_doubled > 0 {
+            writeln!(f, "dropped        {} without length, {} doubled", self.n_without_length, self.n_doubled)?;
+        }
+        if !self.layers.is_empty() {
+            let layers: Vec<String> = self.layers.iter().map(|name| name.escape_debug().to_string()).collect();
+            writeln!(f, "layers         {}", layers.join(", "))?;
+        }
         if let (Some([x0, y0]), Some([x1, y1])) = (self.min, self.max) {
             writeln!(f, "extent         ({x0}, {y0}) to ({x1}, {y1})")?;
         }

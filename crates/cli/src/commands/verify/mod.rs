@@ -13,6 +13,7 @@ use crate::error::InputError;
 use crate::input;
 use crate::input::refuse;
 use crate::picture::PictureKind;
+use crate::plans::PlanArgs;
 use crate::progress::Bar;
 use crate::surfaces::SurfaceArgs;
 use crate::unproven::Unproven;
@@ -32,7 +33,7 @@ pub(crate) struct VerifyArgs {
     /// The table (plain or packed), or a Quake map or WAD whose own visibility or REJECT lump is checked
     #[arg(value_name = "FILE.pvs|MAP.bsp|FILE.wad")]
     table: PathBuf,
-    /// The input it was built from: a WAD, a GeoJSON floor plan, a scene as GLB, glTF or OBJ, a Quake map, or its
+    /// The input it was built from: a WAD, a GeoJSON or DXF floor plan, a scene as GLB, glTF or OBJ, a Quake map, or its
     /// portal file alone
     #[arg(value_name = "SCENE")]
     scene: PathBuf,
@@ -44,6 +45,8 @@ pub(crate) struct VerifyArgs {
     prt: Option<PathBuf>,
     #[command(flatten)]
     surfaces: SurfaceArgs,
+    #[command(flatten)]
+    plans: PlanArgs,
     /// Number of rays from random places in random directions
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = VerifyOptions::default().rays)]
     rays: u64,
@@ -87,7 +90,8 @@ pub(crate) fn run(args: &VerifyArgs, show_progress: bool) -> Result<Answer, Erro
     };
     // What the table was built with holds without being said again.
     let options = args.surfaces.options_with(table.info());
-    let scene = truth::Real::read(&args.scene, args.map.as_deref(), args.prt.as_deref(), &options)?;
+    let plan = args.plans.options_with(&args.scene, table)?;
+    let scene = truth::Real::read(&args.scene, args.map.as_deref(), args.prt.as_deref(), (&options, &plan))?;
     let scene = if own.is_some() { scene.without_objects() } else { scene };
     if own.is_some() {
         let found = "a map with its own";

@@ -6,11 +6,11 @@ use crate::input::{self, refuse};
 use crate::map_portals::portals_for;
 use sightlines::bake::{Bakeable, Gap, PrtBakeError};
 use sightlines::cells::{CellGraph, Convex, Plan, Scene};
-use sightlines::formats::Input;
 use sightlines::formats::quake::bsp::BspError;
 use sightlines::formats::quake::graph_of_prt;
 use sightlines::formats::quake::visibility::check_portals;
 use sightlines::formats::scene::SceneReadOptions;
+use sightlines::formats::{Input, PlanReadOptions};
 use sightlines::pvs::Table;
 use sightlines::verify::{Truth, VerifyError, WorldTree, along_frame};
 use std::path::Path;
@@ -29,9 +29,9 @@ impl Real {
         path: &Path,
         map: Option<&str>,
         prt: Option<&Path>,
-        options: &SceneReadOptions,
+        (options, plan): (&SceneReadOptions, &PlanReadOptions),
     ) -> Result<Self, Error> {
-        let input = input::read(path, map, options)?;
+        let input = input::read(path, map, options, plan)?;
         let portals = match &input {
             Input::Bsp(bsp) => Some(portals_for(bsp, path, prt)?),
             _ => None,

@@ -6,6 +6,7 @@ mod scene;
 use crate::Answer;
 use crate::error::InputError;
 use crate::output::{self, bytes, count};
+use crate::plans::PlanArgs;
 use crate::reasons::reasons;
 use crate::surfaces::SurfaceArgs;
 use crate::{input, tables, walk_path};
@@ -27,7 +28,7 @@ pub(crate) struct ViewArgs {
     /// The table, plain or packed
     #[arg(value_name = "FILE.pvs")]
     table: PathBuf,
-    /// What it was built from: a WAD, a GeoJSON floor plan, a scene as GLB, glTF or OBJ, or a Quake map [default: the page shows cells
+    /// What it was built from: a WAD, a GeoJSON or DXF floor plan, a scene as GLB, glTF or OBJ, or a Quake map [default: the page shows cells
     /// and boxes of objects]
     #[arg(long, help_heading = "Input", value_name = "SCENE")]
     scene: Option<PathBuf>,
@@ -36,6 +37,8 @@ pub(crate) struct ViewArgs {
     map: Option<String>,
     #[command(flatten)]
     surfaces: SurfaceArgs,
+    #[command(flatten)]
+    plans: PlanArgs,
     /// Another table of the same cells: the page shows which pairs became visible and which hidden since
     #[arg(long, help_heading = "Input", value_name = "OLD.pvs")]
     against: Option<PathBuf>,

@@ -13,7 +13,8 @@ use std::path::Path;
 
 /// Reads a scene, and refuses one that the table was not made of.
 pub(super) fn figure(path: &Path, args: &ViewArgs, table: &Table) -> Result<Figure, Error> {
-    match input::read(path, args.map.as_deref(), &args.surfaces.options_with(table.info()))? {
+    let plan = args.plans.options_with(path, table)?;
+    match input::read(path, args.map.as_deref(), &args.surfaces.options_with(table.info()), &plan)? {
         Input::Scene(file) => of_scene(path, &file.scene, table),
         Input::Bsp(bsp) => of_map(path, &bsp, table),
         Input::Prt(_) => Err(other(path, "a portal file has nothing to draw; name its map")),

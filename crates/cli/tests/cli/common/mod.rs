@@ -1,5 +1,7 @@
 //! Runs the built program on generated files.
 
+#[path = "../../../../formats/tests/formats/common/dxf.rs"]
+pub(crate) mod dxf;
 pub(crate) mod engine;
 pub(crate) mod levels;
 pub(crate) mod looks;

@@ -78,6 +78,7 @@ fn plans(all: &mut Results) {
     );
     add("info of a table", "info o.pvs");
     add("info of a plan", "info office.geojson");
+    add("plan", "plan office.geojson -o copy.geojson");
     add("verify", "verify o.pvs office.geojson --rays 100 --pairs 10");
     add("query of a point", "query o.pvs --eye 3,3");
     add("query of a point", "query o.pvs --eye 1e5,3");
@@ -154,6 +155,7 @@ fn scenes(all: &mut Results) {
     let mut add = |heading, line: &str| all.line(&folder, heading, line);
     let least = "--floors 1 --rooms-x 1 --rooms-y 1 --furniture 0";
     add("generate tower", &format!("generate tower -o least.glb {least}"));
+    add("plan", "plan tower.glb --height 1.2 -o tower.geojson");
     add("build of a scene", "build least.glb -o least.pvs --door all=-99,-99,-99,99,99,99");
     add("query of a point", "query least.pvs --eye 2,1,2");
     add("query of a view", "query least.pvs --eye 2,1,2 --closed all");

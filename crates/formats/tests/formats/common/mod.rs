@@ -1,5 +1,6 @@
 //! What the tests of readers share: small files to begin with.
 
+pub(crate) mod dxf;
 pub(crate) mod glb;
 pub(crate) mod quake;
 pub(crate) mod udmf;

@@ -1,0 +1,158 @@
+//! `plan`: a floor plan as GeoJSON, cut from a scene at a height, or from a file of another format.
+
+use crate::Answer;
+use crate::error::InputError;
+use crate::file_error::{FileError, from_file_error};
+use crate::input::{self, refuse};
+use crate::output::{self, bytes};
+use crate::plans::PlanArgs;
+use crate::surfaces::SurfaceArgs;
+use serde::Serialize;
+use sightlines::bake::{Bakeable, FloorCut, FloorCutError, floor_cut};
+use sightlines::cells::Plan;
+use sightlines::formats::geojson::{write_plan, write_plan_file};
+use sightlines::formats::{Input, SceneFile};
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// Why `plan` fails; exit code 2.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum Error {
+    /// A file cannot be read, used or written.
+    #[error(transparent)]
+    File(FileError),
+    /// A scene without a height.
+    #[error("{}: --height is missing: at which height is the scene cut? It is from {} to {}", path.display(), extent[0], extent[1])]
+    NoHeight { path: PathBuf, extent: [f64; 2] },
+    /// A scene that has no plan at a height.
+    #[error("{}: {source}", path.display())]
+    Cut { path: PathBuf, source: FloorCutError },
+}
+
+from_file_error!(Error);
+
+/// Arguments of `plan`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct PlanCommandArgs {
+    /// A scene as GLB, glTF or OBJ; or a plan: DXF, GeoJSON, or a map of a WAD
+    #[arg(value_name = "IN")]
+    input: PathBuf,
+    /// Scenes in space: the height to cut at, in units of the scene along the axis that points up. Best between those of corners: a
+    /// plane that touches an edge closes it
+    #[arg(long, help_heading = "Method", value_name = "H", allow_negative_numbers = true)]
+    height: Option<f64>,
+    /// The map of the WAD; optional if there is only one
+    #[arg(long, help_heading = "Input", value_name = "NAME")]
+    map: Option<String>,
+    #[command(flatten)]
+    surfaces: SurfaceArgs,
+    #[command(flatten)]
+    plans: PlanArgs,
+    /// The plan to write
+    #[arg(short, long, help_heading = "Output", value_name = "OUT.geojson")]
+    output: PathBuf,
+    /// Print the result as JSON
+    #[arg(long, help_heading = "Output")]
+    json: bool,
+}
+
+pub(crate) fn run(args: &PlanCommandArgs) -> Result<Answer, Error> {
+    let (path, out) = (&args.input, &args.output);
+    output::check(&[path], &[out])?;
+    let map = args.map.as_deref();
+    let read = input::read(path, map, &args.surfaces.options(), &args.plans.options(path)?)?;
+    if !matches!(read, Input::Scene(_)) {
+        refuse(path, &[("--height", args.height.is_some())], "scenes in space", "none")?;
+        refuse(path, &args.surfaces.given(), "scenes in space", "none")?;
+    }
+    let (text, outcome) = match read {
+        Input::Scene(file) => {
+            let cut = cut(path, &file, args.height)?;
+            (write_plan(&cut.plan), Outcome::new(out, &cut.plan, args.height.zip(Some(&cut))))
+        }
+        Input::Plan(file) => (write_plan_file(&file), Outcome::new(out, &file.plan, None)),
+        other => match input::bakeable(path, other, map, None)? {
+            Bakeable::Plan { plan, .. } => (write_plan(&plan), Outcome::new(out, &plan, None)),
+            _ => {
+                let expected = "a scene in space nor a plan nor a WAD";
+                return Err(InputError::Kind { path: path.clone(), expected }.into());
+            }
+        },
+    };
+    output::save(out, text.as_bytes())?;
+    output::print(args.json, &Outcome { n_bytes: text.len(), ..outcome })?;
+    Ok(Answer::Yes)
+}
+
+fn cut(path: &Path, file: &SceneFile, height: Option<f64>) -> Result<FloorCut, Error> {
+    input::check_occluder(path, file)?;
+    let (bounds, up) = (file.scene.bounds(), file.info.up as usize);
+    let height = height.ok_or_else(|| Error::NoHeight {
+        path: path.to_owned(),
+        extent: [bounds.min, bounds.max].map(|corner| corner[up]),
+    })?;
+    floor_cut(&file.scene, file.info.up, height).map_err(|source| Error::Cut { path: path.to_owned(), source })
+}
+
+/// What was written.
+#[derive(Debug, Serialize)]
+struct Outcome {
+    out: String,
+    n_walls: usize,
+    /// Lines that do not block sight.
+    n_transparent: usize,
+    n_mirrors: usize,
+    n_objects: usize,
+    n_bytes: usize,
+    /// Of scenes only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    cut: Option<Cut>,
+}
+
+/// How a scene was cut.
+#[derive(Debug, Serialize)]
+struct Cut {
+    height: f64,
+    n_triangles: usize,
+    /// Triangles in the plane, which were left out.
+    n_flat: usize,
+    /// Segments that repeat others, or have no length.
+    n_dropped: usize,
+    /// Segments that were joined to others.
+    n_joined: usize,
+}
+
+impl Outcome {
+    fn new(out: &Path, plan: &Plan, cut: Option<(f64, &FloorCut)>) -> Self {
+        let n_walls = plan.lines().iter().filter(|line| line.opaque).count();
+        Self {
+            out: out.display().to_string(),
+            n_walls,
+            n_transparent: plan.lines().len() - n_walls,
+            n_mirrors: plan.mirrors().len(),
+            n_objects: plan.objects().len(),
+            n_bytes: 0,
+            cut: cut.map(|(height, cut)| Cut {
+                height,
+                n_triangles: cut.n_cut,
+                n_flat: cut.n_flat,
+                n_dropped: cut.n_doubled + cut.n_without_length,
+                n_joined: cut.n_joined,
+            }),
+        }
+    }
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "wrote {}, {}", self.out, bytes(self.n_bytes as u64))?;
+        if let Some(Cut { height, n_triangles, n_flat, n_dropped, n_joined }) = self.cut {
+            writeln!(f, "cut            {n_triangles} triangles at height {height}; {n_flat} lie in the plane")?;
+            writeln!(f, "segments       {n_dropped} dropped, {n_joined} joined to others")?;
+        }
+        let mirrors = if self.n_mirrors > 0 { format!(", {} of them mirrors", self.n_mirrors) } else { String::new() };
+        writeln!(f, "walls          {}{mirrors}", self.n_walls)?;
+        writeln!(f, "transparent    {}", self.n_transparent)?;
+        writeln!(f, "objects        {}", self.n_objects)
+    }
+}

@@ -1,0 +1,201 @@
+//! The entities of the model, with blocks where they are inserted: straight and curved pieces in the plane.
+
+use super::affine::{Affine, cross, unit};
+use super::curve::{Bezier, arc, bulged};
+use super::drawing::{Chosen, Drawing, Ignored};
+use super::entity::{Entity, Insert, Shape, Where};
+use super::error::{DxfError, DxfErrorKind};
+use super::text::folded;
+use super::{MAX_ELEMENTS, MAX_NESTING};
+use sightlines_geometry::check_coordinate;
+use std::collections::BTreeSet;
+
+/// What becomes lines.
+#[derive(Debug, Default)]
+pub(super) struct Expanded {
+    /// In the order of the entities, each with its pieces.
+    pub(super) pieces: Vec<Vec<Bezier<2>>>,
+    ignored: Ignored,
+    n_hidden: usize,
+    hidden_layers: BTreeSet<u32>,
+    n_on_paper: usize,
+    n_invisible: usize,
+}
+
+/// Most kinds and layers in a warning.
+const MOST: usize = 12;
+
+impl Expanded {
+    /// A sentence for each reason why entities were left out.
+    pub(super) fn warnings(&self, drawing: &Drawing) -> Vec<String> {
+        let mut warnings = Vec::new();
+        if !self.ignored.is_empty() {
+            let kinds = self.ignored.iter().map(|(kind, n)| format!("{n} {}", kind.escape_debug()));
+            warnings.push(format!("ignored what is no line or curve: {}", list(kinds)));
+        }
+        let entities = |n: usize| if n == 1 { "1 entity".to_owned() } else { format!("{n} entities") };
+        if self.n_hidden > 0 {
+            let names = self.hidden_layers.iter().map(|&id| drawing.layers.name(id).escape_debug().to_string());
+            let what = entities(self.n_hidden);
+            warnings.push(format!("left out {what} on layers that are frozen or off: {}", list(names)));
+        }
+        if self.n_on_paper > 0 {
+            warnings.push(format!("left out {} in paper space", entities(self.n_on_paper)));
+        }
+        if self.n_invisible > 0 {
+            warnings.push(format!("left out {} marked as invisible", entities(self.n_invisible)));
+        }
+        warnings
+    }
+}
+
+fn list(all: impl ExactSizeIterator<Item = String>) -> String {
+    let n = all.len();
+    let shown: Vec<String> = all.take(MOST).collect();
+    let more = if n > MOST { format!(" and {} more", n - MOST) } else { String::new() };
+    format!("{}{more}", shown.join(", "))
+}
+
+/// Follows the inserts of the model.
+pub(super) fn expand(drawing: &Drawing, chosen: &Chosen) -> Result<Expanded, DxfError> {
+    let mut walk = Walk { drawing, chosen, out: Expanded::default(), n_elements: 0, open: Vec::new() };
+    walk.entities(&drawing.entities, &Affine::IDENTITY, None)?;
+    Ok(walk.out)
+}
+
+struct Walk<'d> {
+    drawing: &'d Drawing,
+    chosen: &'d Chosen,
+    out: Expanded,
+    n_elements: usize,
+    /// The blocks that are being inserted, each in the one before it.
+    open: Vec<usize>,
+}
+
+impl Walk<'_> {
+    fn count(&mut self, n: usize) -> Result<(), DxfErrorKind> {
+        self.n_elements = self.n_elements.saturating_add(n);
+        if self.n_elements > MAX_ELEMENTS { Err(DxfErrorKind::TooMany) } else { Ok(()) }
+    }
+
+    /// * `map`: from the coordinates of these entities to the world's
+    /// * `layer`: what the layer `0` stands for
+    fn entities(&mut self, entities: &[Entity], map: &Affine, layer: Option<u32>) -> Result<(), DxfError> {
+        for entity in entities {
+            let at = |kind| DxfError::at(entity.line, kind);
+            self.count(1).map_err(at)?;
+            match entity.where_ {
+                Where::Paper => self.out.n_on_paper += 1,
+                Where::Invisible => self.out.n_invisible += 1,
+                Where::Model => {
+                    let own = entity.layer;
+                    let on = layer.filter(|_| self.drawing.layers.name(own) == "0").unwrap_or(own);
+                    match &entity.shape {
+                        Shape::Insert(insert) => self.insert(entity, insert, map, on)?,
+                        _ if !self.chosen.is_read[on as usize] => self.hide(on),
+                        Shape::Other(kind) => *self.out.ignored.entry(kind.to_string()).or_default() += 1,
+                        shape => self.curve(entity, shape, map).map_err(at)?,
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn hide(&mut self, layer: u32) {
+        self.out.n_hidden += 1;
+        self.out.hidden_layers.insert(layer);
+    }
+
+    fn insert(&mut self, entity: &Entity, insert: &Insert, map: &Affine, on: u32) -> Result<(), DxfError> {
+        let at = |kind| DxfError::at(entity.line, kind);
+        if self.chosen.is_frozen[on as usize] {
+            self.hide(on);
+            return Ok(());
+        }
+        let drawing = self.drawing;
+        let found = drawing.by_name.get(&folded(&insert.block));
+        let &idx = found.ok_or_else(|| at(DxfErrorKind::NoSuchBlock(insert.block.clone())))?;
+        let block = &drawing.blocks[idx];
+        if self.open.contains(&idx) {
+            return Err(at(DxfErrorKind::Recursion(block.name.clone())));
+        }
+        if self.open.len() == MAX_NESTING {
+            return Err(at(DxfErrorKind::Nesting));
+        }
+        let own = map.after(&Affine::of_extrusion(entity.normal).map_err(at)?);
+        self.open.push(idx);
+        let [n_columns, n_rows] = insert.counts;
+        for row in 0..n_rows {
+            for column in 0..n_columns {
+                self.count(1).map_err(at)?;
+                let placed = own.after(&Affine::of_insert(insert, block.base, [column, row]));
+                self.entities(&block.entities, &placed, Some(on))?;
+            }
+        }
+        self.open.pop();
+        Ok(())
+    }
+
+    fn curve(&mut self, entity: &Entity, shape: &Shape, map: &Affine) -> Result<(), DxfErrorKind> {
+        let own = || Ok::<_, DxfErrorKind>(map.after(&Affine::of_extrusion(entity.normal)?));
+        match shape {
+            Shape::Line(ends) => self.add(&[straight(ends[0], ends[1])], map),
+            Shape::Path { vertices, is_closed, is_own } => {
+                let map = if *is_own { own()? } else { *map };
+                let back = vertices.last().zip(vertices.first()).filter(|_| *is_closed);
+                let steps = vertices.windows(2).map(|pair| (pair[0], pair[1]));
+                let mut pieces = Vec::new();
+                for ((a, bulge), (b, _)) in steps.chain(back.map(|(&last, &first)| (last, first))) {
+                    bulged(a, b, bulge, &mut pieces);
+                }
+                if let ([(only, _)], false) = (&vertices[..], *is_closed) {
+                    pieces.push(straight(*only, *only));
+                }
+                self.add(&pieces, &map)
+            }
+            &Shape::Arc { center, radius, angles } => {
+                let (u, v) = ([radius, 0.0, 0.0], [0.0, radius, 0.0]);
+                let [start, end] = angles.unwrap_or([0.0, 360.0]);
+                self.add(&arc(center, u, v, start, sweep(start, end)), &own()?)
+            }
+            &Shape::Ellipse { center, major, ratio, parameters } => {
+                /// Programs write a full turn with six digits or more behind the point: it is one within that many degrees.
+                const ROUNDED: f64 = 1e-4;
+                let normal = unit(entity.normal);
+                let normal =
+                    normal.ok_or(DxfErrorKind::Value { what: "an extrusion direction", value: entity.normal[2] })?;
+                let minor = cross(normal, major).map(|x| ratio * x);
+                let [start, end] = parameters.map(|t| t * (180.0 / std::f64::consts::PI));
+                let is_full = ((end - start).abs() - 360.0).abs() < ROUNDED;
+                let turn = if is_full { 360.0 } else { sweep(start, end) };
+                self.add(&arc(center, major, minor, start, turn), map)
+            }
+            Shape::Spline(spline) => {
+                self.count(spline.n_corners())?;
+                self.add(&spline.pieces(), map)
+            }
+            Shape::Insert(_) | Shape::Other(_) => Ok(()),
+        }
+    }
+
+    fn add(&mut self, pieces: &[Bezier<3>], map: &Affine) -> Result<(), DxfErrorKind> {
+        self.count(pieces.iter().map(|piece| piece.corners.len()).sum())?;
+        let mut flat: Vec<Bezier<2>> = pieces.iter().map(|piece| piece.seen_from_above(map)).collect();
+        for x in flat.iter_mut().flat_map(|piece| &mut piece.corners).flat_map(|(corner, _)| corner) {
+            *x = check_coordinate(*x)?;
+        }
+        self.out.pieces.push(flat);
+        Ok(())
+    }
+}
+
+fn straight(a: [f64; 3], b: [f64; 3]) -> Bezier<3> {
+    Bezier { corners: vec![(a, 1.0), (b, 1.0)] }
+}
+
+/// The angle from `start` counter-clockwise to `end`, above 0 and at most 360: the same direction twice is a full turn.
+fn sweep(start: f64, end: f64) -> f64 {
+    let rest = (end - start) % 360.0;
+    if rest > 0.0 { rest } else { rest + 360.0 }
+}

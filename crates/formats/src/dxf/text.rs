@@ -1,0 +1,47 @@
+//! Names in a drawing.
+
+/// A text of a drawing: UTF-8, or Latin-1 where it is not; `\U+XXXX` is the character with that number.
+pub(super) fn decode(bytes: &[u8]) -> String {
+    let text = match std::str::from_utf8(bytes) {
+        Ok(text) => text.to_owned(),
+        Err(_) => bytes.iter().map(|&byte| char::from(byte)).collect(),
+    };
+    let mut out = String::new();
+    let mut rest = text.as_str();
+    while let Some(at) = rest.find("\\U+") {
+        let behind = &rest[at + 3..];
+        let digits = behind.get(..4).filter(|digits| digits.bytes().all(|b| b.is_ascii_hexdigit()));
+        let decoded = digits.and_then(|digits| u32::from_str_radix(digits, 16).ok()).and_then(char::from_u32);
+        match decoded {
+            Some(c) => {
+                out.push_str(&rest[..at]);
+                out.push(c);
+                rest = &behind[4..];
+            }
+            None => {
+                out.push_str(&rest[..at + 3]);
+                rest = behind;
+            }
+        }
+    }
+    out + rest
+}
+
+/// What names that are the same without regard to case have in common.
+pub(super) fn folded(name: &str) -> String {
+    name.to_lowercase()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_decoded() {
+        assert_eq!(decode(b"W\xC3\xA4nde"), "Wände");
+        assert_eq!(decode(b"W\xE4nde"), "Wände");
+        assert_eq!(decode(br"W\U+00E4nde\U+00E"), "Wände\\U+00E");
+        assert_eq!(decode(br"\U+D800\U+\U+0041"), "\\U+D800\\U+A");
+        assert_eq!(folded("WÄNDE"), folded("wände"));
+    }
+}
