@@ -8,6 +8,7 @@ use crate::commands::{
     export::ExportArgs,
     generate::GenerateArgs,
     info::InfoArgs,
+    isovist::IsovistArgs,
     levels::LevelsArgs,
     light::LightArgs,
     multifocal::MultifocalArgs,
@@ -62,6 +63,8 @@ pub(crate) enum Command {
     Plan(PlanCommandArgs),
     /// Check a table, or the visibility in a Quake or Doom map, against its scene; exit code 1 for a violation
     Verify(VerifyArgs),
+    /// Write what is seen from points of a floor plan: polygons, measures, a picture
+    Isovist(IsovistArgs),
     /// List the cells and objects visible from a point, or in a view from there
     Query(QueryArgs),
     /// Measure the eye-to-cell methods on a walk: what each leaves to draw, and its time

@@ -107,6 +107,7 @@ fn run(arguments: &Arguments) -> Result<Answer, Box<dyn Error>> {
         Command::Verify(args) => commands::verify::run(args, show_progress)?,
         Command::Plan(args) => commands::plan::run(args)?,
         Command::Portals(args) => commands::portals::run(args)?,
+        Command::Isovist(args) => commands::isovist::run(args)?,
         Command::Query(args) => commands::query::run(args)?,
         Command::Walk(args) => commands::walk::run(args, show_progress)?,
         Command::Pack(args) => commands::pack::pack(args)?,

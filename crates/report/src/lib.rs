@@ -9,11 +9,12 @@
 //!   ([`export_json`]); summary numbers of a table ([`Summary`], [`ViewerShare`]); the chart of a walk ([`walk_svg`]);
 //!   pictures of multifocal buffers ([`buffer_png`]) and of the fields beside them ([`voronoi_png`], [`distance_png`]);
 //!   pictures of what is seen, in a colour for each face ([`faces_png`]), and sheets of them ([`sheet_png`]);
-//!   pictures of soft shadows ([`light_png`]).
+//!   pictures of soft shadows ([`light_png`]); areas that points see ([`areas_geojson`], [`areas_csv`], [`areas_svg`]).
 //! - **Out of scope**: how a table was made, files, how the numbers are worded.
 //! - **Invariants**: a table is only read, and pictures show only what it contains; the same table and options
 //!   give the same bytes on every machine; words in pictures are drawn as lines, so they need no fonts.
 
+mod areas;
 mod buffer_chart;
 mod draw;
 mod export;
@@ -30,6 +31,7 @@ mod summary;
 mod theme;
 mod walk;
 
+pub use areas::{Area, AreaEdge, areas_csv, areas_geojson, areas_svg};
 pub use buffer_chart::{BufferChart, buffer_chart_svg};
 pub use draw::{
     DrawError, DrawOptions, Drawing, IsometricOptions, MAX_SIZE, MIN_SIZE, Sight, SliceOptions, Surfaces, Up, View,

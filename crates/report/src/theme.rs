@@ -10,6 +10,8 @@ pub(crate) const HIDDEN: &str = "#eceef1";
 pub(crate) const SEEN: &str = "#8fc4f5";
 /// A cell that the viewer's cell sees, and the viewer does not.
 pub(crate) const SEEN_BY_CELL: &str = "#cfe4fa";
+/// What is seen from a point, in part transparent.
+pub(crate) const AREA: &str = "#2f6fb3";
 /// The cell looked from.
 pub(crate) const FROM: &str = "#f0701a";
 /// The cell looked for.

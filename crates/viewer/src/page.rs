@@ -19,7 +19,7 @@ const SCRIPTS: [&str; 14] = [
     include_str!("../web/map.js"),
     include_str!("../web/camera.js"),
     include_str!("../web/why.js"),
-    include_str!("../web/methods.js"),
+    concat!(include_str!("../web/methods.js"), "\n", include_str!("../web/isovist.js")),
     include_str!("../web/space.js"),
     concat!(include_str!("../web/panel.js"), "\n", include_str!("../web/walk.js")),
     include_str!("../web/main.js"),

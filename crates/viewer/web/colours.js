@@ -2,12 +2,12 @@
 
 const LIGHT = {
   paper: "#ffffff", cell: "#e8ecf1", hidden: "#e3e6ea", seen: "#8fc4f5", pale: "#d8e8f8", from: "#f0701a", target: "#8a5cd6",
-  wall: "#1c2733", portal: "#12a594", line: "#d6246e", text: "#1c2733", gained: "#1b7f3b", lost: "#b3261e",
+  wall: "#1c2733", portal: "#12a594", line: "#d6246e", text: "#1c2733", gained: "#1b7f3b", lost: "#b3261e", isovist: "rgba(8, 48, 107, 0.42)",
   heat: [[235, 243, 252], [8, 48, 107]],
 };
 const DARK = {
   paper: "#12171d", cell: "#252d36", hidden: "#222831", seen: "#2f6ea8", pale: "#24405a", from: "#f0701a", target: "#a583e6",
-  wall: "#dde4ec", portal: "#27c4b1", line: "#ff5c9a", text: "#dde4ec", gained: "#4fbf73", lost: "#ff8a80",
+  wall: "#dde4ec", portal: "#27c4b1", line: "#ff5c9a", text: "#dde4ec", gained: "#4fbf73", lost: "#ff8a80", isovist: "rgba(158, 202, 255, 0.42)",
   heat: [[30, 42, 56], [158, 202, 255]],
 };
 

@@ -206,7 +206,10 @@ class App {
     });
     canvas.addEventListener("pointermove", (event) => {
       const before = pointers.get(event.pointerId);
-      if (!before) return;
+      if (!before) {
+        this.hover(event.offsetX, event.offsetY);
+        return;
+      }
       const now = [event.offsetX, event.offsetY];
       const [dx, dy] = [now[0] - before[0], now[1] - before[1]];
       moved += Math.abs(dx) + Math.abs(dy);
@@ -250,6 +253,13 @@ class App {
     this.redraw();
   }
 
+  /** The pointer moves over the map with no button down. */
+  hover(x, y) {
+    if (!this.model.shows.isovist || this.view !== "map") return;
+    this.model.pointer = this.map.pick(x, y);
+    this.redraw();
+  }
+
   click(x, y, event) {
     if (this.view === "map") {
       const at = this.map.pick(x, y);
@@ -283,7 +293,7 @@ class App {
       if (isText(event.target) || event.ctrlKey || event.metaKey || event.altKey) return;
       if (event.target instanceof HTMLSelectElement || document.getElementById("keys").open) return;
       const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
-      const toggle = { l: "lock", g: "ghosts", c: "cells", p: "portals" }[key];
+      const toggle = { l: "lock", g: "ghosts", c: "cells", p: "portals", i: "isovist" }[key];
       if (toggle) document.getElementById(toggle).click();
       else if (key === "?") document.getElementById("keys").showModal();
       else if (key === "m" && this.model.table.dimension === 3) this.setView(this.view === "map" ? "space" : "map");

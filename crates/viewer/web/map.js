@@ -161,6 +161,7 @@ class FlatMap {
     const onScreen = (points) => points.map((p) => this.toScreen(p));
     pen.fill([[0, 0], [width, 0], [width, height], [0, height]], colours.paper);
     for (const { cell, points } of this.outlines()) pen.fill(onScreen(points), model.colourOf(cell));
+    this.paintIsovist(pen, colours);
     if (this.walls) {
       for (const wall of this.walls) pen.stroke(onScreen(wall), colours.wall, 1.2);
     } else {
@@ -179,6 +180,16 @@ class FlatMap {
     this.paintView(pen, colours);
     if (model.eye) pen.dot(flatOf(model.eye), 6, colours.from, colours.paper);
     if (model.lock) pen.dot(flatOf(model.lock), 6, colours.target, colours.paper);
+  }
+
+  /** What is seen from the point under the pointer, or from the eye. */
+  paintIsovist(pen, colours) {
+    const { model } = this;
+    const at = model.pointer ?? model.eye;
+    const isShown = model.shows.isovist && model.table.dimension === 2 && at;
+    const { pieces, area } = isShown ? isovistAt(model.table, at) : { pieces: [], area: 0 };
+    if (pieces.length > 0) pen.fillAll(pieces.map((piece) => piece.map((p) => this.toScreen(p))), colours.isovist);
+    document.getElementById("area").textContent = pieces.length > 0 ? `area ${Number(area.toPrecision(5))}` : "";
   }
 
   /** The borders of the view, as far as they lie in the plane of the map. */
@@ -229,6 +240,16 @@ class CanvasPen {
     this.context.fillStyle = colour;
     this.context.fill();
   }
+  /** Polygons that touch, as one: no seam shows where their colour is transparent. */
+  fillAll(polygons, colour) {
+    this.context.beginPath();
+    for (const points of polygons) {
+      points.forEach(([x, y], k) => (k ? this.context.lineTo(x, y) : this.context.moveTo(x, y)));
+      this.context.closePath();
+    }
+    this.context.fillStyle = colour;
+    this.context.fill();
+  }
   stroke(points, colour, width) {
     this.path(points);
     this.context.strokeStyle = colour;
@@ -257,6 +278,10 @@ class SvgPen {
   }
   fill(points, colour) {
     this.parts.push(`<polygon points="${this.points(points)}" fill="${colour}"/>`);
+  }
+  fillAll(polygons, colour) {
+    const path = polygons.map((points) => `M${this.points(points)}Z`).join("");
+    this.parts.push(`<path d="${path}" fill="${colour}"/>`);
   }
   stroke(points, colour, width) {
     this.parts.push(

@@ -25,7 +25,9 @@ class Model {
     this.walk = null;
     this.heat = null;
     this.change = null;
-    this.shows = { ghosts: false, cells: false, portals: false };
+    this.shows = { ghosts: false, cells: false, portals: false, isovist: false };
+    /** The point of the map under the pointer, while isovists are shown. */
+    this.pointer = null;
     this.bounds = boundsOf(table);
     this.size = Math.hypot(...[0, 1, 2].map((k) => this.bounds.max[k] - this.bounds.min[k])) || 1;
     this.height = (this.bounds.min[this.up] + this.bounds.max[this.up]) / 2;

@@ -31,6 +31,10 @@ class Panel {
     this.bind("ghosts", "change", (input) => this.show("ghosts", input.checked));
     this.bind("cells", "change", (input) => this.show("cells", input.checked));
     this.bind("portals", "change", (input) => this.show("portals", input.checked));
+    this.bind("isovist", "change", (input) => {
+      model.pointer = null;
+      this.show("isovist", input.checked);
+    });
     this.bind("heat", "change", (input) => {
       model.heat = input.value === "none" ? null : input.value;
       model.changed();
@@ -53,6 +57,7 @@ class Panel {
     });
     const inSpace = model.table.dimension === 3;
     for (const name of document.querySelectorAll(".space-only")) name.hidden = !inSpace;
+    for (const name of document.querySelectorAll(".plan-only")) name.hidden = inSpace;
     this.showChange();
     model.onChange(() => this.refresh());
   }

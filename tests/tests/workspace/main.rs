@@ -17,5 +17,6 @@ mod quake_tables;
 mod scenes;
 mod simplify;
 mod viewer;
+mod viewer_isovist;
 mod viewer_methods;
 mod visible_surface;

@@ -7,6 +7,7 @@ pub(crate) mod explain;
 pub(crate) mod export;
 pub(crate) mod generate;
 pub(crate) mod info;
+pub(crate) mod isovist;
 pub(crate) mod levels;
 pub(crate) mod light;
 pub(crate) mod multifocal;

@@ -14,6 +14,7 @@ mod explain_portals;
 mod far;
 mod guides;
 mod help;
+mod isovist;
 mod json;
 mod light;
 mod maps;

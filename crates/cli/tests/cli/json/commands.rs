@@ -79,6 +79,7 @@ fn plans(all: &mut Results) {
     add("info of a table", "info o.pvs");
     add("info of a plan", "info office.geojson");
     add("plan", "plan office.geojson -o copy.geojson");
+    add("isovist", "isovist office.geojson --at 3,3 -o i.geojson");
     add("verify", "verify o.pvs office.geojson --rays 100 --pairs 10");
     add("query of a point", "query o.pvs --eye 3,3");
     add("query of a point", "query o.pvs --eye 1e5,3");

@@ -1,0 +1,298 @@
+//! `isovist`: what is seen from points of a floor plan.
+
+use crate::Answer;
+use crate::error::InputError;
+use crate::file_error::{FileError, from_file_error};
+use crate::input;
+use crate::output::{self, bytes, count};
+use crate::picture::{PictureError, PictureKind, save_picture};
+use crate::place::{LookupError, Point};
+use crate::plans::PlanArgs;
+use serde::Serialize;
+use sightlines::bake::Bakeable;
+use sightlines::cells::Plan;
+use sightlines::formats::Input;
+use sightlines::formats::points::read_points;
+use sightlines::formats::scene::SceneReadOptions;
+use sightlines::geometry::{Point2, Segment2};
+use sightlines::isovist::{
+    Boundary, EyeError, Isovist, LimitError, Limits, Measures, MeshError, Sector, Viewer, WallMesh,
+};
+use sightlines::report::{Area, AreaEdge, MAX_SIZE, MIN_SIZE, areas_csv, areas_geojson, areas_svg};
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// Why `isovist` fails; exit code 2.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum Error {
+    /// A file cannot be read, used or written.
+    #[error(transparent)]
+    File(FileError),
+    /// A picture cannot be drawn or written.
+    #[error(transparent)]
+    Picture(PictureError),
+    /// A point with the wrong number of coordinates.
+    #[error(transparent)]
+    Lookup(LookupError),
+    /// A plan that blocks no sight.
+    #[error("{}: {source}", path.display())]
+    Mesh { path: PathBuf, source: MeshError },
+    /// A point at which nothing can be seen.
+    #[error("{from}: {source}")]
+    Eye { from: String, source: EyeError },
+    /// Limits that are none.
+    #[error("{option}: {source}")]
+    Limits { option: &'static str, source: LimitError },
+    /// An angle without a direction, or a direction without an angle.
+    #[error("--dir and --fov go together: a direction, and how wide the view around it is")]
+    Sector,
+    /// A file whose name has no extension of a result.
+    #[error("{}: the name of the result ends in .geojson, .json, .csv, .svg or .png", .0.display())]
+    Kind(PathBuf),
+}
+
+from_file_error!(Error);
+
+/// Arguments of `isovist`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct IsovistArgs {
+    /// A plan as GeoJSON or DXF, or a map of a WAD. Of a scene in space, `plan --height` cuts one
+    #[arg(value_name = "PLAN")]
+    plan: PathBuf,
+    /// The map of the WAD; optional if there is only one
+    #[arg(long, help_heading = "Input", value_name = "NAME")]
+    map: Option<String>,
+    #[command(flatten)]
+    plans: PlanArgs,
+    /// A point to look from; may be given several times
+    #[arg(
+        long,
+        help_heading = "Viewer",
+        value_name = "X,Y",
+        allow_hyphen_values = true,
+        required_unless_present = "points"
+    )]
+    at: Vec<Point>,
+    /// Points to look from: CSV (x,y[,name]) or GeoJSON
+    #[arg(long, help_heading = "Viewer", value_name = "FILE")]
+    points: Option<PathBuf>,
+    /// How far is seen, in units of the plan [default: as far as walls let]
+    #[arg(long, help_heading = "Viewer", value_name = "R")]
+    radius: Option<f64>,
+    /// The direction of view; needs --fov [default: all directions]
+    #[arg(long, help_heading = "Viewer", value_name = "DX,DY", allow_hyphen_values = true)]
+    dir: Option<Point>,
+    /// The angle of view around --dir, in degrees
+    #[arg(long, help_heading = "Viewer", value_name = "DEGREES")]
+    fov: Option<f64>,
+    /// Pictures: longer side of the plan in pixels
+    #[arg(long, help_heading = "Picture", value_name = "PX", default_value_t = 1600)]
+    #[arg(value_parser = clap::value_parser!(u32).range(i64::from(MIN_SIZE)..=i64::from(MAX_SIZE)))]
+    size: u32,
+    /// What to write: polygons with their measures, measures alone, or a picture
+    #[arg(short, long, help_heading = "Output", value_name = "OUT.geojson|OUT.csv|OUT.svg|OUT.png")]
+    output: PathBuf,
+    /// Print the result as JSON
+    #[arg(long, help_heading = "Output")]
+    json: bool,
+}
+
+/// What is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    GeoJson,
+    Csv,
+    Picture,
+}
+
+impl Kind {
+    fn of(path: &Path) -> Result<Self, Error> {
+        match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
+            Some("geojson" | "json") => Ok(Self::GeoJson),
+            Some("csv") => Ok(Self::Csv),
+            Some("svg" | "png") => {
+                PictureKind::of(path).map_err(Error::Picture)?;
+                Ok(Self::Picture)
+            }
+            _ => Err(Error::Kind(path.to_owned())),
+        }
+    }
+}
+
+/// The measures by their names in files.
+const MEASURES: [(&str, fn(&Measures) -> f64); 11] = [
+    ("area", |m| m.area),
+    ("perimeter", |m| m.perimeter),
+    ("occlusivity", |m| m.occlusivity),
+    ("compactness", |m| m.compactness),
+    ("drift", |m| m.drift),
+    ("drift_angle", |m| m.drift_angle),
+    ("minimal_radial", |m| m.minimal_radial),
+    ("maximal_radial", |m| m.maximal_radial),
+    ("mean_radial", |m| m.mean_radial),
+    ("variance", |m| m.variance),
+    ("skewness", |m| m.skewness),
+];
+
+/// A point to look from, and how errors name it.
+struct Eye {
+    at: Point2,
+    name: Option<String>,
+    from: String,
+}
+
+pub(crate) fn run(args: &IsovistArgs) -> Result<Answer, Error> {
+    let kind = Kind::of(&args.output)?;
+    let inputs: Vec<&Path> = std::iter::once(&args.plan).chain(&args.points).map(PathBuf::as_path).collect();
+    output::check(&inputs, &[&args.output])?;
+    let limits = limits(args)?;
+    let (plan, crs) = plan(args)?;
+    let mesh = WallMesh::new(&plan).map_err(|source| Error::Mesh { path: args.plan.clone(), source })?;
+    let areas = areas(&mesh, &eyes(args)?, &limits)?;
+    let names = MEASURES.map(|(name, _)| name);
+    let n_bytes = match kind {
+        Kind::GeoJson => save(&args.output, &areas_geojson(&areas, &names, crs.as_deref()))?,
+        Kind::Csv => save(&args.output, &areas_csv(&areas, &names))?,
+        Kind::Picture => {
+            let walls: Vec<Segment2> = walls(&plan).collect();
+            let svg = areas_svg(&areas, &walls, args.size, &legend(&areas));
+            save_picture(&svg, &args.output).map_err(Error::Picture)?;
+            std::fs::metadata(&args.output).map_or(svg.len() as u64, |found| found.len())
+        }
+    };
+    let total = |value: &dyn Fn(&Area) -> f64| areas.iter().map(value).sum::<f64>() / areas.len() as f64;
+    let outcome = Outcome {
+        out: args.output.display().to_string(),
+        n_bytes,
+        n_walls: walls(&plan).count(),
+        n_isovists: areas.len(),
+        mean_area: total(&|area| area.values[0]),
+        mean_occlusivity: total(&|area| area.values[2]),
+    };
+    output::print(args.json, &outcome)?;
+    Ok(Answer::Yes)
+}
+
+fn save(path: &Path, text: &str) -> Result<u64, Error> {
+    output::save(path, text.as_bytes())?;
+    Ok(text.len() as u64)
+}
+
+fn walls(plan: &Plan) -> impl Iterator<Item = Segment2> + '_ {
+    plan.lines().iter().filter(|line| line.opaque).map(|line| Segment2::new(line.a, line.b))
+}
+
+fn legend(areas: &[Area]) -> String {
+    match areas {
+        [area] => format!("isovist of ({}, {}): area {:.4}", area.eye.x, area.eye.y, area.values[0]),
+        _ => format!("{} isovists: the darker, the more points see it", areas.len()),
+    }
+}
+
+/// The plan, and the member `crs` of its file.
+fn plan(args: &IsovistArgs) -> Result<(Plan, Option<String>), Error> {
+    let (path, map) = (&args.plan, args.map.as_deref());
+    match input::read(path, map, &SceneReadOptions::default(), &args.plans.options(path)?)? {
+        Input::Plan(file) => Ok((file.plan, file.crs)),
+        Input::Scene(_) => Err(InputError::Kind {
+            path: path.clone(),
+            expected: "a plan (of a scene in space, `sightlines plan --height` cuts one)",
+        }
+        .into()),
+        other => match input::bakeable(path, other, map, None)? {
+            Bakeable::Plan { plan, .. } => Ok((plan, None)),
+            _ => Err(InputError::Kind { path: path.clone(), expected: "a plan nor a WAD" }.into()),
+        },
+    }
+}
+
+fn limits(args: &IsovistArgs) -> Result<Limits, Error> {
+    let sector = match (&args.dir, args.fov) {
+        (Some(direction), Some(angle)) => Some(Sector { direction: planar(direction, args)?, angle }),
+        (None, None) => None,
+        _ => return Err(Error::Sector),
+    };
+    let limits = Limits { radius: args.radius, sector, deviation: None };
+    // Checked before the plan is read, with a view that has nothing in it.
+    let of = |source: LimitError| {
+        let option = match source {
+            LimitError::Angle(_) => "--fov",
+            LimitError::Direction(_) => "--dir",
+            _ => "--radius",
+        };
+        Error::Limits { option, source }
+    };
+    Isovist::default().limited(&limits).map_err(of)?;
+    Ok(limits)
+}
+
+fn planar(point: &Point, args: &IsovistArgs) -> Result<Point2, Error> {
+    let coordinates = point.coordinates(2, &args.plan).map_err(Error::Lookup)?;
+    Ok(Point2::new(coordinates[0], coordinates[1]))
+}
+
+fn eyes(args: &IsovistArgs) -> Result<Vec<Eye>, Error> {
+    let mut eyes = Vec::new();
+    for point in &args.at {
+        eyes.push(Eye { at: planar(point, args)?, name: None, from: "--at".to_owned() });
+    }
+    if let Some(path) = &args.points {
+        let points = read_points(path)?;
+        eyes.extend(points.into_iter().zip(1..).map(|(point, number)| Eye {
+            at: point.point,
+            name: point.name,
+            from: format!("{}: point {number}", path.display()),
+        }));
+    }
+    Ok(eyes)
+}
+
+fn areas(mesh: &WallMesh, eyes: &[Eye], limits: &Limits) -> Result<Vec<Area>, Error> {
+    let mut viewer = Viewer::new(mesh);
+    let mut isovist = Isovist::default();
+    let is_limited = *limits != Limits::default();
+    let mut area = |eye: &Eye| {
+        viewer.look(eye.at, &mut isovist).map_err(|source| Error::Eye { from: eye.from.clone(), source })?;
+        if is_limited {
+            isovist = isovist.limited(limits).map_err(|source| Error::Limits { option: "--radius", source })?;
+        }
+        let measures = isovist.measures();
+        let edge = |boundary: &Boundary| match *boundary {
+            Boundary::Wall(line) => AreaEdge::Wall(line.0),
+            Boundary::Occluding => AreaEdge::Occluding,
+            Boundary::Frame => AreaEdge::Frame,
+            Boundary::Limit => AreaEdge::Limit,
+        };
+        Ok(Area {
+            name: eye.name.clone(),
+            eye: isovist.eye(),
+            outline: isovist.vertices().to_vec(),
+            edges: isovist.boundaries().iter().map(edge).collect(),
+            values: MEASURES.iter().map(|(_, value)| value(&measures)).collect(),
+        })
+    };
+    eyes.iter().map(&mut area).collect()
+}
+
+/// What was written.
+#[derive(Debug, Serialize)]
+struct Outcome {
+    out: String,
+    n_bytes: u64,
+    n_walls: usize,
+    n_isovists: usize,
+    /// In square units of the plan.
+    mean_area: f64,
+    /// In units of the plan.
+    mean_occlusivity: f64,
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "wrote {}, {}", self.out, bytes(self.n_bytes))?;
+        writeln!(f, "plan           {}", count(self.n_walls as u64, "wall"))?;
+        writeln!(f, "isovists       {}", self.n_isovists)?;
+        writeln!(f, "mean area      {:.4}", self.mean_area)?;
+        writeln!(f, "occlusivity    {:.4} on average", self.mean_occlusivity)
+    }
+}
