@@ -63,6 +63,7 @@ pub(crate) fn state(baked: Baked, options: &PlanReadOptions) -> Baked {
     let Baked { graph, table, report } = baked;
     let mut parts = table.into_parts();
     parts.info.extend(KEYS.iter().zip(values).filter_map(|(key, value)| Some(((*key).to_owned(), value?))));
-    let table = Table::new(parts).expect("information is free");
+    parts.info.sort();
+    let table = Table::new(parts).expect("the keys ascend, and none of them is another's");
     Baked { graph, table, report }
 }

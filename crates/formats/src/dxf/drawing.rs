@@ -22,6 +22,8 @@ pub(super) struct Drawing {
 pub(super) struct Block {
     pub(super) name: String,
     pub(super) base: [f64; 3],
+    /// Whether its entities are in another file.
+    pub(super) is_external: bool,
     pub(super) entities: Vec<Entity>,
 }
 
@@ -43,6 +45,8 @@ pub(super) struct Layers {
 /// Which layers are read.
 #[derive(Debug)]
 pub(super) struct Chosen {
+    /// Whether they were asked for by name.
+    pub(super) by_name: bool,
     /// By layer: whether entities on it are.
     pub(super) is_read: Vec<bool>,
     /// By layer: whether inserts on it are left out with all that they insert.
@@ -73,7 +77,11 @@ impl Layers {
     pub(super) fn choose(&self, names: Option<&[String]>) -> Result<Chosen, DxfError> {
         let Some(names) = names else {
             let is_read = self.layers.iter().map(|layer| !layer.is_frozen && !layer.is_off).collect();
-            return Ok(Chosen { is_read, is_frozen: self.layers.iter().map(|layer| layer.is_frozen).collect() });
+            return Ok(Chosen {
+                by_name: false,
+                is_read,
+                is_frozen: self.layers.iter().map(|layer| layer.is_frozen).collect(),
+            });
         };
         let mut is_read = vec![false; self.layers.len()];
         let mut unknown = Vec::new();
@@ -87,7 +95,7 @@ impl Layers {
             let names = self.layers.iter().map(|layer| layer.name.clone()).collect();
             return Err(DxfError::whole(DxfErrorKind::NoSuchLayer { unknown, names }));
         }
-        Ok(Chosen { is_read, is_frozen: vec![false; self.layers.len()] })
+        Ok(Chosen { by_name: true, is_read, is_frozen: vec![false; self.layers.len()] })
     }
 }
 
@@ -166,7 +174,10 @@ impl Drawing {
             let name = field(2).ok_or(missing(&record, "name"))?;
             let number = |code| field(code).map_or(Ok(0.0), Group::number);
             let base = [number(10)?, number(20)?, number(30)?];
-            let mut block = Block { name: decode(name.value), base, entities: Vec::new() };
+            /// Flags of a block that is an external reference, or overlays one.
+            const EXTERNAL: i64 = 4 | 8;
+            let is_external = field(70).map_or(Ok(0), Group::integer)? & EXTERNAL != 0;
+            let mut block = Block { name: decode(name.value), base, is_external, entities: Vec::new() };
             let end = read_entities(groups, &mut self.layers, &mut block.entities)?;
             expect(&end, "ENDBLK")?;
             // Of blocks with one name the first counts.
