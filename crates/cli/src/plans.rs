@@ -3,7 +3,7 @@
 use crate::error::InputError;
 use crate::input::refuse;
 use sightlines::bake::Baked;
-use sightlines::formats::plan::read_plan_file;
+use sightlines::formats::input::read_plan_file;
 use sightlines::formats::{PlanFile, PlanReadOptions, ReadError, detect_file};
 use sightlines::pvs::Table;
 use std::path::Path;

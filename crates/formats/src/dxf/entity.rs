@@ -1,8 +1,9 @@
 //! The entities of a drawing, in their own coordinates.
 
-use super::drawing::{Layers, next_record};
 use super::error::{DxfError, DxfErrorKind};
-use super::groups::{Group, Groups};
+use super::groups::{Group, Groups, next_record};
+use super::insert::Insert;
+use super::layers::Layers;
 use super::spline::Spline;
 use super::text::decode;
 
@@ -57,19 +58,6 @@ pub(super) enum Shape {
     Insert(Insert),
     /// Not read: its kind.
     Other(Box<str>),
-}
-
-/// An insert of a block.
-#[derive(Debug)]
-pub(super) struct Insert {
-    pub(super) block: String,
-    pub(super) at: [f64; 3],
-    pub(super) scale: [f64; 3],
-    /// In degrees, counter-clockwise.
-    pub(super) rotation: f64,
-    /// Columns and rows.
-    pub(super) counts: [u32; 2],
-    pub(super) spacing: [f64; 2],
 }
 
 /// What was read.

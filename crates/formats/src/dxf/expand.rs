@@ -2,20 +2,23 @@
 
 use super::affine::{Affine, cross, unit};
 use super::curve::{Bezier, arc, bulged};
-use super::drawing::{Chosen, Drawing, Ignored};
-use super::entity::{Entity, Insert, Shape, Shown};
+use super::drawing::Drawing;
+use super::entity::{Entity, Shape, Shown};
 use super::error::{DxfError, DxfErrorKind};
+use super::insert::Insert;
+use super::layers::Chosen;
 use super::text::folded;
 use super::{MAX_ELEMENTS, MAX_NESTING};
 use sightlines_geometry::check_coordinate;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// What becomes lines.
 #[derive(Debug, Default)]
 pub(super) struct Expanded {
     /// In the order of the entities, each with its pieces.
     pub(super) pieces: Vec<Vec<Bezier<2>>>,
-    ignored: Ignored,
+    /// What is ignored, by kind.
+    ignored: BTreeMap<String, usize>,
     n_hidden: usize,
     hidden_layers: BTreeSet<u32>,
     n_on_paper: usize,

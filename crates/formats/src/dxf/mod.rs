@@ -35,6 +35,8 @@ mod error;
 mod expand;
 mod flatten;
 mod groups;
+mod insert;
+mod layers;
 mod spline;
 mod text;
 
