@@ -3,7 +3,7 @@
 use crate::error::InputError;
 use crate::input::refuse;
 use sightlines::bake::Baked;
-use sightlines::formats::plan::read_plan_file;
+use sightlines::formats::input::read_plan_file;
 use sightlines::formats::{PlanFile, PlanReadOptions, ReadError, detect_file};
 use sightlines::pvs::Table;
 use std::path::Path;
@@ -63,6 +63,7 @@ pub(crate) fn state(baked: Baked, options: &PlanReadOptions) -> Baked {
     let Baked { graph, table, report } = baked;
     let mut parts = table.into_parts();
     parts.info.extend(KEYS.iter().zip(values).filter_map(|(key, value)| Some(((*key).to_owned(), value?))));
-    let table = Table::new(parts).expect("information is free");
+    parts.info.sort();
+    let table = Table::new(parts).expect("the keys ascend, and none of them is another's");
     Baked { graph, table, report }
 }

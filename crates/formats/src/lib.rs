@@ -9,7 +9,8 @@
 //!   ([`input`]), and errors that name the file and the place in it ([`ReadError`]).
 //! - **Out of scope**: how a plan is cut into cells, what a sight line is, how a REJECT table is computed.
 //! - **Invariants**: no input causes a panic; memory stays within a small multiple of the input's size
-//!   (of a scene in space: with its meshes as often as it shows them, up to a limit), whatever counts
+//!   (of a scene in space: with its meshes as often as it shows them, up to a limit; of a
+//!   drawing: with its blocks as often as they are inserted, up to a limit), whatever counts
 //!   the input claims; what is not understood is either passed through byte for byte
 //!   or refused, never guessed; the same value is always written as the same bytes.
 

@@ -11,7 +11,7 @@ use serde::Serialize;
 use sightlines::bake::{Bakeable, FloorCut, FloorCutError, floor_cut};
 use sightlines::cells::Plan;
 use sightlines::formats::geojson::{write_plan, write_plan_file};
-use sightlines::formats::{Input, SceneFile};
+use sightlines::formats::{Input, InputKind, SceneFile};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -60,11 +60,11 @@ pub(crate) fn run(args: &PlanCommandArgs) -> Result<Answer, Error> {
     let (path, out) = (&args.input, &args.output);
     output::check(&[path], &[out])?;
     let map = args.map.as_deref();
-    let read = input::read(path, map, &args.surfaces.options(), &args.plans.options(path)?)?;
-    if !matches!(read, Input::Scene(_)) {
+    if matches!(input::kind_of(path)?, Some(InputKind::Plan | InputKind::Wad)) {
         refuse(path, &[("--height", args.height.is_some())], "scenes in space", "none")?;
         refuse(path, &args.surfaces.given(), "scenes in space", "none")?;
     }
+    let read = input::read(path, map, &args.surfaces.options(), &args.plans.options(path)?)?;
     let (text, outcome) = match read {
         Input::Scene(file) => {
             let cut = cut(path, &file, args.height)?;

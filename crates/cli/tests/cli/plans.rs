@@ -76,7 +76,7 @@ fn drawings_that_cannot_be_read_are_refused_by_name() {
     folder.write("a.geojson", r#"{"type": "LineString", "coordinates": [[0, 0], [4, 0]]}"#);
     let error = folder.refused(&["build", "a.geojson", "--layers", "A", "-o", "x.pvs"]);
     assert_eq!(error, "a.geojson: --layers is for DXF, and this is none");
-    folder.write("c.dxf", two_rooms());
+    folder.write("c.dxf", Dxf::new().line("0", [0.0, 0.0], [1.0, 0.0]).model(&Dxf::new()));
     let error = folder.refused(&["build", "c.dxf", "--curve-deviation", "0", "-o", "x.pvs"]);
     assert_eq!(error, "c.dxf: 0 is no deviation of curves, which is a number above 0");
 }

@@ -1,8 +1,8 @@
 //! Maps of space: what inserts and extrusion directions do.
 
 use super::angle::sin_cos;
-use super::entity::Insert;
 use super::error::DxfErrorKind;
+use super::insert::Insert;
 
 /// A map of space: the images of the axes, and of the origin.
 #[derive(Debug, Clone, Copy, PartialEq)]

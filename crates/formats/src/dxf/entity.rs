@@ -1,8 +1,9 @@
 //! The entities of a drawing, in their own coordinates.
 
-use super::drawing::{Layers, next_record};
 use super::error::{DxfError, DxfErrorKind};
-use super::groups::{Group, Groups};
+use super::groups::{Group, Groups, next_record};
+use super::insert::Insert;
+use super::layers::Layers;
 use super::spline::Spline;
 use super::text::decode;
 
@@ -14,18 +15,18 @@ pub(super) struct Entity {
     pub(super) layer: u32,
     /// Its extrusion direction.
     pub(super) normal: [f64; 3],
-    pub(super) where_: Where,
+    pub(super) shown: Shown,
     pub(super) shape: Shape,
 }
 
 /// Where an entity is shown.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Where {
+pub(super) enum Shown {
     Model,
     /// On a sheet.
     Paper,
     /// Nowhere.
-    Invisible,
+    Nowhere,
 }
 
 /// What an entity is. Coordinates are those of the block that it is in, or, where noted, its own.
@@ -57,19 +58,6 @@ pub(super) enum Shape {
     Insert(Insert),
     /// Not read: its kind.
     Other(Box<str>),
-}
-
-/// An insert of a block.
-#[derive(Debug)]
-pub(super) struct Insert {
-    pub(super) block: String,
-    pub(super) at: [f64; 3],
-    pub(super) scale: [f64; 3],
-    /// In degrees, counter-clockwise.
-    pub(super) rotation: f64,
-    /// Columns and rows.
-    pub(super) counts: [u32; 2],
-    pub(super) spacing: [f64; 2],
 }
 
 /// What was read.
@@ -149,13 +137,13 @@ pub(super) fn read_entity<'a>(groups: &mut Groups<'a>, layers: &mut Layers) -> R
     let about = fields("entity");
     let layer = layers.id(about.find(8).map_or(&b"0"[..], |group| group.value));
     let (is_paper, is_invisible) = (about.integer(67)? == 1, about.integer(60)? == 1);
-    let where_ = match (is_paper, is_invisible) {
-        (true, _) => Where::Paper,
-        (_, true) => Where::Invisible,
-        _ => Where::Model,
+    let shown = match (is_paper, is_invisible) {
+        (true, _) => Shown::Paper,
+        (_, true) => Shown::Nowhere,
+        _ => Shown::Model,
     };
     let normal = [about.number(210, 0.0)?, about.number(220, 0.0)?, about.number(230, 1.0)?];
-    Ok(Read::Entity(Entity { line: record.line, layer, normal, where_, shape }))
+    Ok(Read::Entity(Entity { line: record.line, layer, normal, shown, shape }))
 }
 
 fn light_polyline(fields: &Fields<'_, '_>) -> Result<Shape, DxfError> {

@@ -2,20 +2,23 @@
 
 use super::affine::{Affine, cross, unit};
 use super::curve::{Bezier, arc, bulged};
-use super::drawing::{Chosen, Drawing, Ignored};
-use super::entity::{Entity, Insert, Shape, Where};
+use super::drawing::Drawing;
+use super::entity::{Entity, Shape, Shown};
 use super::error::{DxfError, DxfErrorKind};
+use super::insert::Insert;
+use super::layers::Chosen;
 use super::text::folded;
 use super::{MAX_ELEMENTS, MAX_NESTING};
 use sightlines_geometry::check_coordinate;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// What becomes lines.
 #[derive(Debug, Default)]
 pub(super) struct Expanded {
     /// In the order of the entities, each with its pieces.
     pub(super) pieces: Vec<Vec<Bezier<2>>>,
-    ignored: Ignored,
+    /// What is ignored, by kind.
+    ignored: BTreeMap<String, usize>,
     n_hidden: usize,
     hidden_layers: BTreeSet<u32>,
     n_on_paper: usize,
@@ -84,10 +87,10 @@ impl Walk<'_> {
         for entity in entities {
             let at = |kind| DxfError::at(entity.line, kind);
             self.count(1).map_err(at)?;
-            match entity.where_ {
-                Where::Paper => self.out.n_on_paper += 1,
-                Where::Invisible => self.out.n_invisible += 1,
-                Where::Model => {
+            match entity.shown {
+                Shown::Paper => self.out.n_on_paper += 1,
+                Shown::Nowhere => self.out.n_invisible += 1,
+                Shown::Model => {
                     let own = entity.layer;
                     let on = layer.filter(|_| self.drawing.layers.name(own) == "0").unwrap_or(own);
                     match &entity.shape {
@@ -102,9 +105,12 @@ impl Walk<'_> {
         Ok(())
     }
 
+    /// Counts an entity that is not drawn. Those on layers that were not asked for are not worth a word.
     fn hide(&mut self, layer: u32) {
-        self.out.n_hidden += 1;
-        self.out.hidden_layers.insert(layer);
+        if !self.chosen.by_name {
+            self.out.n_hidden += 1;
+            self.out.hidden_layers.insert(layer);
+        }
     }
 
     fn insert(&mut self, entity: &Entity, insert: &Insert, map: &Affine, on: u32) -> Result<(), DxfError> {
@@ -117,6 +123,10 @@ impl Walk<'_> {
         let found = drawing.by_name.get(&folded(&insert.block));
         let &idx = found.ok_or_else(|| at(DxfErrorKind::NoSuchBlock(insert.block.clone())))?;
         let block = &drawing.blocks[idx];
+        if block.is_external {
+            *self.out.ignored.entry("INSERT of another file".to_owned()).or_default() += 1;
+            return Ok(());
+        }
         if self.open.contains(&idx) {
             return Err(at(DxfErrorKind::Recursion(block.name.clone())));
         }

@@ -97,6 +97,30 @@ impl<'a> Groups<'a> {
     }
 }
 
+/// Reads the group that begins a record, and the groups of the record.
+pub(super) fn next_record<'a>(groups: &mut Groups<'a>, fields: &mut Vec<Group<'a>>) -> Result<Group<'a>, DxfError> {
+    fields.clear();
+    let record = groups.next()?;
+    if record.code != 0 {
+        return Err(DxfError::at(record.line, DxfErrorKind::Expected("a group with the code 0")));
+    }
+    if record.value == b"EOF" {
+        return Err(unended(&record));
+    }
+    // The end of a section has no groups, and what follows it is not looked at.
+    if record.value != b"ENDSEC" {
+        while groups.peek()?.code != 0 {
+            fields.push(groups.next()?);
+        }
+    }
+    Ok(record)
+}
+
+/// The error of an end mark within a section.
+pub(super) fn unended(end: &Group<'_>) -> DxfError {
+    DxfError::at(end.line, DxfErrorKind::Expected("the end of the section before EOF"))
+}
+
 /// Refuses the binary form.
 pub(super) fn refuse_binary(text: &[u8]) -> Result<(), DxfError> {
     if text.starts_with(BINARY) { Err(DxfError::whole(DxfErrorKind::Binary)) } else { Ok(()) }

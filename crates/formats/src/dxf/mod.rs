@@ -8,7 +8,7 @@
 //! | LINE, LWPOLYLINE, POLYLINE | lines; bulges are arcs; of a POLYLINE that was smoothed the points of the smooth curve count |
 //! | ARC, CIRCLE, ELLIPSE, SPLINE with control points | straight pieces |
 //! | INSERT | the entities of its block: nested, scaled, mirrored, turned, in rows and columns |
-//! | anything else (TEXT, HATCH, DIMENSION, SOLID, POINT, meshes …) | ignored, and counted in a warning |
+//! | anything else (TEXT, HATCH, DIMENSION, SOLID, POINT, meshes …) | ignored, and counted in a warning; so are inserts of other files (external references) |
 //!
 //! **Curves.** All vertices lie on the curve up to rounding, and no point of the curve is further from its pieces than the deviation
 //! ([`PlanReadOptions::deviation`], by default [`DEFAULT_DEVIATION`] of the longer side of the plan). Pieces are chords, so they err
@@ -35,6 +35,8 @@ mod error;
 mod expand;
 mod flatten;
 mod groups;
+mod insert;
+mod layers;
 mod spline;
 mod text;
 
@@ -48,7 +50,7 @@ pub const DEFAULT_DEVIATION: f64 = 1e-4;
 
 /// The most entities, counted as often as blocks are inserted, corners of curves and lines together that a drawing may have: blocks
 /// in blocks could ask for any number.
-pub const MAX_ELEMENTS: usize = 1 << 22;
+pub const MAX_ELEMENTS: usize = 1 << 21;
 
 /// How deep blocks may be nested.
 pub const MAX_NESTING: usize = 64;

@@ -16,10 +16,12 @@
 
 mod format;
 mod members;
+mod plans;
 mod registry;
 
 pub use crate::beside::{Folder, Neighbours};
 pub use format::{Format, InputKind, Sign};
+pub use plans::read_plan_file;
 pub use registry::{FORMATS, detect};
 
 use crate::error::ReadErrorKind;

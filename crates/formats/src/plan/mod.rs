@@ -7,9 +7,7 @@ mod lines;
 
 pub(crate) use lines::PlanLines;
 
-use crate::{ReadError, ReadErrorKind, Source, detect_file, dxf, geojson};
 use sightlines_cells::Plan;
-use std::path::Path;
 
 /// A plan, and what its file states about it.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,25 +53,7 @@ impl DroppedLines {
 pub struct PlanReadOptions {
     /// The layers that are read, even if they are frozen or off. `None`: all that are neither.
     pub layers: Option<Vec<String>>,
-    /// How far the straight pieces of a curve may be from it, in units of the drawing, above 0. `None`: [`dxf::DEFAULT_DEVIATION`]
+    /// How far the straight pieces of a curve may be from it, in units of the drawing, above 0. `None`: [`DEFAULT_DEVIATION`](crate::dxf::DEFAULT_DEVIATION)
     /// of the longer side of the plan.
     pub deviation: Option<f64>,
-}
-
-/// Reads a plan from a file of any format of plans; GeoJSON if no format recognises it.
-///
-/// # Errors
-/// [`ReadError`] with the file and what is wrong.
-pub fn read_plan_file(path: impl AsRef<Path>, options: &PlanReadOptions) -> Result<PlanFile, ReadError> {
-    let path = path.as_ref();
-    match detect_file(path)? {
-        Some(format) if format.name == "dxf" => {
-            let read = || -> Result<PlanFile, ReadErrorKind> {
-                let bytes = Source::File(path).bytes()?;
-                Ok(dxf::parse_dxf(&bytes, options)?)
-            };
-            read().map_err(|kind| ReadError::new(path, kind))
-        }
-        _ => geojson::read_plan_file(path),
-    }
 }

@@ -51,7 +51,7 @@ fn geojson_points_are_points() {
     );
     let boxed = feature("MultiPoint", "[[3,4],[5,6]]", r#"{"name":"desk","object":"box"}"#);
     assert_eq!(error(&all(&[door, boxed])), "line 1 column 1: the object \"desk\" is a box, not a point");
-    assert_eq!(error("{\n\"type\": 7}"), "line 2 column 9: \"type\" is not text");
+    assert_eq!(error("{\n\"type\": 7}"), "line 2 column 10: \"type\" is not text");
 }
 
 #[test]

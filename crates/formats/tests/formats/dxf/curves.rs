@@ -202,5 +202,5 @@ fn a_deviation_that_asks_for_too_many_pieces_is_refused() {
     let with =
         |deviation| parse_dxf(&circle, &PlanReadOptions { deviation: Some(deviation), ..PlanReadOptions::default() });
     assert!(with(1e-9).is_ok());
-    assert!(with(1e-30).unwrap_err().to_string().contains("more than 4194304 elements"));
+    assert!(with(1e-30).unwrap_err().to_string().contains("more than 2097152 elements"));
 }

@@ -175,6 +175,19 @@ fn blocks_that_contain_themselves_are_refused() {
 }
 
 #[test]
+fn inserts_of_other_files_are_counted() {
+    let block = Dxf::new()
+        .entity("BLOCK", "0")
+        .put(2, "site")
+        .put(70, 4)
+        .at(10, [0.0, 0.0])
+        .put(1, "site.dwg")
+        .put(0, "ENDBLK");
+    let file = read(&Dxf::new().line("0", [0.0, 0.0], [1.0, 0.0]).insert("site", [0.0, 0.0]).model(&block));
+    assert_eq!(file.warnings, ["ignored what is no line or curve: 1 INSERT of another file"]);
+}
+
+#[test]
 fn what_grows_without_bound_is_refused() {
     let grown = |n: usize, many: &dyn Fn(usize) -> Dxf| {
         let leaf = Dxf::new().as_block("b0", [0.0; 2]);
@@ -189,7 +202,7 @@ fn what_grows_without_bound_is_refused() {
     assert!(error(&grown(100, &once)).ends_with("blocks are nested more than 64 deep"));
     for many in [&twice as &dyn Fn(usize) -> Dxf, &array] {
         assert!(
-            error(&grown(40, many)).ends_with("the drawing, with its blocks inserted, has more than 4194304 elements")
+            error(&grown(40, many)).ends_with("the drawing, with its blocks inserted, has more than 2097152 elements")
         );
     }
 }
