@@ -1,8 +1,6 @@
 //! All measures by name.
 
-use crate::{
-    AngularMeasures, Effort, GlobalMeasures, LocalMeasures, MetricMeasures, Points, Turns, VisibilityGraph,
-};
+use crate::{AngularMeasures, Effort, GlobalMeasures, LocalMeasures, MetricMeasures, Points, Turns, VisibilityGraph};
 use sightlines_progress::Cancelled;
 
 /// Measures that are computed together.

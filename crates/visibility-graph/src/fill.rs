@@ -39,9 +39,8 @@ pub(crate) fn enclosed(grid: &Grid) -> Vec<bool> {
             }
         })
     };
-    let at_border = |p: &Pixel| {
-        p.column == 0 || p.row == 0 || p.column as usize + 1 == n_columns || p.row as usize + 1 == n_rows
-    };
+    let at_border =
+        |p: &Pixel| p.column == 0 || p.row == 0 || p.column as usize + 1 == n_columns || p.row as usize + 1 == n_rows;
     let border = (0..n_columns * n_rows).map(|k| grid.pixel(k)).filter(at_border);
     let seeds: Vec<Pixel> = border.filter(|&pixel| is_entered(pixel)).collect();
     let mut filled = from_seeds(grid, &seeds);

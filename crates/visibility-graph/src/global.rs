@@ -111,4 +111,3 @@ fn row(n: u32, total: u64, counts: &[u32]) -> [f64; 6] {
     }
     [mean, hh, tekl, p, entropy, relative]
 }
-

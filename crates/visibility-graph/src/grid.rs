@@ -84,7 +84,7 @@ impl Grid {
     /// A grid over the bounds of a plan's lines that block sight. Lines that do not block are left out.
     ///
     /// Centres lie at multiples of the spacing, in each direction from the multiple next to the lower bound to the one next to the upper
-    /// bound (of two that are equally near, the lower one): at most half a pixel outside.
+    /// bound, and at most half a pixel outside; of two that are equally near, the outer one.
     ///
     /// # Errors
     /// [`GridError`]: spacing, no walls, too fine, coordinates.
@@ -104,11 +104,8 @@ impl Grid {
         if bounds.is_empty() {
             return Err(GridError::NoWalls);
         }
-        let too_fine = GridError::TooFine {
-            spacing,
-            width: bounds.max[0] - bounds.min[0],
-            height: bounds.max[1] - bounds.min[1],
-        };
+        let too_fine =
+            GridError::TooFine { spacing, width: bounds.max[0] - bounds.min[0], height: bounds.max[1] - bounds.min[1] };
         let mut origin = [0.0; 2];
         let mut n = [0usize; 2];
         for k in 0..2 {
@@ -129,8 +126,7 @@ impl Grid {
         }
         let [n_columns, n_rows] = n;
         let origin = Point2::new(origin[0], origin[1]);
-        let mut grid =
-            Self { spacing, origin, n_columns, n_rows, walls, starts: Vec::new(), of_pixels: Vec::new() };
+        let mut grid = Self { spacing, origin, n_columns, n_rows, walls, starts: Vec::new(), of_pixels: Vec::new() };
         grid.sort_walls();
         Ok(grid)
     }
@@ -266,12 +262,8 @@ impl Grid {
     /// All pixels that a wall touches, and perhaps some near it: each column's part of the wall with [`SLACK`] on all sides.
     fn pixels_near(&self, wall: &Segment2, mut each: impl FnMut(usize)) {
         // In pixels, where the pixel k reaches from k to k + 1.
-        let place = |p: Point2| {
-            [
-                (p.x - self.origin.x) / self.spacing + 0.5,
-                (p.y - self.origin.y) / self.spacing + 0.5,
-            ]
-        };
+        let place =
+            |p: Point2| [(p.x - self.origin.x) / self.spacing + 0.5, (p.y - self.origin.y) / self.spacing + 0.5];
         let [mut a, mut b] = [place(wall.a), place(wall.b)];
         if a[0] > b[0] {
             (a, b) = (b, a);
@@ -289,11 +281,7 @@ impl Grid {
                 if y.is_nan() { a[1] } else { y }
             };
             let [left, right] = [column as f64 - SLACK, column as f64 + 1.0 + SLACK];
-            let ends = if b[0] - a[0] <= SLACK {
-                [a[1], b[1]]
-            } else {
-                [at(left.max(a[0])), at(right.min(b[0]))]
-            };
+            let ends = if b[0] - a[0] <= SLACK { [a[1], b[1]] } else { [at(left.max(a[0])), at(right.min(b[0]))] };
             let low = ends[0].min(ends[1]).max(a[1].min(b[1]));
             let high = ends[0].max(ends[1]).min(a[1].max(b[1]));
             range(low, high, self.n_rows).for_each(|row| each(column * self.n_rows + row));

@@ -90,10 +90,7 @@ fn one(graph: &VisibilityGraph, points: &Points, degrees: &[u32], point: u32, ch
     }
     let unit = points.unit();
     let pairs = f64::from(k) * (f64::from(k) - 1.0);
-    let [clustering, control, controllability] = if k > 1 {
-        [n_both as f64 / pairs, control, f64::from(k) / f64::from(n_union)]
-    } else {
-        [UNDEFINED; 3]
-    };
+    let [clustering, control, controllability] =
+        if k > 1 { [n_both as f64 / pairs, control, f64::from(k) / f64::from(n_union)] } else { [UNDEFINED; 3] };
     (k, [first * unit, second * (unit * unit), clustering, control, controllability])
 }

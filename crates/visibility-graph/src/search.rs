@@ -70,7 +70,9 @@ fn search(
     radius: u32,
     room: &mut Room,
 ) -> Depths {
-    let bit = |source: usize| (source - sources.start, (source - sources.start) / 64, 1u64 << ((source - sources.start) % 64));
+    let bit = |source: usize| {
+        (source - sources.start, (source - sources.start) / 64, 1u64 << ((source - sources.start) % 64))
+    };
     let mut counts = vec![0u32; WIDTH];
     // No search comes to another component; it need not be looked for there.
     let mut of_component = vec![(u32::MAX, NONE); 0];

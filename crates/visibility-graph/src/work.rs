@@ -14,10 +14,7 @@ pub struct Effort<'a> {
 
 impl std::fmt::Debug for Effort<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Effort")
-            .field("threads", &self.threads)
-            .field("observer", &self.observer.is_some())
-            .finish()
+        f.debug_struct("Effort").field("threads", &self.threads).field("observer", &self.observer.is_some()).finish()
     }
 }
 
