@@ -223,7 +223,7 @@ impl Layout {
             size: [width as u32, height as u32],
             squares,
             walls: lines,
-            wall: (longer / 700.0).max(0.8),
+            wall: (longer / 600.0).max(1.2),
             legend: [0.0, top, width, height],
             scale,
             texts,
