@@ -1,7 +1,7 @@
 //! Shortest paths through the graph, by length and by turns.
 
 use crate::functions::{quarter_turns, quarter_turns_at_least};
-use crate::{Effort, Points, VisibilityGraph};
+use crate::{Effort, Points, Run, VisibilityGraph};
 use sightlines_progress::Cancelled;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -63,8 +63,8 @@ impl MetricMeasures {
     /// If the points are not as many as those of the graph.
     ///
     /// # Cost
-    /// Dijkstra's algorithm for each point, on all threads: O(points seen by all points at which paths may turn). Square roots and own
-    /// angles only: the same bits everywhere.
+    /// Dijkstra's algorithm for each point, on all threads: for each at most O(points seen by all points at which paths may turn). Square
+    /// roots and own angles only: the same bits everywhere.
     pub fn of(
         graph: &VisibilityGraph,
         points: &Points,
@@ -84,13 +84,23 @@ impl MetricMeasures {
                 angle += room.angles[at as usize];
                 straight += points.distance(point, at);
                 if at == point || turns == Turns::Anywhere || points.is_near_wall(at) {
-                    for next in graph.seen(at) {
-                        let Some(open) = room.is_open(next) else { continue };
-                        let reached = cost + points.distance(at, next);
+                    room.each_open(graph.row(at), |room, next| {
+                        let ([x, y], open) = (points.offset(at, next), room.costs[next as usize]);
+                        let square = x * x + y * y;
+                        // Most are no improvement. If the square root is at least the gap and a few roundings, the sum below is not less than
+                        // what it is compared with, and need not be computed.
+                        let gap = (open - cost) * (1.0 + 4.0 * f64::EPSILON);
+                        if square >= gap * gap * (1.0 + 4.0 * f64::EPSILON) {
+                            return;
+                        }
+                        let reached = cost + square.sqrt();
                         if reached < open {
                             room.angles[next as usize] = room.angles[at as usize] + turn(points, before, at, next);
                             room.push(reached, next, at);
                         }
+                    });
+                    if at == point {
+                        room.close(graph.row(at));
                     }
                 }
             }
@@ -138,15 +148,18 @@ impl AngularMeasures {
                 n += 1;
                 total += cost;
                 if cost == 0.0 || turns == Turns::Anywhere || points.is_near_wall(at) {
-                    for next in graph.seen(at) {
-                        let Some(open) = room.is_open(next) else { continue };
+                    room.each_open(graph.row(at), |room, next| {
+                        let open = room.costs[next as usize];
                         if open <= cost || !may_turn_less(points, before, at, next, open - cost) {
-                            continue;
+                            return;
                         }
                         let reached = cost + turn(points, before, at, next);
                         if reached < open {
                             room.push(reached, next, at);
                         }
+                    });
+                    if at == point {
+                        room.close(graph.row(at));
                     }
                 }
             }
@@ -184,21 +197,32 @@ const NOTHING: u32 = u32::MAX;
 
 /// Memory of a thread, and the state of one search.
 struct Room {
-    /// The least cost found; negative for points that are settled.
+    /// The least cost found.
     costs: Vec<f64>,
     angles: Vec<f64>,
+    /// Bits of points to which no better path leads: those that are settled, and those that are seen from the first.
+    closed: Vec<u64>,
+    settled: Vec<bool>,
     /// Cost, point and the point before it. Costs are not negative, so their bits are in their order.
     open: BinaryHeap<Reverse<(u64, u32, u32)>>,
 }
 
 impl Room {
     fn new(n: usize) -> Self {
-        Self { costs: vec![0.0; n], angles: vec![0.0; n], open: BinaryHeap::new() }
+        Self {
+            costs: vec![0.0; n],
+            angles: vec![0.0; n],
+            closed: vec![0; n.div_ceil(64)],
+            settled: vec![false; n],
+            open: BinaryHeap::new(),
+        }
     }
 
     fn begin(&mut self, point: u32) {
         self.costs.fill(f64::INFINITY);
         self.angles.fill(0.0);
+        self.closed.fill(0);
+        self.settled.fill(false);
         self.open.clear();
         self.push(0.0, point, NOTHING);
     }
@@ -208,10 +232,23 @@ impl Room {
         self.open.push(Reverse((cost.to_bits(), point, before)));
     }
 
-    /// The least cost found of a point that is not settled.
-    fn is_open(&self, point: u32) -> Option<f64> {
-        let cost = self.costs[point as usize];
-        (cost >= 0.0).then_some(cost)
+    /// Calls `each` for all points of a row that are not closed.
+    fn each_open(&mut self, row: &[Run], mut each: impl FnMut(&mut Self, u32)) {
+        for &run in row {
+            for (word, bits) in words(run) {
+                let mut rest = bits & !self.closed[word];
+                while rest != 0 {
+                    each(self, 64 * word as u32 + rest.trailing_zeros());
+                    rest &= rest - 1;
+                }
+            }
+        }
+    }
+
+    fn close(&mut self, row: &[Run]) {
+        for &run in row {
+            words(run).for_each(|(word, bits)| self.closed[word] |= bits);
+        }
     }
 
     /// Settles the next point, of least cost and then lowest number, up to a cost.
@@ -221,12 +258,21 @@ impl Room {
             if cost > most {
                 return None;
             }
-            let least = &mut self.costs[point as usize];
-            if *least >= 0.0 {
-                *least = -1.0;
+            if !std::mem::replace(&mut self.settled[point as usize], true) {
+                self.close(&[Run { start: point, end: point + 1 }]);
                 return Some((cost, point, before));
             }
         }
         None
     }
+}
+
+/// The words of bits in which a run lies, each with the bits of the run.
+fn words(Run { start, end }: Run) -> impl Iterator<Item = (usize, u64)> {
+    let last = (end - 1) / 64;
+    (start / 64..=last).map(move |word| {
+        let below = if word == start / 64 { !0 << (start % 64) } else { !0 };
+        let above = if word == last { !0 >> (63 - (end - 1) % 64) } else { !0 };
+        (word as usize, below & above)
+    })
 }
