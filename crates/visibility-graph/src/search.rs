@@ -1,11 +1,13 @@
 //! Depths of all points from all points, by breadth-first searches of many points at once.
 //!
 //! A set of starting points is [`WORDS`] words of bits. Each search that is at a point has its bit in the point's set, so one pass over
-//! the rows continues 256 searches (Then et al., "The more the merrier: efficient multi-source graph traversal", VLDB 2014). The first
-//! step goes top-down: each starting point writes its bit into its row. All others go bottom-up (Beamer, Asanović and Patterson,
-//! "Direction-optimizing breadth-first search", SC 2012): each point that some searches have not reached collects the searches that
-//! were at any point that it sees, and stops when none is missing. What was at the points of a run is the union of two unions over a
-//! power of two of points, which are computed once for each step.
+//! the rows continues 256 searches (Then et al., "The more the merrier: efficient multi-source graph traversal", PVLDB 8(4), 2014).
+//!
+//! A step goes in the direction in which fewer rows are passed (Beamer, Asanović and Patterson, "Direction-optimizing breadth-first
+//! search", SC 2012). Bottom-up, each point that some searches have not reached collects the searches that were at any point that it
+//! sees, and stops when none is missing. Top-down, each point that searches have just reached hands them to all points that it sees.
+//! A run costs the same whatever its length: the union over its points is that of two unions over a power of two of points, which are
+//! computed once for each step; and what all its points get is handed to two such groups, and on from these at the end.
 
 use crate::{Effort, Run, VisibilityGraph};
 use sightlines_progress::Cancelled;
@@ -125,13 +127,21 @@ fn search(
             break;
         }
         counts.extend(at_depth);
-        step(graph, room);
+        let n_runs = |of: &dyn Fn(usize) -> bool| -> usize {
+            (0..room.done.len()).filter(|&p| of(p)).map(|p| graph.row(p as u32).len()).sum()
+        };
+        let bottom_up = n_runs(&|p| room.done[p] != [!0; WORDS]);
+        let top_down = n_runs(&|p| room.levels[0][p] != NONE);
+        if bottom_up == 0 {
+            break;
+        }
+        if bottom_up < top_down { collect(graph, room) } else { hand_on(graph, room) }
     }
     Depths { counts }
 }
 
-/// From the frontier to all points that are not done with.
-fn step(graph: &VisibilityGraph, room: &mut Room) {
+/// A step bottom-up, from the frontier to all points that are not done with.
+fn collect(graph: &VisibilityGraph, room: &mut Room) {
     let n = room.done.len();
     for k in 1..room.levels.len() {
         let (lower, upper) = room.levels.split_at_mut(k);
@@ -155,6 +165,31 @@ fn step(graph: &VisibilityGraph, room: &mut Room) {
         }
     }
     std::mem::swap(&mut room.levels[0], &mut room.next);
+}
+
+/// A step top-down, from the points of the frontier to all that they see.
+fn hand_on(graph: &VisibilityGraph, room: &mut Room) {
+    std::mem::swap(&mut room.levels[0], &mut room.next);
+    room.levels.iter_mut().for_each(|level| level.fill(NONE));
+    for (point, &searches) in room.next.iter().enumerate().filter(|(_, searches)| **searches != NONE) {
+        for &Run { start, end } in graph.row(point as u32) {
+            let k = (end - start).ilog2();
+            let level = &mut room.levels[k as usize];
+            for group in [start as usize, end as usize - (1 << k)] {
+                level[group] = union(level[group], searches);
+            }
+        }
+    }
+    let n = room.done.len();
+    for k in (1..room.levels.len()).rev() {
+        let (lower, upper) = room.levels.split_at_mut(k);
+        let (lower, upper) = (&mut lower[k - 1], &upper[0]);
+        let half = 1 << (k - 1);
+        for p in 0..n.saturating_sub(half) {
+            lower[p] = union(lower[p], upper[p]);
+            lower[p + half] = union(lower[p + half], upper[p]);
+        }
+    }
 }
 
 fn union(a: Set, b: Set) -> Set {

@@ -22,6 +22,7 @@ const COMMANDS: [&str; 22] = [
     "render",
     "simplify",
     "light",
+    "vga",
     "levels",
     "info",
     "generate tower",
