@@ -20,6 +20,7 @@ use crate::commands::{
     render::RenderArgs,
     simplify::SimplifyArgs,
     verify::VerifyArgs,
+    vga::VgaArgs,
     view::ViewArgs,
     vis::VisArgs,
     walk::WalkArgs,
@@ -88,6 +89,8 @@ pub(crate) enum Command {
     /// Write a scene with fewer triangles for eyes in a volume, without hidden triangles and, within a budget, without
     /// barely visible ones
     Simplify(SimplifyArgs),
+    /// Analyse what the points of a floor plan see of each other: tables and pictures of the measures of space syntax
+    Vga(VgaArgs),
     /// Draw the umbra, the lit parts and the parts in doubt under an area light
     Light(LightArgs),
     /// Write simplified variants of a scene for the cells of its table, within a memory budget

@@ -118,6 +118,7 @@ fn run(arguments: &Arguments) -> Result<Answer, Box<dyn Error>> {
         Command::View(args) => commands::view::run(args, show_progress)?,
         Command::Multifocal(args) => commands::multifocal::run(args)?,
         Command::Render(args) => commands::render::run(args, show_progress)?,
+        Command::Vga(args) => commands::vga::run(args, show_progress)?,
         Command::Light(args) => commands::light::run(args)?,
         Command::Simplify(args) => commands::simplify::run(args, show_progress)?,
         Command::Levels(args) => commands::levels::run(args, show_progress)?,

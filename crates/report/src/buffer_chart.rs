@@ -157,7 +157,7 @@ fn fitting(text: &str, most: f64) -> f64 {
 }
 
 /// A number of four digits.
-fn number(x: f64) -> String {
+pub(crate) fn number(x: f64) -> String {
     format!("{x:.3e}").parse().map_or_else(|_| x.to_string(), |rounded: f64| rounded.to_string())
 }
 

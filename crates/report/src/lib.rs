@@ -9,7 +9,8 @@
 //!   ([`export_json`]); summary numbers of a table ([`Summary`], [`ViewerShare`]); the chart of a walk ([`walk_svg`]);
 //!   pictures of multifocal buffers ([`buffer_png`]) and of the fields beside them ([`voronoi_png`], [`distance_png`]);
 //!   pictures of what is seen, in a colour for each face ([`faces_png`]), and sheets of them ([`sheet_png`]);
-//!   pictures of soft shadows ([`light_png`]); areas that points see ([`areas_geojson`], [`areas_csv`], [`areas_svg`]).
+//!   pictures of soft shadows ([`light_png`]); areas that points see ([`areas_geojson`], [`areas_csv`], [`areas_svg`]);
+//!   pictures and tables of values at points ([`field_svg`], [`field_png`], [`points_csv`], [`points_geojson`]).
 //! - **Out of scope**: how a table was made, files, how the numbers are worded.
 //! - **Invariants**: a table is only read, and pictures show only what it contains; the same table and options
 //!   give the same bytes on every machine; words in pictures are drawn as lines, so they need no fonts.
@@ -19,12 +20,14 @@ mod buffer_chart;
 mod draw;
 mod export;
 mod faces;
+mod field;
 mod frame;
 mod letters;
 mod light;
 mod multifocal;
 mod outline;
 mod png;
+mod point_table;
 mod share;
 mod sheet;
 mod summary;
@@ -39,11 +42,13 @@ pub use draw::{
 };
 pub use export::{export_json, write_json};
 pub use faces::{MARK, NO_FACE, NOWHERE, face_colour, faces_png};
+pub use field::{Field, field_colour, field_png, field_svg};
 pub use light::{LIT, LightPixel, UMBRA, light_png};
 pub use multifocal::{OPEN, buffer_png, distance_png, voronoi_png};
 pub use png::PngError;
 #[cfg(feature = "png")]
 pub use png::svg_to_png;
+pub use point_table::{PointColumn, points_csv, points_geojson};
 pub use share::ViewerShare;
 pub use sheet::{SheetPicture, sheet_png, sheet_size};
 pub use summary::Summary;

@@ -75,6 +75,8 @@ fn embedded(png: &[u8]) -> Option<usvg::ImageKind> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Pixels {
     Rgb,
+    /// With the share that is covered, of colours that are not multiplied by it.
+    Rgba,
     Grey,
 }
 
@@ -99,7 +101,11 @@ fn encode(
     }
     let mut png = Vec::new();
     let mut encoder = Encoder::new(&mut png, width, height);
-    encoder.set_color(if kind == Pixels::Rgb { ColorType::Rgb } else { ColorType::Grayscale });
+    encoder.set_color(match kind {
+        Pixels::Rgb => ColorType::Rgb,
+        Pixels::Rgba => ColorType::Rgba,
+        Pixels::Grey => ColorType::Grayscale,
+    });
     encoder.set_depth(BitDepth::Eight);
     encoder.set_compression(compression);
     encoder.set_filter(Filter::Adaptive);

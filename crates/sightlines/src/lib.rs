@@ -66,6 +66,8 @@ pub use sightlines_triangulation as triangulation;
 pub use sightlines_verify as verify;
 #[cfg(feature = "viewer")]
 pub use sightlines_viewer as viewer;
+#[cfg(feature = "visibility-graph")]
+pub use sightlines_visibility_graph as visibility_graph;
 #[cfg(feature = "visible-surface")]
 pub use sightlines_visible_surface as visible_surface;
 #[cfg(feature = "walkthrough")]

@@ -21,6 +21,7 @@ const COMMANDS: [&str; 22] = [
     "multifocal",
     "render",
     "simplify",
+    "vga",
     "light",
     "levels",
     "info",

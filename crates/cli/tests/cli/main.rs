@@ -40,6 +40,7 @@ mod stab_trees;
 mod tables;
 mod udmf;
 mod verify;
+mod vga;
 mod view;
 mod view_pictures;
 mod vis;

@@ -41,6 +41,7 @@ fn outputs_are_checked_first() {
         &["simplify", "none.glb", "--volume", "0,0,0,1,1,1", "-o"],
         &["levels", "none.glb", "--table", "none.pvs", "-o"],
         &["generate", "tower", "-o"],
+        &["vga", "none.geojson", "--spacing", "1", "-o"],
     ];
     for args in commands {
         let ending = match args[0] {

@@ -71,6 +71,7 @@ fn some_cells(table: &Table) -> Vec<usize> {
 
 fn plans(all: &mut Results) {
     let folder = Folder::with_office();
+    folder.write("p.csv", "3,3\n");
     let mut add = |heading, line: &str| all.line(&folder, heading, line);
     add(
         "build of a plan",
@@ -80,6 +81,9 @@ fn plans(all: &mut Results) {
     add("info of a plan", "info office.geojson");
     add("plan", "plan office.geojson -o copy.geojson");
     add("isovist", "isovist office.geojson --at 3,3 -o i.geojson");
+    add("vga", "vga office.geojson --spacing 2 --measures all -o o.csv");
+    add("vga", "vga office.geojson --spacing 2 --measure clustering -o o.svg");
+    add("vga", "vga office.geojson --points p.csv -o p.geojson");
     add("verify", "verify o.pvs office.geojson --rays 100 --pairs 10");
     add("query of a point", "query o.pvs --eye 3,3");
     add("query of a point", "query o.pvs --eye 1e5,3");

@@ -1,0 +1,50 @@
+//! Why `vga` fails.
+
+use crate::file_error::{FileError, from_file_error};
+use crate::place::LookupError;
+use sightlines::isovist::{EyeError, MeshError};
+use sightlines::visibility_graph::{GraphError, GridError, PointsError};
+use std::path::PathBuf;
+
+/// Why `vga` fails; exit code 2.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum Error {
+    /// A file cannot be read, used or written.
+    #[error(transparent)]
+    File(FileError),
+    /// A seed with three coordinates.
+    #[error("--seed: {0}")]
+    Seed(LookupError),
+    /// No grid or no points on it.
+    #[error("{}: {source}", path.display())]
+    Grid { path: PathBuf, source: GridError },
+    /// Walls in which nothing can be looked for.
+    #[error("{}: {source}", path.display())]
+    Mesh { path: PathBuf, source: MeshError },
+    /// A line of a file of points that is none.
+    #[error("{}: line {line}: {text:?} is not a point: two numbers, such as -1.5,2", path.display())]
+    Line { path: PathBuf, line: usize, text: String },
+    /// A point that cannot be used.
+    #[error("{}: {source}", path.display())]
+    Points { path: PathBuf, source: PointsError },
+    /// A file without points.
+    #[error("{}: there are no points in the file", .0.display())]
+    NoPoints(PathBuf),
+    /// A point where nothing can be looked for.
+    #[error("{}: {source}", path.display())]
+    Eye { path: PathBuf, source: EyeError },
+    /// The graph cannot be built.
+    #[error("{}: {source}", path.display())]
+    Graph { path: PathBuf, source: GraphError },
+    /// An output of no known kind.
+    #[error("{}: the name of the output ends in .csv, .geojson, .svg or .png", .0.display())]
+    Kind(PathBuf),
+    /// A picture of points that has no spacing.
+    #[error("{}: a picture of points needs --spacing, the side of the square around each", .0.display())]
+    Side(PathBuf),
+    /// `--measure` for what is no picture.
+    #[error("{}: --measure is for pictures, and this is a table of all --measures", .0.display())]
+    Measure(PathBuf),
+}
+
+from_file_error!(Error);

@@ -1,0 +1,358 @@
+//! `vga`: visibility graph analysis of a floor plan.
+
+mod error;
+mod outcome;
+mod points;
+
+use crate::Answer;
+use crate::error::InputError;
+use crate::input;
+use crate::named::one_of;
+use crate::output;
+use crate::picture::PictureError;
+use crate::place::Point;
+use crate::progress::Bar;
+use error::Error;
+use outcome::{Outcome, Range};
+use sightlines::cells::Plan;
+use sightlines::formats::Input;
+use sightlines::geometry::{Aabb, Point2, Segment2};
+use sightlines::isovist::{Touch, WallMesh};
+use sightlines::report::{Field, MAX_SIZE, MIN_SIZE, PointColumn, field_png, field_svg, points_csv, points_geojson};
+use sightlines::visibility_graph::{
+    Analysis, AnalysisOptions, Effort, Group, Measure, Points, Turns, UNDEFINED, VisibilityGraph,
+};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Arguments of `vga`.
+#[derive(Debug, clap::Args)]
+#[command(
+    after_help = "Points are the centres of a grid, at multiples of the spacing: those that steps between neighbours reach from the \
+                  seeds without touching a wall. Without a seed these are all that are enclosed; pillars and thick walls drawn by \
+                  their outlines enclose some, too. Measures are those of depthmapX; -1 in a CSV file, null in GeoJSON, and no \
+                  square in a picture mean that a point has no value. Metric and angular measures take minutes for some thousand \
+                  points."
+)]
+pub(crate) struct VgaArgs {
+    /// The plan: GeoJSON, or a WAD
+    #[arg(value_name = "PLAN")]
+    plan: PathBuf,
+    /// The map of a WAD with several
+    #[arg(long, help_heading = "Input", value_name = "NAME")]
+    map: Option<String>,
+    /// Distance of neighbouring points along an axis, in scene units; of points of a file the side of their squares in pictures
+    #[arg(long, help_heading = "Points", value_name = "LENGTH", required_unless_present = "points")]
+    spacing: Option<f64>,
+    /// Fill the grid from this point; repeatable
+    #[arg(long, help_heading = "Points", value_name = "X,Y", allow_hyphen_values = true, conflicts_with = "points")]
+    seed: Vec<Point>,
+    /// Take the points of this file, `x,y` on each line, in place of a grid
+    #[arg(long, help_heading = "Points", value_name = "FILE.csv")]
+    points: Option<PathBuf>,
+    /// What is measured, separated by commas: local, global, metric, angular, all, or names of measures
+    #[arg(
+        long,
+        help_heading = "Method",
+        value_name = "NAME[,NAME...]",
+        value_delimiter = ',',
+        value_parser = one_of(&Choice::all(), Choice::name, Choice::about)
+    )]
+    measures: Vec<Choice>,
+    /// The most steps that count in global measures [default: any number]
+    #[arg(long, help_heading = "Method", value_name = "N")]
+    radius: Option<u32>,
+    /// The longest paths that count in metric measures, in scene units [default: any]
+    #[arg(long, help_heading = "Method", value_name = "LENGTH")]
+    metric_radius: Option<f64>,
+    /// The largest depth that counts in angular measures, in right angles [default: any]
+    #[arg(long, help_heading = "Method", value_name = "ANGLE")]
+    angular_radius: Option<f64>,
+    /// Where metric and angular paths may turn
+    #[arg(long, help_heading = "Method", value_name = "WHERE", default_value = "near-walls")]
+    #[arg(value_parser = one_of(&[Turns::NearWalls, Turns::Anywhere], turns_name, turns_about))]
+    turns: Turns,
+    /// Whether a line of sight that touches a wall without crossing it is blocked
+    #[arg(long, help_heading = "Method", value_name = "HOW", default_value = "blocks")]
+    #[arg(value_parser = one_of(&[Touch::Blocks, Touch::Passes], touch_name, touch_about))]
+    touch: Touch,
+    /// Number of threads; 0 uses every core
+    #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::numbers::threads)]
+    threads: usize,
+    /// The measure that a picture shows [default: the first of --measures, else connectivity]
+    #[arg(long, help_heading = "Output", value_name = "NAME")]
+    #[arg(value_parser = one_of(&Measure::ALL, Measure::name, Measure::title))]
+    measure: Option<Measure>,
+    /// Pixels of the longer side of the plan in a picture
+    #[arg(long, help_heading = "Output", value_name = "PIXELS", default_value_t = 1200)]
+    #[arg(value_parser = clap::value_parser!(u32).range(i64::from(MIN_SIZE)..=i64::from(MAX_SIZE)))]
+    size: u32,
+    /// What to write, by the ending of its name: .csv, .geojson, or a picture as .svg or .png
+    #[arg(short, long, help_heading = "Output", value_name = "OUT")]
+    output: PathBuf,
+    /// Print the result as JSON
+    #[arg(long, help_heading = "Output")]
+    json: bool,
+}
+
+/// An entry of `--measures`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Choice {
+    All,
+    Group(Group),
+    One(Measure),
+}
+
+impl Choice {
+    fn all() -> Vec<Self> {
+        let groups = Group::ALL.into_iter().map(Self::Group);
+        std::iter::once(Self::All).chain(groups).chain(Measure::ALL.into_iter().map(Self::One)).collect()
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::All => "all",
+            Self::Group(group) => group.name(),
+            Self::One(measure) => measure.name(),
+        }
+    }
+
+    fn about(self) -> &'static str {
+        match self {
+            Self::All => "All measures",
+            Self::Group(Group::Local) => "What a point sees, and what sees that: as set if nothing is named",
+            Self::Group(Group::Global) => "How many steps all others are away",
+            Self::Group(Group::Metric) => "How long the shortest paths to all others are",
+            Self::Group(Group::Angular) => "How much paths to all others turn",
+            Self::One(measure) => measure.title(),
+        }
+    }
+
+    fn has(self, measure: Measure) -> bool {
+        match self {
+            Self::All => true,
+            Self::Group(group) => measure.group() == group,
+            Self::One(one) => measure == one,
+        }
+    }
+}
+
+const fn turns_name(turns: Turns) -> &'static str {
+    match turns {
+        Turns::NearWalls => "near-walls",
+        Turns::Anywhere => "anywhere",
+    }
+}
+
+const fn turns_about(turns: Turns) -> &'static str {
+    match turns {
+        Turns::NearWalls => "At points next to a wall, as in depthmapX",
+        Turns::Anywhere => "At any point: slower, and sometimes a little shorter",
+    }
+}
+
+const fn touch_name(touch: Touch) -> &'static str {
+    match touch {
+        Touch::Blocks => "blocks",
+        Touch::Passes => "passes",
+    }
+}
+
+const fn touch_about(touch: Touch) -> &'static str {
+    match touch {
+        Touch::Blocks => "It is, as in depthmapX",
+        Touch::Passes => "It is not, unless walls touch it from both sides",
+    }
+}
+
+/// What is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Csv,
+    GeoJson,
+    Svg,
+    Png,
+}
+
+impl Kind {
+    fn of(path: &Path) -> Result<Self, Error> {
+        match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
+            Some("csv") => Ok(Self::Csv),
+            Some("geojson" | "json") => Ok(Self::GeoJson),
+            Some("svg") => Ok(Self::Svg),
+            Some("png") => Ok(Self::Png),
+            _ => Err(Error::Kind(path.to_owned())),
+        }
+    }
+
+    fn is_picture(self) -> bool {
+        matches!(self, Self::Svg | Self::Png)
+    }
+}
+
+pub(crate) fn run(args: &VgaArgs, show_progress: bool) -> Result<Answer, Error> {
+    let kind = Kind::of(&args.output)?;
+    let inputs: Vec<&Path> = std::iter::once(&args.plan).chain(&args.points).map(PathBuf::as_path).collect();
+    output::check(&inputs, &[&args.output])?;
+    if kind.is_picture() && args.spacing.is_none() {
+        return Err(Error::Side(args.output.clone()));
+    }
+    if args.measure.is_some() && !kind.is_picture() {
+        return Err(Error::Measure(args.output.clone()));
+    }
+    let plan = plan_of(&args.plan, args.map.as_deref())?;
+    let (points, grid) = match (&args.points, args.spacing) {
+        (None, Some(spacing)) => {
+            let (points, size) = points::of_grid(&args.plan, &plan, spacing, &seeds(args)?)?;
+            (points, Some(size))
+        }
+        (Some(path), _) => (points::of_file(path)?, None),
+        (None, None) => return Err(Error::Side(args.output.clone())),
+    };
+    let measures = measures(args, kind);
+
+    let bar = Bar::new("visibility graph", show_progress);
+    let effort = Effort { threads: args.threads, observer: Some(&bar) };
+    let start = Instant::now();
+    let graph = graph(args, &plan, &points, &effort)?;
+    let graph_seconds = start.elapsed().as_secs_f64();
+    let start = Instant::now();
+    let options = AnalysisOptions {
+        radius: args.radius,
+        metric_radius: args.metric_radius,
+        angular_radius: args.angular_radius,
+        turns: args.turns,
+    };
+    let cancelled = |error| Error::Graph { path: args.plan.clone(), source: error };
+    let analysis =
+        Analysis::of(&graph, &points, &measures, &options, &effort).map_err(|error| cancelled(error.into()))?;
+    let measure_seconds = start.elapsed().as_secs_f64();
+    drop(bar);
+
+    let columns: Vec<(Measure, Vec<f64>)> =
+        measures.iter().map(|&measure| (measure, analysis.values(measure).unwrap_or_default())).collect();
+    let drawn = kind.is_picture().then(|| shown(args, &measures));
+    output::save(&args.output, &written(args, kind, &plan, &points, &columns, drawn)?)?;
+    let outcome = Outcome {
+        plan: args.plan.display().to_string(),
+        n_walls: walls(&plan).len(),
+        spacing: grid.and(args.spacing),
+        grid,
+        n_points: points.len(),
+        n_visible_pairs: (0..points.len() as u32).map(|p| u64::from(graph.n_seen(p))).sum::<u64>() / 2,
+        n_runs: graph.n_runs(),
+        n_graph_bytes: graph.n_bytes(),
+        measures: columns.iter().map(|(measure, values)| Range::of(*measure, values)).collect(),
+        graph_seconds,
+        measure_seconds,
+        drawn: drawn.map(Measure::name),
+        file: args.output.display().to_string(),
+    };
+    output::print(args.json, &outcome)?;
+    Ok(Answer::Yes)
+}
+
+/// The plan of a file.
+fn plan_of(path: &Path, map: Option<&str>) -> Result<Plan, Error> {
+    const EXPECTED: &str = "a GeoJSON plan nor a WAD";
+    match input::kind_of(path)? {
+        Some(sightlines::formats::InputKind::Plan | sightlines::formats::InputKind::Wad) => {}
+        _ => return Err(InputError::Kind { path: path.to_owned(), expected: EXPECTED }.into()),
+    }
+    match input::read(path, map, &Default::default())? {
+        Input::Plan(plan) => Ok(plan),
+        Input::Wad(_) => {
+            let doom = input::doom(path, map)?;
+            let plan = doom.plan();
+            let name = map.map(str::to_owned);
+            Ok(plan.map_err(|source| InputError::Plan { path: path.to_owned(), map: name, source })?)
+        }
+        _ => Err(InputError::Kind { path: path.to_owned(), expected: EXPECTED }.into()),
+    }
+}
+
+fn seeds(args: &VgaArgs) -> Result<Vec<Point2>, Error> {
+    let seed = |seed: &Point| {
+        let at = seed.coordinates(2, &args.plan).map_err(Error::Seed)?;
+        Ok(Point2::new(at[0], at[1]))
+    };
+    args.seed.iter().map(seed).collect()
+}
+
+fn walls(plan: &Plan) -> Vec<Segment2> {
+    plan.lines().iter().filter(|line| line.opaque).map(|line| Segment2::new(line.a, line.b)).collect()
+}
+
+/// What is computed: what is named; else the measure of a picture, and of tables local measures.
+fn measures(args: &VgaArgs, kind: Kind) -> Vec<Measure> {
+    let mut named = args.measures.clone();
+    if named.is_empty() && !(kind.is_picture() && args.measure.is_some()) {
+        named.push(Choice::Group(Group::Local));
+    }
+    named.extend(args.measure.map(Choice::One));
+    Measure::ALL.into_iter().filter(|&measure| named.iter().any(|choice| choice.has(measure))).collect()
+}
+
+/// The measure of a picture.
+fn shown(args: &VgaArgs, measures: &[Measure]) -> Measure {
+    args.measure.or(measures.first().copied()).unwrap_or(Measure::Connectivity)
+}
+
+/// What sees what, decided on a mesh of the walls.
+fn graph(args: &VgaArgs, plan: &Plan, points: &Points, effort: &Effort<'_>) -> Result<VisibilityGraph, Error> {
+    let failed = |source| Error::Mesh { path: args.plan.clone(), source };
+    let at = points.coordinates();
+    // A frame with room around the walls and all points.
+    let bounds: Aabb<2> = Aabb::around(plan.points().chain(at.iter().copied()).map(|p| [p.x, p.y]));
+    let margin = |k: usize| {
+        let size = bounds.max[k] - bounds.min[k];
+        size + 4.0 * f64::EPSILON * bounds.min[k].abs().max(bounds.max[k].abs()) + f64::MIN_POSITIVE
+    };
+    let [x, y] = [0, 1].map(margin);
+    let frame = Aabb { min: [bounds.min[0] - x, bounds.min[1] - y], max: [bounds.max[0] + x, bounds.max[1] + y] };
+    let mesh = WallMesh::with_frame(plan, frame).map_err(failed)?;
+    let from = args.points.as_ref().unwrap_or(&args.plan);
+    let index = mesh.index(at).map_err(|source| Error::Eye { path: from.clone(), source })?;
+    let seen = |eye: u32, list: &mut Vec<u32>| mesh.points_seen(eye, &index, args.touch, list);
+    let built = VisibilityGraph::build(at.len() as u32, seen, effort);
+    built.map_err(|source| Error::Graph { path: args.plan.clone(), source })
+}
+
+/// The bytes of the output.
+fn written(
+    args: &VgaArgs,
+    kind: Kind,
+    plan: &Plan,
+    points: &Points,
+    columns: &[(Measure, Vec<f64>)],
+    drawn: Option<Measure>,
+) -> Result<Vec<u8>, Error> {
+    let known: Vec<(Measure, Vec<Option<f64>>)> = columns
+        .iter()
+        .map(|(measure, values)| (*measure, values.iter().map(|&x| (x != UNDEFINED).then_some(x)).collect()))
+        .collect();
+    let Some(drawn) = drawn else {
+        let table: Vec<PointColumn<'_>> =
+            known.iter().map(|(measure, values)| PointColumn { name: measure.name(), values }).collect();
+        let text = match kind {
+            Kind::GeoJson => points_geojson(points.coordinates(), &table),
+            _ => points_csv(points.coordinates(), &table),
+        };
+        return Ok(text.into_bytes());
+    };
+    let values = known.iter().find(|(measure, _)| *measure == drawn).map_or(&[][..], |(_, values)| values);
+    let walls = walls(plan);
+    let field = Field {
+        title: drawn.title(),
+        unit: drawn.unit(),
+        points: points.coordinates(),
+        side: args.spacing.unwrap_or_default(),
+        values,
+        walls: &walls,
+        size: args.size,
+    };
+    if kind == Kind::Svg {
+        return Ok(field_svg(&field).into_bytes());
+    }
+    Ok(field_png(&field).map_err(|source| PictureError::Png { path: args.output.clone(), source })?)
+}

@@ -1,0 +1,93 @@
+//! What was measured.
+
+use crate::output::{bytes, count, seconds};
+use serde::Serialize;
+use sightlines::visibility_graph::{Measure, UNDEFINED};
+use std::fmt;
+use std::time::Duration;
+
+/// What was measured, for people and as JSON.
+#[derive(Debug, Serialize)]
+pub(super) struct Outcome {
+    pub(super) plan: String,
+    pub(super) n_walls: usize,
+    /// Null for points of a file.
+    pub(super) spacing: Option<f64>,
+    /// Columns and rows of the grid; null for points of a file.
+    pub(super) grid: Option<[usize; 2]>,
+    pub(super) n_points: usize,
+    /// Unordered pairs that see each other.
+    pub(super) n_visible_pairs: u64,
+    pub(super) n_runs: usize,
+    pub(super) n_graph_bytes: usize,
+    pub(super) measures: Vec<Range>,
+    pub(super) graph_seconds: f64,
+    pub(super) measure_seconds: f64,
+    /// The measure of a picture; null for tables.
+    pub(super) drawn: Option<&'static str>,
+    pub(super) file: String,
+}
+
+/// The values of a measure.
+#[derive(Debug, Serialize)]
+pub(super) struct Range {
+    name: &'static str,
+    title: &'static str,
+    unit: &'static str,
+    /// Points that have a value.
+    n_values: usize,
+    /// Null without values, as the next two.
+    minimum: Option<f64>,
+    mean: Option<f64>,
+    maximum: Option<f64>,
+}
+
+impl Range {
+    pub(super) fn of(measure: Measure, values: &[f64]) -> Self {
+        let known: Vec<f64> = values.iter().copied().filter(|&x| x != UNDEFINED).collect();
+        let some = |x: f64| (!known.is_empty()).then_some(x);
+        Self {
+            name: measure.name(),
+            title: measure.title(),
+            unit: measure.unit(),
+            n_values: known.len(),
+            minimum: some(known.iter().copied().fold(f64::INFINITY, f64::min)),
+            mean: some(known.iter().sum::<f64>() / known.len() as f64),
+            maximum: some(known.iter().copied().fold(f64::NEG_INFINITY, f64::max)),
+        }
+    }
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let points = count(self.n_points as u64, "point");
+        write!(f, "{}: {}, {points}", self.plan, count(self.n_walls as u64, "wall"))?;
+        match (self.grid, self.spacing) {
+            (Some([columns, rows]), Some(spacing)) => writeln!(f, " of a grid of {columns} x {rows}, {spacing} apart")?,
+            _ => writeln!(f)?,
+        }
+        let pairs = count(self.n_visible_pairs, "pair");
+        writeln!(f, "graph          {pairs} that see each other, {}", bytes(self.n_graph_bytes as u64))?;
+        let time = |s: f64| seconds(Duration::from_secs_f64(s));
+        writeln!(
+            f,
+            "time           {} for the graph, {} for measures",
+            time(self.graph_seconds),
+            time(self.measure_seconds)
+        )?;
+        for Range { title, unit, n_values, minimum, mean, maximum, .. } in &self.measures {
+            let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+            match (minimum, mean, maximum) {
+                (Some(low), Some(mean), Some(high)) => {
+                    write!(f, "{title}: {low:.4} to {high:.4}, mean {mean:.4}{unit}")?;
+                }
+                _ => write!(f, "{title}: no values")?,
+            }
+            match self.n_points - n_values {
+                0 => writeln!(f)?,
+                n => writeln!(f, " (none at {})", count(n as u64, "point"))?,
+            }
+        }
+        writeln!(f, "wrote          {}", self.file)
+    }
+}
