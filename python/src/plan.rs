@@ -10,18 +10,21 @@ use pyo3::prelude::*;
 use sightlines_bake::{BakeError, Bakeable, PlanBakeOptions, Subdivide, bake_plan};
 use sightlines_formats::{Source, geojson};
 use sightlines_geometry::Point2;
+use sightlines_isovist::{MeshError, WallMesh};
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::OnceLock;
 
 /// Walls in the plane, checked.
 #[pyclass(frozen, module = "sightlines._native")]
 pub(crate) struct Plan {
-    pub(crate) plan: Arc<sightlines_cells::Plan>,
+    pub(crate) plan: sightlines_cells::Plan,
+    /// Prepared for questions about points, once there is one.
+    pub(crate) mesh: OnceLock<Result<WallMesh, MeshError>>,
 }
 
 impl From<sightlines_cells::Plan> for Plan {
     fn from(plan: sightlines_cells::Plan) -> Self {
-        Self { plan: Arc::new(plan) }
+        Self { plan, mesh: OnceLock::new() }
     }
 }
 
@@ -87,7 +90,7 @@ impl Plan {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<(Table, Said)> {
         let subdivide: Subdivide = subdivide.parse().map_err(value_error)?;
-        let plan = &*self.plan;
+        let plan = &self.plan;
         let result = long::run(py, progress.as_ref(), |observer| {
             let options =
                 PlanBakeOptions { subdivide, threads, progress: Some(observer), ..PlanBakeOptions::default() };

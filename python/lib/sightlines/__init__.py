@@ -10,8 +10,9 @@ Nothing that can be seen is ever reported hidden. The same input gives the same 
 
 from ._bake import bake
 from ._native import Error, __version__
+from ._isovist import Isovist, Isovists
 from ._plan import Plan
 from ._table import Explanation, Table, load
 from . import scenes
 
-__all__ = ["Error", "Explanation", "Plan", "Table", "__version__", "bake", "load", "scenes"]
+__all__ = ["Error", "Explanation", "Isovist", "Isovists", "Plan", "Table", "__version__", "bake", "load", "scenes"]

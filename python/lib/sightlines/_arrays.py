@@ -46,7 +46,8 @@ def points(x: Any, dimension: int, what: str) -> tuple[NDArray[np.float64], bool
 def _bare(x: Any) -> Any:
     if isinstance(x, np.ndarray):
         return x
-    if getattr(x, "geom_type", None) == "Point" and not callable(getattr(x, "x", None)):
+    kind = getattr(x, "geom_type", None)
+    if isinstance(kind, str):
         return _of_point(x)
     geometry = getattr(x, "geometry", None)
     if geometry is not None and hasattr(geometry, "geom_type"):

@@ -7,7 +7,25 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import NDArray
 
-__all__: list[str]
+__all__ = [
+    "Error",
+    "Explanation",
+    "Isovists",
+    "Plan",
+    "Table",
+    "__version__",
+    "bake_bytes",
+    "bake_file",
+    "bake_meshes",
+    "city",
+    "isovist_of",
+    "isovists_of",
+    "office",
+    "sees",
+    "sees_each",
+    "tower",
+]
+
 __version__: str
 
 _Progress = Callable[[str, int, int], object]
@@ -91,6 +109,38 @@ class Plan:
     def n_lines(self) -> int: ...
     def bake(self, subdivide: str, threads: int, progress: _Progress | None = None) -> tuple[Table, _Said]: ...
 
+@final
+class Isovists:
+    @staticmethod
+    def names() -> list[str]: ...
+    def measures(self) -> NDArray[np.float64]: ...
+    def corners(self) -> NDArray[np.float64]: ...
+    def starts(self) -> NDArray[np.int64]: ...
+    def kinds(self) -> NDArray[np.uint8]: ...
+    def walls(self) -> NDArray[np.int64]: ...
+
+_Limit = tuple[float | None, tuple[list[float], float] | None, float | None]
+
+def isovists_of(
+    plan: Plan,
+    eyes: NDArray[np.float64],
+    limit: _Limit | None,
+    outlines: bool,
+    threads: int,
+    progress: _Progress | None = None,
+) -> Isovists: ...
+def isovist_of(plan: Plan, eye: NDArray[np.float64], limit: _Limit | None) -> Isovists: ...
+def sees(
+    plan: Plan,
+    a: NDArray[np.float64],
+    b: NDArray[np.float64],
+    passes: bool,
+    threads: int,
+    progress: _Progress | None = None,
+) -> NDArray[np.bool_]: ...
+def sees_each(
+    plan: Plan, at: NDArray[np.float64], passes: bool, threads: int, progress: _Progress | None = None
+) -> NDArray[np.bool_]: ...
 def bake_file(
     path: _Path, map: str | None, options: Mapping[str, Any], progress: _Progress | None = None
 ) -> tuple[Table, _Said]: ...

@@ -4,19 +4,23 @@ from __future__ import annotations
 
 import json
 import os
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Union
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from . import _native
-from ._arrays import floats, threads as threads_of
+from ._arrays import floats, points as points_of, threads as threads_of
 from ._geo import crs_of, geojson_of, interface_of
+from ._isovist import Isovist, Isovists
 from ._progress import Progress, Reporter
 from ._table import Table
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+
+_Limit = tuple[Union[float, None], Union[tuple[list[float], float], None], Union[float, None]]
 
 
 class Plan:
@@ -105,11 +109,122 @@ class Plan:
             table, said = self._inner.bake(subdivide, threads_of(threads), report)
         return Table._of(table, said, self.crs)
 
+    def isovist(
+        self,
+        point: Any,
+        *,
+        radius: float | None = None,
+        direction: ArrayLike | None = None,
+        angle: float | None = None,
+        deviation: float | None = None,
+    ) -> Isovist:
+        """What is seen from a point: a polygon, exact but for the last rounding of its corners.
+
+        Where no wall ends a view, a frame does that leaves a quarter of the plan's larger side free around it.
+
+        :param point: x and y, or a shapely Point
+        :param radius: nothing farther is seen
+        :param direction: of the middle of a sector of view, as x and y; with ``angle``
+        :param angle: the whole angle of the sector in degrees, above 0 and below 360
+        :param deviation: how far the straight pieces that stand for a circle may be inside of it; a thousandth of the radius by default
+        :raises ValueError: for points that are not inside the frame, plans without walls, and limits that are none
+        """
+        eye, single = points_of(point, 2, "point")
+        if not single:
+            raise ValueError("point: one point is expected; isovists takes many")
+        limit = _limit(radius, direction, angle, deviation)
+        found: Isovist = Isovists(eye, _native.isovist_of(self._inner, eye, limit), self.crs)[0]
+        return found
+
+    def isovists(
+        self,
+        points: Any,
+        *,
+        radius: float | None = None,
+        direction: ArrayLike | None = None,
+        angle: float | None = None,
+        deviation: float | None = None,
+        outlines: bool = True,
+        threads: int | None = None,
+        progress: Progress = True,
+    ) -> Isovists:
+        """What is seen from many points, with the measures as arrays.
+
+        :param points: an array (n, 2), shapely Points, or a GeoSeries of them; for the other arguments see :meth:`isovist`
+        :param outlines: whether the polygons are kept; measures of a million points fit into memory without them
+        :param threads: None for one for each core. The result does not depend on it
+        """
+        eyes, _ = points_of(points, 2, "points")
+        limit = _limit(radius, direction, angle, deviation)
+        with Reporter(progress) as report:
+            native = _native.isovists_of(self._inner, eyes, limit, outlines, threads_of(threads), report)
+        return Isovists(eyes, native, self.crs)
+
+    def sees(
+        self, a: Any, b: Any, *, touching: bool = False, threads: int | None = None, progress: Progress = True
+    ) -> Any:
+        """Whether points see each other: no wall is in the way of the straight line between them. Exact and symmetric.
+
+        Walls at the points themselves never block: a point on a wall looks to both of its sides. A point sees itself.
+
+        :param a: a point, or points (n, 2), paired with ``b``; anywhere in the plane
+        :param touching: False: a line that touches a wall on its way is blocked. True: lines may pass the ends of walls and run along
+            them, as visibility graphs for shortest paths have it
+        :returns: a bool, or an array (n,) of them
+        """
+        (p, one), (q, other) = points_of(a, 2, "a"), points_of(b, 2, "b")
+        if len(p) != len(q):
+            if 1 not in (len(p), len(q)):
+                raise ValueError(f"{len(p)} points and {len(q)} points are no pairs")
+            p, q = (np.ascontiguousarray(x) for x in np.broadcast_arrays(p, q))
+        with Reporter(progress) as report:
+            seen = _native.sees(self._inner, p, q, touching, threads_of(threads), report)
+        return bool(seen[0]) if one and other else seen
+
+    def visibility(
+        self, points: Any, *, touching: bool = False, threads: int | None = None, progress: Progress = True
+    ) -> NDArray[np.bool_]:
+        """Which of some points see which: a matrix (n, n). The same as :meth:`sees` for all pairs, and much faster."""
+        at, _ = points_of(points, 2, "points")
+        with Reporter(progress) as report:
+            return _native.sees_each(self._inner, at, touching, threads_of(threads), report)
+
+    def grid(self, spacing: float) -> NDArray[np.float64]:
+        """Points (n, 2) at multiples of the spacing, within the bounds of the walls; for fields of isovists.
+
+        :raises ValueError: for a spacing that is none, and for more than ten million points
+        """
+        if not (np.isfinite(spacing) and spacing > 0):
+            raise ValueError(f"spacing is {spacing}, where a number above 0 is expected")
+        x0, y0, x1, y1 = self.bounds
+        if np.isnan(x0):
+            return np.empty((0, 2))
+        lows, highs = np.floor(np.array([x0, y0]) / spacing), np.ceil(np.array([x1, y1]) / spacing)
+        if np.prod(highs - lows + 1.0) > 1e7:
+            raise ValueError(f"spacing is {spacing}, which makes more than ten million points")
+        across, up = (np.arange(low, high + 1.0) * spacing for low, high in zip(lows, highs))
+        across, up = (side[(side > a) & (side < b)] for side, a, b in ((across, x0, x1), (up, y0, y1)))
+        return np.stack(np.meshgrid(across, up), axis=-1).reshape(-1, 2)
+
     def plot(self, ax: Axes | None = None, **style: Any) -> Axes:
         """Draws the walls with matplotlib; ``style`` is for ``LineCollection``."""
         from ._plot import plot_plan
 
         return plot_plan(self, ax, style)
+
+
+def _limit(radius: float | None, direction: ArrayLike | None, angle: float | None, deviation: float | None) -> _Limit | None:
+    if (direction is None) != (angle is None):
+        raise ValueError("a sector has both a direction and an angle")
+    sector = None
+    if direction is not None and angle is not None:
+        way, single = points_of(direction, 2, "direction")
+        if not single:
+            raise ValueError("direction: x and y are expected")
+        sector = (way[0].tolist(), float(angle))
+    if radius is None and sector is None and deviation is None:
+        return None
+    return (None if radius is None else float(radius), sector, None if deviation is None else float(deviation))
 
 
 def _walls(source: Any) -> NDArray[np.float64]:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from ._isovist import Isovist
     from ._plan import Plan
     from ._table import Explanation, Table
 
@@ -101,4 +102,29 @@ def plot_table(
     if line is not None and line.line is not None:
         ax.plot(*line.line[:, across].T, "k-", linewidth=1.0)
     ax.autoscale_view()
+    return ax
+
+
+def plot_isovist(isovist: Isovist, ax: Axes | None, style: dict[str, Any]) -> Axes:
+    from matplotlib.patches import Polygon
+
+    ax = axes(ax)
+    ax.add_patch(Polygon(isovist.vertices, **{"facecolor": SEEN, "alpha": 0.6, **style}))
+    ax.plot(*isovist.eye[:, None], "k.")
+    ax.autoscale_view()
+    return ax
+
+
+def plot_values(
+    points: NDArray[np.float64],
+    values: NDArray[np.float64],
+    label: str,
+    ax: Axes | None,
+    cmap: str,
+    style: dict[str, Any],
+) -> Axes:
+    ax = axes(ax)
+    drawn = ax.scatter(points[:, 0], points[:, 1], c=values, **{"s": 9.0, "cmap": cmap, **style})
+    if ax.figure is not None:
+        ax.figure.colorbar(drawn, ax=ax, label=label)
     return ax
