@@ -197,6 +197,20 @@ def test_bars_of_tqdm(capsys):
     assert capsys.readouterr().err == ""
 
 
+def test_a_bar_shows_what_takes_long(capsys):
+    pytest.importorskip("tqdm")
+    from sightlines._progress import Reporter
+
+    with Reporter(True) as report:
+        report("cells", 1, 10)
+        time.sleep(0.6)
+        report("cells", 5, 10)
+        report("objects", 1, 3)
+    assert "cells: " in capsys.readouterr().err
+    with Reporter(False) as report:
+        assert report is None
+
+
 def test_other_threads_run_meanwhile():
     n, done = [0], threading.Event()
 

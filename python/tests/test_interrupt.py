@@ -13,6 +13,7 @@ import sys, time
 import sightlines as sl
 
 data = sl.scenes.tower(floors=40, rooms_x=12, rooms_y=8, furniture=2)
+office = sl.scenes.office(24, 24)
 
 def told(phase, done, total):
     if done and not told.ready:
@@ -33,6 +34,7 @@ else:
 
 CALLS = {
     "space": "sl.bake(data, progress=told, threads=1)",
+    "isovists": "office.isovists(office.grid(0.05), progress=told, threads=1)",
     "plan": "sl.scenes.office(128, 128).bake(progress=told, threads=1, subdivide='triangulation')",
 }
 

@@ -42,7 +42,12 @@ def soak(n: int) -> tuple[int, float]:
         sl.Table.from_bytes(data)
         sl.Plan(ROOMS)
         table.explain(0, 1)
-        return 15
+        plan.isovist((1.0, 1.5)).measures
+        plan.isovist((1.0, 1.5), radius=1.0, direction=(1, 0), angle=90).vertices
+        plan.sees((1, 1), (9, 1))
+        plan.sees(eyes, eyes[::-1])
+        plan.sees((-999, 1), (999, 1))
+        return 20
 
     done = 0
     while done < n // 10:
