@@ -3,7 +3,7 @@
 use crate::arrays::{Ids, guarded, matrix, rows};
 use crate::error::{room, value_error};
 use crate::long;
-use crate::plan::Plan;
+use crate::plan::{Plan, Prepared};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
 use rayon::prelude::*;
@@ -126,7 +126,7 @@ impl Isovists {
         self.kinds.clone().into_pyarray(py)
     }
 
-    /// The wall that each edge lies on, as an index of the plan's lines; -1 for none.
+    /// The wall that each edge lies on, by its number among the plan's walls; -1 for none.
     fn walls<'py>(&self, py: Python<'py>) -> Ids<'py> {
         self.walls.clone().into_pyarray(py)
     }
@@ -143,12 +143,12 @@ impl Isovists {
         }
     }
 
-    fn add(&mut self, isovist: &Isovist, keeps_outline: bool) {
+    fn add(&mut self, isovist: &Isovist, wall_numbers: &[i64], keeps_outline: bool) {
         self.measures.push(row(&isovist.measures()));
         if keeps_outline {
             for (corner, boundary) in isovist.vertices().iter().zip(isovist.boundaries()) {
                 let (kind, wall) = match boundary {
-                    Boundary::Wall(line) => (0, i64::from(line.0)),
+                    Boundary::Wall(line) => (0, wall_numbers[line.0 as usize]),
                     Boundary::Occluding => (1, -1),
                     Boundary::Frame => (2, -1),
                     _ => (3, -1),
@@ -172,7 +172,7 @@ impl Isovists {
 }
 
 fn isovists(
-    mesh: &WallMesh,
+    Prepared { mesh, wall_numbers }: &Prepared,
     eyes: &[Point2],
     limits: Option<&Limits>,
     keeps_outlines: bool,
@@ -186,8 +186,10 @@ fn isovists(
         for (i, eye) in eyes.iter().enumerate() {
             viewer.look(*eye, &mut isovist).map_err(|failure| Failed::Eye(k * CHUNK + i, failure))?;
             match limits {
-                None => all.add(&isovist, keeps_outlines),
-                Some(limits) => all.add(&isovist.limited(limits).map_err(Failed::Limit)?, keeps_outlines),
+                None => all.add(&isovist, wall_numbers, keeps_outlines),
+                Some(limits) => {
+                    all.add(&isovist.limited(limits).map_err(Failed::Limit)?, wall_numbers, keeps_outlines);
+                }
             }
         }
         counter.step()?;
@@ -216,21 +218,16 @@ fn is_inside(mesh: &WallMesh, mut points: impl Iterator<Item = Point2>) -> bool 
 }
 
 impl Plan {
-    /// The plan prepared for questions about points; made once.
-    pub(crate) fn mesh(&self) -> Result<&WallMesh, Failed> {
-        self.mesh.get_or_init(|| WallMesh::new(&self.plan)).as_ref().map_err(|failure| Failed::Mesh(failure.clone()))
-    }
-
-    /// The mesh, or one with a wider frame for points that are outside: `None` for a plan without walls and points.
-    fn mesh_around<T>(
+    /// Asks the mesh, or one with a wider frame if points are outside of it.
+    pub(crate) fn mesh_around<T>(
         &self,
         points: impl Iterator<Item = Point2> + Clone,
         ask: impl FnOnce(&WallMesh) -> Result<T, Failed>,
     ) -> Result<T, Failed> {
-        match self.mesh() {
-            Ok(mesh) if is_inside(mesh, points.clone()) => ask(mesh),
-            Ok(_) | Err(Failed::Mesh(MeshError::Empty)) => ask(&wider(&self.plan, points)?),
-            Err(failed) => Err(failed),
+        match self.prepared() {
+            Ok(Prepared { mesh, .. }) if is_inside(mesh, points.clone()) => ask(mesh),
+            Ok(_) | Err(MeshError::Empty) => ask(&wider(&self.plan, points)?),
+            Err(failure) => Err(Failed::Mesh(failure)),
         }
     }
 }
@@ -262,8 +259,8 @@ pub(crate) fn isovists_of(
     let eyes = points(&eyes, "points")?;
     let limits = limit.map(limits);
     let done = long::run(py, progress.as_ref(), |observer| {
-        let mesh = plan.mesh()?;
-        on_threads(threads, || isovists(mesh, &eyes, limits.as_ref(), outlines, observer))
+        let prepared = plan.prepared().map_err(Failed::Mesh)?;
+        on_threads(threads, || isovists(prepared, &eyes, limits.as_ref(), outlines, observer))
     })?;
     Ok(done?)
 }
@@ -282,8 +279,8 @@ pub(crate) fn isovist_of(
     let silent = |_| std::ops::ControlFlow::Continue(());
     let done = py.detach(|| {
         guarded(|| {
-            let mesh = plan.mesh()?;
-            isovists(mesh, &eyes, limits.as_ref(), true, &silent)
+            let prepared = plan.prepared().map_err(Failed::Mesh)?;
+            isovists(prepared, &eyes, limits.as_ref(), true, &silent)
         })
     })?;
     Ok(done?)

@@ -117,6 +117,16 @@ def test_a_room(rooms):
     assert 2 in rooms.isovist((-1, -1)).kinds
 
 
+def test_walls_are_numbered_without_lines_that_do_not_block():
+    glass = {"type": "Feature", "properties": {"sight": "transparent"}, "geometry": {"type": "LineString", "coordinates": [(1, 0), (1, 3)]}}
+    room = {"type": "Feature", "properties": {}, "geometry": {"type": "Polygon", "coordinates": [[(0, 0), (4, 0), (4, 3), (0, 3), (0, 0)]]}}
+    plan = sl.Plan({"type": "FeatureCollection", "features": [glass, room]})
+    isovist = plan.isovist((2, 1))
+    assert sorted(isovist.walls.tolist()) == [0, 1, 2, 3] and len(plan.walls) == 4
+    for corner, wall in zip(isovist.vertices, isovist.walls):
+        assert corner.tolist() in plan.walls[wall].tolist()
+
+
 @pytest.mark.parametrize(
     "options",
     [

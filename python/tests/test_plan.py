@@ -93,6 +93,46 @@ def test_files_and_mappings(tmp_path, rooms):
         sl.Plan(tmp_path)
 
 
+def test_lines_without_length_are_dropped_from_drawings():
+    for nothing in ({"type": "LineString", "coordinates": [(0, 0), (0, 0)]}, {"type": "LineString", "coordinates": []}):
+        assert len(sl.Plan(nothing).walls) == 0
+
+
+def test_files_name_their_reference_system(tmp_path, rooms):
+    path = tmp_path / "rooms.geojson"
+    member = {"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::28992"}}
+    path.write_text(json.dumps({"type": "FeatureCollection", "crs": member, "features": rooms.__geo_interface__["features"]}))
+    plan = sl.Plan(path)
+    assert plan.crs == "urn:ogc:def:crs:EPSG::28992" and len(plan.walls) == 7
+    assert sl.Plan(path, crs="EPSG:3857").crs == "EPSG:3857"
+    geopandas = pytest.importorskip("geopandas")
+    assert plan.bake(progress=False).to_geodataframe().crs == geopandas.GeoSeries(crs="EPSG:28992").crs
+
+
+def test_dxf(tmp_path):
+    def lines(layer, *ends):
+        pairs = [(0, "LINE"), (8, layer)]
+        for (ax, ay), (bx, by) in ends:
+            yield from [*pairs, (10, ax), (20, ay), (11, bx), (21, by)]
+
+    room = [((0, 0), (4, 0)), ((4, 0), (4, 3)), ((4, 3), (0, 3)), ((0, 3), (0, 0))]
+    entities = [*lines("walls", *room), *lines("wires", ((1, 1), (2, 2)))]
+    pairs = [(0, "SECTION"), (2, "ENTITIES"), *entities, (0, "ENDSEC"), (0, "EOF")]
+    path = tmp_path / "room.dxf"
+    path.write_text("".join(f"{code}\n{value}\n" for code, value in pairs))
+    assert len(sl.Plan(path).walls) == 5
+    with pytest.warns(UserWarning, match="wires"):
+        plan = sl.Plan(path, layers=["walls"])
+    assert len(plan.walls) == 4 and plan.isovist((1, 1)).area == 12.0
+    assert {"walls", "wires"} <= set(plan.layers)
+    for wrong in (0, -1.0, float("nan")):
+        with pytest.raises(ValueError, match="deviation"):
+            sl.Plan(path, deviation=wrong)
+    path.write_text("0\nSECTION\n2\nENTITIES\n0\nLINE\n10\nabc\n")
+    with pytest.raises(sl.Error, match="room.dxf: "):
+        sl.Plan(path)
+
+
 def test_properties_mean_what_they_do_in_files():
     wall = {"type": "LineString", "coordinates": [(0, 0), (4, 0)]}
     glass = {"type": "Feature", "properties": {"sight": "transparent", "price": float("nan")}, "geometry": wall}
@@ -111,7 +151,6 @@ def test_properties_mean_what_they_do_in_files():
         {"type": "FeatureCollection", "features": 7},
         {"type": "FeatureCollection", "features": [7]},
         {"type": "LineString", "coordinates": [(0, float("nan")), (1, 1)]},
-        {"type": "LineString", "coordinates": [(0, 0), (0, 0)]},
         {"type": "LineString", "coordinates": [(0, 0), object()]},
         {"type": "LineString", "coordinates": "abc"},
         {"type": "LineString", "coordinates": [(0, 0), (1e300, 0)]},

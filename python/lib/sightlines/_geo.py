@@ -103,3 +103,12 @@ def crs_of(x: Any) -> Any:
             stacklevel=3,
         )
     return crs
+
+
+def crs_of_json(text: str) -> Any:
+    """What a member ``crs`` of a GeoJSON file names, else the member itself."""
+    crs = json.loads(text)
+    try:
+        return crs["properties"]["name"]
+    except (KeyError, TypeError):
+        return crs

@@ -43,7 +43,7 @@ class Isovist:
         self.vertices = vertices
         #: What each edge is: 0 a part of a wall, 1 occluding (a ray past the end of a wall), 2 the frame around the plan, 3 a limit.
         self.kinds = kinds
-        #: The line of the plan that each edge lies on; -1 for none.
+        #: The wall that each edge lies on, as an index of the plan's walls; -1 for none.
         self.walls = walls
         #: The measures, by name.
         self.measures = dict(measures)

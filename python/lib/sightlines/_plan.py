@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import os
+import warnings
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Union
 
 import numpy as np
@@ -11,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _native
 from ._arrays import floats, points as points_of, threads as threads_of
-from ._geo import crs_of, geojson_of, interface_of
+from ._geo import crs_of, crs_of_json, geojson_of, interface_of
 from ._isovist import Isovist, Isovists
 from ._progress import Progress, Reporter
 from ._table import Table
@@ -29,27 +31,48 @@ class Plan:
     Walls may cross, overlap, touch and repeat, and polygons may cross themselves: their outlines are walls. Coordinates are taken as they are, and
     decisions are exact for them. It never changes.
 
-    :param source: a path of a file with a plan (GeoJSON, or a WAD with a map of Doom); an array of walls (n, 2, 2) or (n, 4), both ends of
+    :param source: a path of a file with a plan (GeoJSON, DXF, or a WAD with a map of Doom); an array of walls (n, 2, 2) or (n, 4), both ends of
         each; a geometry of shapely, a list of them, a GeoSeries, a GeoDataFrame, or anything with ``__geo_interface__``. Points are objects,
         which hide nothing
     :param crs: the coordinate reference system of results; by default that of the source
     :param map: which map of a WAD
+    :param layers: which layers of a DXF file are read; by default all that are neither frozen nor off
+    :param deviation: how far the straight pieces of a curve of a DXF file may be from it
     :raises ValueError: for coordinates and shapes that cannot be used
     :raises OSError: for a file that cannot be read
     :raises Error: for a damaged file
     """
 
-    __slots__ = ("__weakref__", "_inner", "crs")
+    __slots__ = ("__weakref__", "_inner", "crs", "layers")
 
     _inner: _native.Plan
+    #: The coordinate reference system, which results have as well; None if it is not known.
     crs: Any
+    #: Of a plan from a DXF file: the names of all layers in it.
+    layers: list[str]
 
-    def __init__(self, source: Any, *, crs: Any = None, map: str | None = None) -> None:
+    def __init__(
+        self,
+        source: Any,
+        *,
+        crs: Any = None,
+        map: str | None = None,
+        layers: Sequence[str] | None = None,
+        deviation: float | None = None,
+    ) -> None:
         self.crs = crs_of(source) if crs is None else crs
+        self.layers = []
         if isinstance(source, Plan):
             self._inner = source._inner
         elif isinstance(source, (str, os.PathLike)):
-            self._inner = _native.Plan.from_file(os.fspath(source), map)
+            self._inner, stated = _native.Plan.from_file(
+                os.fspath(source), map, None if layers is None else list(layers), deviation
+            )
+            stated_crs, self.layers, messages = stated
+            if crs is None and stated_crs is not None:
+                self.crs = crs_of_json(stated_crs)
+            for message in messages:
+                warnings.warn(f"{os.fspath(source)}: {message}", stacklevel=2)
         elif (mapping := interface_of(source)) is not None:
             self._inner = _native.Plan.from_geojson(geojson_of(mapping))
         else:
@@ -58,7 +81,7 @@ class Plan:
     @classmethod
     def _of(cls, native: _native.Plan, crs: Any = None) -> Plan:
         plan = object.__new__(cls)
-        plan._inner, plan.crs = native, crs
+        plan._inner, plan.crs, plan.layers = native, crs, []
         return plan
 
     @property
