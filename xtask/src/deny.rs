@@ -2,6 +2,7 @@
 
 use crate::debian::in_file;
 use crate::metadata::{self, Package};
+use crate::python;
 use crate::spdx::is_allowed;
 use crate::step::{self, Failure, cargo, root};
 use std::collections::{BTreeMap, BTreeSet};
@@ -26,7 +27,9 @@ pub(crate) fn check() -> Result<(), Failure> {
     let path = root().join("deny.toml");
     let text = in_file(&path, fs::read_to_string(&path))?;
     let rules = rules(&text).ok_or(Failure::Found { what: "lists of licences in deny.toml", n: 0 })?;
-    let packages = metadata::all()?;
+    // The Python package has a workspace of its own, and is offered for download too.
+    let of_python = metadata::all_of(&python::folder().join("Cargo.toml"))?;
+    let packages = [metadata::all()?, of_python].concat();
     let (mut n_looked_at, mut n_found) = (0, 0);
     for package in packages.iter().filter(|p| p.source.is_some()) {
         n_looked_at += 1;

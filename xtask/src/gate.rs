@@ -2,7 +2,7 @@
 
 use crate::gpu::Wish;
 use crate::step::{self, Failure, cargo};
-use crate::{bevy, deny, lab, metadata, package, tally, tidy};
+use crate::{bevy, deny, lab, metadata, package, python, tally, tidy};
 use std::time::{Duration, Instant};
 
 /// Builds the documentation of every crate; a warning is an error.
@@ -71,6 +71,7 @@ pub(crate) fn ci(gpu: Wish) -> Result<(), Failure> {
     for (name, step) in steps {
         timed(name, &mut times, step)?;
     }
+    timed("python", &mut times, || python::check(false))?;
     timed("bevy", &mut times, || bevy::check(gpu))?;
     let tally = timed("test", &mut times, || tally::test(gpu))?;
     for (name, time) in times {

@@ -15,6 +15,7 @@ mod install;
 mod lab;
 mod metadata;
 mod package;
+mod python;
 mod semver;
 mod spdx;
 mod step;
@@ -134,6 +135,12 @@ enum Task {
         #[arg(long, value_enum, default_value_t)]
         gpu: gpu::Wish,
     },
+    /// Builds the Python package in a virtual environment, and checks and tests it there.
+    Python {
+        /// Takes the wheel that a release offers, optimized, and makes the source distribution too.
+        #[arg(long)]
+        release: bool,
+    },
 }
 
 /// What the fuzzing program can break, one name in each line; a test of that program compares.
@@ -183,6 +190,7 @@ fn run(task: Task) -> Result<(), Failure> {
         Task::Bevy { gpu } => bevy::check(gpu),
         Task::BevyAssets => bevy::assets(),
         Task::BevyTrenchbroom { gpu } => bevy::check_quake(gpu),
+        Task::Python { release } => python::check(release),
         Task::Freedoom => freedoom::find_or_fetch().map(|folder| println!("{}", folder.display())),
     }
 }

@@ -32,6 +32,12 @@ pub(crate) fn all() -> Result<Vec<Package>, Failure> {
     read(&["metadata", "--format-version", "1", "--locked"])
 }
 
+/// Every package of the lock file of another workspace.
+pub(crate) fn all_of(manifest: &Path) -> Result<Vec<Package>, Failure> {
+    let words = ["metadata", "--format-version", "1", "--locked", "--manifest-path"];
+    parse(&step::output(cargo().args(words).arg(manifest))?)
+}
+
 /// The packages of the workspace that are published, sorted by name.
 pub(crate) fn published() -> Result<Vec<Package>, Failure> {
     let packages = read(&["metadata", "--format-version", "1", "--locked", "--no-deps"])?;

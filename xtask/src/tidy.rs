@@ -32,7 +32,7 @@ pub(crate) fn tidy() -> Result<(), Failure> {
 
 fn texts() -> Result<(), Failure> {
     let mut files = Vec::new();
-    for folder in ["crates", "shaders", "tests", "benches", "lab", "manuals", "xtask", "integrations"] {
+    for folder in ["crates", "shaders", "tests", "benches", "lab", "manuals", "xtask", "integrations", "python"] {
         collect(&root().join(folder), &mut files)?;
     }
     files.sort();

@@ -10,7 +10,7 @@ fn root() -> PathBuf {
 /// All files of the workspace but those of git, of builds, and of the demo, sorted.
 fn files_of_workspace() -> Vec<PathBuf> {
     let of_plugins = ["bevy", "bevy-trenchbroom"].map(|name| root().join("integrations").join(name));
-    let mut outputs = vec![root().join("target"), root().join("demo")];
+    let mut outputs = vec![root().join("target"), root().join("demo"), root().join("python/target")];
     outputs.extend(of_plugins.iter().flat_map(|plugin| [plugin.join("target"), plugin.join("assets")]));
     let mut files = Vec::new();
     let mut folders = vec![root()];

@@ -1,0 +1,18 @@
+"""Exact visibility for floor plans and buildings.
+
+* :class:`Plan`: walls in the plane, from GeoJSON, numpy, shapely or geopandas.
+* :func:`bake`: the table of a scene in space, from a file, bytes or trimesh.
+* :class:`Table`: which cells and objects are seen from where, and why; :func:`load` reads one.
+* :mod:`sightlines.scenes`: generated plans and buildings to try things on.
+
+Nothing that can be seen is ever reported hidden. The same input gives the same answer, with any number of threads.
+"""
+
+from ._bake import bake
+from ._native import Error, __version__
+from ._isovist import Isovist, Isovists
+from ._plan import Plan
+from ._table import Explanation, Table, load
+from . import scenes
+
+__all__ = ["Error", "Explanation", "Isovist", "Isovists", "Plan", "Table", "__version__", "bake", "load", "scenes"]

@@ -1,0 +1,179 @@
+"""Tables of scenes in space, and of files of any kind."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _native
+from ._arrays import count, floats, index, threads as threads_of
+from ._progress import Progress, Reporter
+from ._table import Table
+
+_Mesh = tuple[str, NDArray[np.float64], NDArray[np.int64], bool]
+
+
+def bake(
+    source: Any,
+    *,
+    cells: str | int | tuple[int, int, int] | ArrayLike | None = None,
+    method: str | None = None,
+    view_region: ArrayLike | None = None,
+    gap: float | None = None,
+    detail_below: float | None = None,
+    keep_solid: bool = False,
+    see_through: Sequence[str] = (),
+    max_cells: int | None = None,
+    time_limit: float | None = None,
+    threads: int | None = None,
+    progress: Progress = True,
+    name: str = "scene",
+    map: str | None = None,
+) -> Table:
+    """Makes the table of a scene: which cells and objects can be seen from which cells.
+
+    The interpreter is free for other threads meanwhile, and Ctrl-C ends the call, as soon as what is under way is finished.
+
+    :param source: a file (``.glb``, ``.gltf``, ``.obj``, ``.bsp``, ``.prt``, ``.wad``, ``.geojson``) as a path, its content as
+        bytes, a ``trimesh.Scene`` or ``Trimesh``, or meshes by name: ``{"wall": (corners, triangles)}`` with arrays of shapes (n, 3)
+        and (m, 3)
+    :param cells: where viewers can be. None: chosen by the scene. ``"kd-tree"``: boxes along the walls, with portals. A number: so many
+        boxes, cut where views differ. Three numbers: a grid. An array (n, 2, 3): these boxes
+    :param method: what decides: ``"sightlines"``, ``"auto"``, ``"both"``, ``"multifocal"``, ``"line-space"``, ``"shafts"``, ``"voxels"``
+    :param view_region: a box (2, 3) in which viewers are; rooms that cannot be reached from it are no cells. None for everywhere
+    :param gap: how precise coordinates are, in scene units: openings that are narrower may count as closed. None: as precise as
+        the file's format
+    :param detail_below: objects smaller than this in every direction hide nothing; None for what suits the scene
+    :param keep_solid: whether the insides of solid things are cells too
+    :param see_through: names of meshes that are seen and hide nothing; only for trimesh and meshes by name
+    :param max_cells: the most cells
+    :param time_limit: seconds, after which what is not decided counts as visible; the table then depends on the machine
+    :param threads: None for one for each core. The table does not depend on it
+    :param progress: a bar, if tqdm is installed, or a function that gets what is done, the units done, and all of them
+    :param name: the name that bytes would have as a file, if it is needed to tell what they are: ``"scene.obj"``
+    :param map: which map of a WAD
+    :raises ValueError: for arguments that cannot be used
+    :raises OSError: for a file that cannot be read
+    :raises Error: for a damaged file, or a scene that cannot be baked
+    """
+    options = _options(cells, method, view_region, gap, detail_below, keep_solid, max_cells, time_limit, threads)
+    if map is not None and not isinstance(map, str):
+        raise TypeError("map is the name of a map")
+    with Reporter(progress) as report:
+        if isinstance(source, (str, os.PathLike)):
+            made = _native.bake_file(os.fspath(source), map, options, report)
+        elif isinstance(source, (bytes, bytearray, memoryview)):
+            made = _native.bake_bytes(bytes(source), name, map, options, report)
+        else:
+            made = _native.bake_meshes(_meshes(source, frozenset(see_through)), options, report)
+    return Table._of(*made)
+
+
+def _options(
+    cells: Any,
+    method: str | None,
+    view_region: ArrayLike | None,
+    gap: float | None,
+    detail_below: float | None,
+    keep_solid: bool,
+    max_cells: int | None,
+    time_limit: float | None,
+    threads: int | None,
+) -> dict[str, Any]:
+    kind: str | None = None
+    place_count: int | None = None
+    grid: tuple[int, ...] | None = None
+    boxes: NDArray[np.float64] | None = None
+    if cells is None or isinstance(cells, str):
+        kind = cells
+        if kind not in (None, "kd-tree", "places"):
+            raise ValueError(f"cells: {kind!r} is neither 'kd-tree' nor 'places', nor numbers or boxes")
+    elif np.ndim(cells) == 0:
+        kind, place_count = "places", count(index(cells, "cells"), "cells")
+    elif np.ndim(cells) == 1:
+        if len(cells) != 3:
+            raise ValueError(f"cells: {len(cells)} numbers, where three are a grid")
+        kind, grid = "grid", tuple(count(index(n, "cells"), "cells") or 0 for n in cells)
+    else:
+        boxes = floats(cells, "cells")
+        if boxes.ndim != 3 or boxes.shape[1:] != (2, 3):
+            raise ValueError(f"cells: an array of shape {boxes.shape}, where boxes (n, 2, 3) are expected")
+        kind, boxes = "boxes", boxes.reshape(-1, 6)
+    region: list[float] | None = None
+    if view_region is not None:
+        box = floats(view_region, "view_region")
+        if box.size != 6 or box.shape not in ((2, 3), (6,)):
+            raise ValueError(f"view_region: an array of shape {box.shape}, where a box (2, 3) is expected")
+        region = box.reshape(6).tolist()
+    return {
+        "method": method,
+        "cells": kind,
+        "place_count": place_count,
+        "grid": grid,
+        "boxes": boxes,
+        "view_region": region,
+        "gap": gap,
+        "detail_below": detail_below,
+        "keep_solid": bool(keep_solid),
+        "max_cells": count(max_cells, "max_cells"),
+        "time_limit": time_limit,
+        "threads": threads_of(threads),
+    }
+
+
+def _meshes(source: Any, see_through: frozenset[str]) -> list[_Mesh]:
+    if isinstance(source, Mapping):
+        found = [_mesh(str(name), *_pair(name, mesh)) for name, mesh in source.items()]
+    elif hasattr(source, "graph") and hasattr(source, "geometry"):
+        found = _of_scene(source)
+    elif hasattr(source, "vertices") and hasattr(source, "faces"):
+        name = (getattr(source, "metadata", None) or {}).get("name") or "mesh"
+        found = [_mesh(str(name), source.vertices, source.faces)]
+    else:
+        raise TypeError(f"bake takes a path, bytes, trimesh or meshes by name, not {type(source).__name__}")
+    unknown = see_through - {name for name, _, _ in found}
+    if unknown:
+        raise ValueError(f"see_through: there is no mesh named {sorted(unknown)[0]!r}")
+    return [(name, corners, triangles, name in see_through) for name, corners, triangles in found]
+
+
+def _pair(name: Any, mesh: Any) -> tuple[Any, Any]:
+    if hasattr(mesh, "vertices") and hasattr(mesh, "faces"):
+        return mesh.vertices, mesh.faces
+    try:
+        corners, triangles = mesh
+    except (TypeError, ValueError):
+        raise ValueError(f"{name}: a mesh is a pair of corners and triangles") from None
+    return corners, triangles
+
+
+def _mesh(name: str, corners: Any, triangles: Any) -> tuple[str, NDArray[np.float64], NDArray[np.int64]]:
+    vertices = floats(corners, f"{name}: corners")
+    vertices = vertices.reshape(0, 3) if vertices.size == 0 else vertices
+    faces = np.asarray(triangles)
+    faces = faces.reshape(0, 3) if faces.size == 0 else faces
+    if vertices.ndim != 2 or faces.ndim != 2:
+        raise ValueError(f"{name}: arrays of shapes {vertices.shape} and {faces.shape}, where (n, 3) and (m, 3) are expected")
+    if faces.size and faces.dtype.kind not in "iu":
+        raise ValueError(f"{name}: triangles are whole numbers, not {faces.dtype}")
+    return name, vertices, np.ascontiguousarray(faces, dtype=np.int64)
+
+
+def _of_scene(scene: Any) -> list[tuple[str, NDArray[np.float64], NDArray[np.int64]]]:
+    """Each mesh where its node places it, in the order of the nodes."""
+    found = []
+    for node in scene.graph.nodes_geometry:
+        transform, geometry_name = scene.graph[node]
+        geometry = scene.geometry[geometry_name]
+        if not (hasattr(geometry, "vertices") and hasattr(geometry, "faces")):
+            continue
+        matrix = np.asarray(transform, dtype=np.float64)
+        corners = floats(geometry.vertices, f"{node}: corners")
+        if not np.array_equal(matrix, np.eye(4)):
+            corners = corners @ matrix[:3, :3].T + matrix[:3, 3]
+        found.append(_mesh(str(node), corners, geometry.faces))
+    return found

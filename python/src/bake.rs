@@ -1,0 +1,251 @@
+//! Bakes of files, bytes and meshes.
+
+use crate::arrays::rows;
+use crate::error::{bakeable_failed, error, value_error};
+use crate::long;
+use crate::table::Table;
+use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+use sightlines_bake::auto::own_cells;
+use sightlines_bake::places::PlaceOptions;
+use sightlines_bake::{
+    BakeError, BakeInput, BakeOptions, Bakeable, BakeableError, Baked, CellsFrom, Gap, Report, SceneMethod, bake,
+};
+use sightlines_cells::{Scene, SceneObject};
+use sightlines_formats::view_cells::ViewCell;
+use sightlines_formats::{Source, ViewCells};
+use sightlines_geometry::{Aabb, check_coordinate};
+use sightlines_progress::Observer;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// What a bake did: pairs that see each other, pairs assumed to, and those not decided in time.
+pub(crate) type Said = (u64, u64, u64);
+
+/// How to bake a scene in space; what means nothing for an input is ignored.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Options<'py> {
+    method: Option<String>,
+    /// "kd-tree", "places", "grid" or "boxes".
+    cells: Option<String>,
+    place_count: Option<u32>,
+    grid: Option<[u32; 3]>,
+    boxes: Option<PyReadonlyArray2<'py, f64>>,
+    view_region: Option<[f64; 6]>,
+    gap: Option<f64>,
+    detail_below: Option<f64>,
+    keep_solid: bool,
+    max_cells: Option<u32>,
+    time_limit: Option<f64>,
+    threads: usize,
+}
+
+/// The same, checked, and without anything of Python.
+struct Checked {
+    method: Option<SceneMethod>,
+    cells: Option<CellsFrom>,
+    view_region: Option<Aabb<3>>,
+    gap: Gap,
+    detail_below: Option<f64>,
+    keep_solid: bool,
+    max_cells: Option<u32>,
+    time_limit: Option<f64>,
+    threads: usize,
+}
+
+fn aabb(b: [f64; 6], what: &str) -> PyResult<Aabb<3>> {
+    let [x0, y0, z0, x1, y1, z1] = b;
+    for x in b {
+        check_coordinate(x).map_err(|failure| value_error(format!("{what}: {failure}")))?;
+    }
+    let (min, max) = ([x0, y0, z0], [x1, y1, z1]);
+    if (0..3).any(|k| min[k] > max[k]) {
+        return Err(value_error(format!("{what}: a lower corner above the upper one")));
+    }
+    Ok(Aabb { min, max })
+}
+
+impl Options<'_> {
+    fn check(&self) -> PyResult<Checked> {
+        let not_from_0 = |x: &f64| !(x.is_finite() && *x >= 0.0);
+        for (name, x) in [("gap", self.gap), ("time_limit", self.time_limit), ("detail_below", self.detail_below)] {
+            if let Some(x) = x.filter(not_from_0) {
+                return Err(value_error(format!("{name} is {x}, where a finite number from 0 on is expected")));
+            }
+        }
+        let cells = match self.cells.as_deref() {
+            None => None,
+            Some("kd-tree") => Some(CellsFrom::KdTree),
+            Some("places") => Some(CellsFrom::Places(PlaceOptions { n_cells: self.place_count, cell_size: None })),
+            Some("grid") => Some(CellsFrom::Grid(self.grid.unwrap_or_default())),
+            Some("boxes") => {
+                let boxes = self.boxes.as_ref().map(|boxes| rows::<6>(boxes, "cells")).transpose()?.unwrap_or_default();
+                let cell = |(i, b): (usize, &[f64; 6])| {
+                    Ok(ViewCell { id: i.to_string(), bounds: aabb(*b, &format!("cell {i}"))? })
+                };
+                let cells: Vec<ViewCell> = boxes.iter().enumerate().map(cell).collect::<PyResult<_>>()?;
+                if cells.is_empty() {
+                    return Err(value_error("cells: there are none"));
+                }
+                Some(CellsFrom::Boxes(ViewCells { cells, axes: None }))
+            }
+            Some(other) => return Err(value_error(format!("'{other}' is no kind of cells"))),
+        };
+        Ok(Checked {
+            method: self.method.as_deref().map(|name| name.parse().map_err(value_error)).transpose()?,
+            cells,
+            view_region: self.view_region.map(|b| aabb(b, "view_region")).transpose()?,
+            gap: self.gap.map_or(Gap::OfFile, Gap::Width),
+            detail_below: self.detail_below,
+            keep_solid: self.keep_solid,
+            max_cells: self.max_cells,
+            time_limit: self.time_limit,
+            threads: self.threads,
+        })
+    }
+}
+
+impl Checked {
+    /// Bakes an input. Cells that nobody chose are those that the program `sightlines` takes.
+    fn bake(self, input: BakeInput<'_>, observer: &dyn Observer) -> Result<Baked, BakeError> {
+        let scene = if let BakeInput::Scene(scene, _) = input { Some(scene) } else { None };
+        let own = |scene: &Scene| {
+            let may_choose = self.method != Some(SceneMethod::Sightlines) && scene.mirrors().is_empty();
+            if may_choose { own_cells(scene) } else { CellsFrom::KdTree }
+        };
+        let chosen = self.cells.is_none();
+        let cells = self.cells.unwrap_or_else(|| scene.map_or(CellsFrom::KdTree, own));
+        let by_places = chosen && matches!(cells, CellsFrom::Places(_));
+        let method = self.method.unwrap_or(if by_places { SceneMethod::Auto } else { SceneMethod::Sightlines });
+        let (threads, gap) = (self.threads, self.gap);
+        let mut options =
+            BakeOptions { method, cells, gap, threads, progress: Some(observer), ..BakeOptions::default() };
+        options.cut.view_region = self.view_region;
+        options.cut.keep_solid = self.keep_solid;
+        options.cut.detail_below = self.detail_below;
+        if let Some(n) = self.max_cells {
+            options.cut.max_cells = n;
+        }
+        let start = Instant::now();
+        let limit = self.time_limit.unwrap_or(f64::INFINITY);
+        let spent = move || start.elapsed().as_secs_f64() / limit;
+        if self.time_limit.is_some() {
+            options.budget = Some(&spent);
+        }
+        bake(input, &options)
+    }
+}
+
+/// What a bake says of itself.
+pub(crate) fn said_of(baked: &Baked) -> Said {
+    let (pairs, assumed, left) = match &baked.report {
+        Report::Plan(did) => (did.n_visible_pairs, 0, None),
+        Report::Scene(did) => (did.n_visible_pairs, did.n_assumed, did.limit),
+        Report::Regions(did) => (did.n_visible_pairs, did.n_assumed, did.limit),
+        _ => (0, 0, None),
+    };
+    (pairs, assumed, left.map_or(0, |left| left.n_cell_pairs + left.n_object_pairs))
+}
+
+/// The result of a bake for Python.
+pub(crate) fn baked(result: Result<(Said, Baked), BakeError>) -> PyResult<(Table, Said)> {
+    match result {
+        Ok((said, baked)) => Ok((Table::with_graph(baked.table, baked.graph), said)),
+        Err(failure) => Err(error(failure)),
+    }
+}
+
+/// Why a file was not baked.
+enum Failed {
+    Read(Box<BakeableError>),
+    Bake(Box<BakeError>),
+}
+
+fn read_and_bake(
+    py: Python<'_>,
+    name: &Path,
+    bytes: Option<&[u8]>,
+    map: Option<&str>,
+    options: &Options<'_>,
+    progress: Option<&Py<PyAny>>,
+) -> PyResult<(Table, Said)> {
+    let options = options.check()?;
+    let result = long::run(py, progress, |observer| {
+        // Bytes stand alone: files that they name are refused.
+        let source = bytes.map_or(Source::File(name), |bytes| Source::Memory { name, bytes, beside: None });
+        let read = Bakeable::read(&source, map).map_err(|failure| Failed::Read(Box::new(failure)))?;
+        let done = options.bake((&read).into(), observer).map_err(|failure| Failed::Bake(Box::new(failure)))?;
+        Ok((said_of(&done), done))
+    })?;
+    match result {
+        Ok(done) => baked(Ok(done)),
+        Err(Failed::Read(failure)) => Err(bakeable_failed(&failure)),
+        Err(Failed::Bake(failure)) => Err(error(format!("{}: {failure}", name.display()))),
+    }
+}
+
+/// Bakes a file of any format.
+#[pyfunction]
+#[pyo3(signature = (path, map, options, progress=None))]
+pub(crate) fn bake_file(
+    py: Python<'_>,
+    path: PathBuf,
+    map: Option<&str>,
+    options: Options<'_>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<(Table, Said)> {
+    read_and_bake(py, &path, None, map, &options, progress.as_ref())
+}
+
+/// Bakes the content of a file of any format.
+#[pyfunction]
+#[pyo3(signature = (bytes, name, map, options, progress=None))]
+pub(crate) fn bake_bytes(
+    py: Python<'_>,
+    bytes: &[u8],
+    name: &str,
+    map: Option<&str>,
+    options: Options<'_>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<(Table, Said)> {
+    read_and_bake(py, Path::new(name), Some(bytes), map, &options, progress.as_ref())
+}
+
+/// A mesh: name, corners (n, 3), triangles (m, 3), whether it is seen through.
+type Mesh<'py> = (String, PyReadonlyArray2<'py, f64>, PyReadonlyArray2<'py, i64>, bool);
+
+fn object((name, corners, triangles, _): &Mesh<'_>) -> PyResult<SceneObject> {
+    let vertices = rows::<3>(corners, &format!("{name}: corners"))?;
+    let [n, columns] = [0, 1].map(|k| triangles.shape()[k]);
+    if columns != 3 {
+        return Err(value_error(format!("{name}: triangles of shape ({n}, {columns}), where (n, 3) is expected")));
+    }
+    let flat = triangles.as_slice().map_err(|_| value_error(format!("{name}: triangles are not contiguous")))?;
+    let corner = |&i: &i64| {
+        let index = u32::try_from(i).ok().filter(|&i| (i as usize) < vertices.len());
+        index.ok_or_else(|| value_error(format!("{name}: corner {i} of {} in a triangle", vertices.len())))
+    };
+    let flat: Vec<u32> = flat.iter().map(corner).collect::<PyResult<_>>()?;
+    Ok(SceneObject { name: name.clone(), vertices, triangles: flat.as_chunks::<3>().0.to_vec() })
+}
+
+/// Bakes meshes.
+#[pyfunction]
+#[pyo3(signature = (meshes, options, progress=None))]
+pub(crate) fn bake_meshes(
+    py: Python<'_>,
+    meshes: Vec<Mesh<'_>>,
+    options: Options<'_>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<(Table, Said)> {
+    let options = options.check()?;
+    let objects: Vec<SceneObject> = meshes.iter().map(object).collect::<PyResult<_>>()?;
+    let seen_through: Vec<u32> = (0..).zip(&meshes).filter(|(_, mesh)| mesh.3).map(|(object, _)| object).collect();
+    let scene = Scene::new(objects).and_then(|scene| scene.with_see_through(seen_through)).map_err(value_error)?;
+    let result = long::run(py, progress.as_ref(), |observer| {
+        let done = options.bake(BakeInput::Scene(&scene, None), observer)?;
+        Ok::<_, BakeError>((said_of(&done), done))
+    })?;
+    baked(result)
+}

@@ -1,0 +1,230 @@
+"""Bakes of scenes in space."""
+
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import sightlines as sl
+
+
+def box_mesh(low, high):
+    """The corners and triangles of a box."""
+    corners = np.array([[(high if k >> axis & 1 else low)[axis] for axis in range(3)] for k in range(8)], dtype=float)
+    quads = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+    return corners, np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))])
+
+
+#: Two halls and a wall between them.
+HALLS = {
+    "floor": box_mesh((0, 0, -0.25), (20, 8, 0)),
+    "ceiling": box_mesh((0, 0, 4), (20, 8, 4.25)),
+    "west": box_mesh((-0.25, -0.25, -0.25), (0, 8.25, 4.25)),
+    "east": box_mesh((20, -0.25, -0.25), (20.25, 8.25, 4.25)),
+    "south": box_mesh((0, -0.25, -0.25), (20, 0, 4.25)),
+    "north": box_mesh((0, 8, -0.25), (20, 8.25, 4.25)),
+    "wall": box_mesh((9.75, 0, 0), (10.25, 8, 4)),
+    "chair": box_mesh((2, 2, 0), (2.5, 2.5, 0.5)),
+    "table": box_mesh((15, 4, 0), (16, 6, 0.75)),
+}
+
+EYE = (5.0, 5.0, 2.0)
+
+
+def names(table, eye=EYE):
+    return {table.objects[k] for k in table.visible_objects(eye)}
+
+
+def test_paths_bytes_and_meshes(tmp_path, tower, tower_bytes):
+    path = tmp_path / "tower.glb"
+    path.write_bytes(tower_bytes)
+    for source in (path, str(path), bytearray(tower_bytes), memoryview(tower_bytes)):
+        assert sl.bake(source, progress=False).to_bytes() == tower.to_bytes()
+    table = sl.bake(HALLS, progress=False)
+    assert table.objects == list(HALLS)
+    seen = names(table)
+    assert "chair" in seen and "wall" in seen and "table" not in seen
+    assert "table" in names(sl.bake(HALLS, see_through=["wall"], progress=False))
+    with pytest.raises(ValueError, match="no mesh named 'window'"):
+        sl.bake(HALLS, see_through=["window"])
+
+
+def test_obj_as_bytes_needs_a_name():
+    text = b"o floor\nv 0 0 0\nv 4 0 0\nv 4 0 4\nv 0 0 4\nv 0 2 0\nf 1 2 3 4\nf 1 2 5\n"
+    assert sl.bake(text, name="floor.obj", progress=False).objects == ["floor"]
+    with pytest.raises(sl.Error):
+        sl.bake(b"\x00\x01\x02\x03", progress=False)
+
+
+def test_trimesh(tower_bytes):
+    trimesh = pytest.importorskip("trimesh")
+    scene = trimesh.Scene()
+    for name, (corners, triangles) in HALLS.items():
+        # Placed by their nodes.
+        shift = np.array([7.0, 0.0, 0.0])
+        mesh = trimesh.Trimesh(corners - shift, triangles, process=False)
+        scene.add_geometry(mesh, node_name=name, geom_name=name, transform=trimesh.transformations.translation_matrix(shift))
+    table = sl.bake(scene, progress=False)
+    assert set(table.objects) == set(HALLS)
+    assert names(table) == names(sl.bake(HALLS, progress=False))
+    one = sl.bake(trimesh.creation.box((2, 2, 2)), progress=False)
+    assert one.objects == ["mesh"] and one.object_bounds.tolist() == [[[-1, -1, -1], [1, 1, 1]]]
+    assert sl.bake({"a": trimesh.creation.box((2, 2, 2))}, progress=False).objects == ["a"]
+
+
+def test_cells_may_be_chosen():
+    assert sl.bake(HALLS, cells="kd-tree", progress=False).kind == "scene, k-d tree"
+    grid = sl.bake(HALLS, cells=(3, 2, 1), progress=False)
+    assert grid.kind == "scene, given cells" and grid.n_cells == 6
+    places = sl.bake(HALLS, cells=8, progress=False)
+    assert 0 < places.n_cells <= 16
+    boxes = np.array([[[1, 1, 1], [3, 3, 2]], [[15, 1, 1], [18, 3, 2]]])
+    given = sl.bake(HALLS, cells=boxes, method="both", progress=False)
+    assert (given.cells == boxes).all() and not given.sees(0, 1)
+    assert "no portals" in given.explain(0, 1).text and given.explain(0, 1).visible is None
+    region = sl.bake(HALLS, view_region=[[1, 1, 1], [3, 3, 2]], progress=False)
+    # The other hall cannot be reached from there.
+    assert len(region.cells_at(EYE)) and not len(region.cells_at((15, 2, 2)))
+
+
+def test_the_table_does_not_depend_on_threads(tower_bytes, tower):
+    for threads in (1, 2, 4):
+        assert sl.bake(tower_bytes, threads=threads, progress=False) == tower
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"cells": "hexagons"},
+        {"cells": 0},
+        {"cells": (1, 2)},
+        {"cells": (0, 1, 1)},
+        {"cells": np.zeros((2, 3))},
+        {"cells": np.empty((0, 2, 3))},
+        {"cells": [[[1, 1, 1], [0, 0, 0]]]},
+        {"cells": [[[np.nan, 1, 1], [2, 2, 2]]]},
+        {"cells": [[[0, 0, 0], [1e300, 2, 2]]]},
+        {"method": "magic"},
+        {"view_region": [0, 1]},
+        {"view_region": [[1, 1, 1], [0, 0, 0]]},
+        {"gap": -1.0},
+        {"gap": float("nan")},
+        {"detail_below": float("inf")},
+        {"time_limit": -1.0},
+        {"threads": 0},
+        {"threads": 2000},
+        {"max_cells": 0},
+    ],
+)
+def test_wrong_options_are_refused(options):
+    with pytest.raises(ValueError):
+        sl.bake(HALLS, progress=False, **options)
+
+
+@pytest.mark.parametrize(
+    "options", [{"cells": 2.5}, {"gap": "wide"}, {"threads": "two"}, {"method": 7}, {"map": 7}, {"progress": False, "cells": (1.5, 1, 1)}]
+)
+def test_options_of_wrong_types_are_refused(options):
+    with pytest.raises(TypeError):
+        sl.bake(HALLS, **{"progress": False, **options})
+
+
+@pytest.mark.parametrize(
+    "mesh",
+    [
+        ([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 3]]),
+        ([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, -1]]),
+        ([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1]]),
+        ([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0.0, 1.0, 2.0]]),
+        ([[0, 0], [1, 0], [0, 1]], [[0, 1, 2]]),
+        ([[0, 0, 0], [1, 0, 0], [0, 1, np.nan]], [[0, 1, 2]]),
+        ([[0, 0, 0], [1, 0, 0], [0, 1, 1e300]], [[0, 1, 2]]),
+        ([[0, 0, 0]],),
+        7,
+    ],
+)
+def test_wrong_meshes_are_refused(mesh):
+    with pytest.raises(ValueError):
+        sl.bake({"mesh": mesh}, progress=False)
+
+
+def test_nothing_is_no_scene():
+    for nothing in (42, None, object()):
+        with pytest.raises(TypeError, match="not"):
+            sl.bake(nothing)
+    for empty in ({}, {"a": (np.empty((0, 3)), np.empty((0, 3), dtype=int))}):
+        try:
+            table = sl.bake(empty, progress=False)
+        except sl.Error:
+            continue
+        assert table.n_cells <= 1
+
+
+def test_missing_and_damaged_files(tmp_path, tower_bytes):
+    with pytest.raises(FileNotFoundError) as raised:
+        sl.bake(tmp_path / "absent.glb", progress=False)
+    assert raised.value.filename == str(tmp_path / "absent.glb")
+    path = tmp_path / "half.glb"
+    path.write_bytes(tower_bytes[: len(tower_bytes) // 2])
+    with pytest.raises(sl.Error, match="half.glb: "):
+        sl.bake(path, progress=False)
+    (tmp_path / "text.txt").write_text("no scene")
+    with pytest.raises(sl.Error):
+        sl.bake(tmp_path / "text.txt", progress=False)
+
+
+def test_progress_is_told_and_may_stop():
+    data = sl.scenes.tower(floors=4, rooms_x=6, rooms_y=4)
+    calls = []
+    sl.bake(data, progress=lambda *call: calls.append(call))
+    assert calls and all(isinstance(p, str) and 0 <= done <= total for p, done, total in calls)
+
+    class Enough(Exception):
+        pass
+
+    def stop(phase, done, total):
+        raise Enough
+
+    with pytest.raises(Enough):
+        sl.bake(data, progress=stop)
+
+
+def test_bars_of_tqdm(capsys):
+    pytest.importorskip("tqdm")
+    sl.bake(HALLS, progress=True)
+    # It was over before a bar was worth it.
+    assert capsys.readouterr().err == ""
+
+
+def test_a_bar_shows_what_takes_long(capsys):
+    pytest.importorskip("tqdm")
+    from sightlines._progress import Reporter
+
+    with Reporter(True) as report:
+        report("cells", 1, 10)
+        time.sleep(0.6)
+        report("cells", 5, 10)
+        report("objects", 1, 3)
+    assert "cells: " in capsys.readouterr().err
+    with Reporter(False) as report:
+        assert report is None
+
+
+def test_other_threads_run_meanwhile():
+    n, done = [0], threading.Event()
+
+    def count():
+        while not done.is_set():
+            n[0] += 1
+            time.sleep(0.001)
+
+    thread = threading.Thread(target=count)
+    thread.start()
+    start = time.monotonic()
+    sl.bake(sl.scenes.tower(floors=4, rooms_x=6, rooms_y=4), progress=False, threads=1)
+    took = time.monotonic() - start
+    done.set()
+    thread.join()
+    # A lock held throughout would have left it a handful.
+    assert n[0] > 20 * took, (n[0], took)
