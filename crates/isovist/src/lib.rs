@@ -3,10 +3,10 @@
 //! # Scope
 //!
 //! - **Owns**: views of single points in the plane: the [`WallMesh`], isovists and their measures, sight between points,
-//!   isovists of regions and paths.
+//!   isovists of regions and paths; estimates of the same in space ([`Surroundings`]).
 //! - **Out of scope**: visibility between cells (`stabtree`), graphs of points (`visibility-graph`), files, pictures.
 //! - **Invariants**: every decision is the sign of a determinant of input coordinates, computed exactly; what is rounded is
-//!   output only, each coordinate once.
+//!   output only, each coordinate once. In space rays estimate, with intervals, and a table decides what is 0.
 
 mod build;
 mod constructed;
@@ -20,6 +20,7 @@ mod mesh;
 mod points;
 mod region;
 mod sees;
+mod space;
 
 pub use isovist::{Boundary, Isovist, Viewer};
 
@@ -30,6 +31,7 @@ pub use mesh::WallMesh;
 pub use points::PointIndex;
 pub use region::{Region, cells_of_region, seen_from_any};
 pub use sees::Touch;
+pub use space::{Estimate, Surroundings};
 
 /// Why a plan has no mesh.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

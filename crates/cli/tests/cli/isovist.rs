@@ -99,3 +99,26 @@ fn faults_are_named() {
     assert_eq!(refused(&format!("isovist rooms.geojson {at} -o x.txt")), kind);
     assert_eq!(folder.names(), ["far.csv", "glass.geojson", "rooms.geojson"]);
 }
+
+#[test]
+fn buildings_have_volumes_and_shares() {
+    let folder = Folder::with_tower();
+    folder.run(&["build", "tower.glb", "-o", "tower.pvs"]).expect(0);
+    let seen = |more: &[&str], out: &str| {
+        let args = ["isovist", "tower.glb", "--at", "3,1.5,3", "--rays", "2000", "-o", out, "--json"];
+        folder.run(&[&args, more].concat()).expect(0).json()
+    };
+    let (by_table, by_rays) = (seen(&["--table", "tower.pvs"], "table.csv"), seen(&[], "rays.csv"));
+    assert_eq!(by_table["mean_volume"], by_rays["mean_volume"], "the table changes no volume");
+    assert!(by_table["mean_volume"].as_f64() > Some(0.0) && by_table["n_seen"].as_f64() > Some(0.0));
+    // What the table hides is seen by no ray, and what a ray sees is in the table: the rows are the same.
+    let (by_table, by_rays) = (text(&folder, "table.csv"), text(&folder, "rays.csv"));
+    let shares =
+        |csv: &str| -> Vec<String> { csv.lines().map(|line| line.split(',').nth(8).unwrap().to_owned()).collect() };
+    assert_eq!(shares(&by_table), shares(&by_rays));
+    assert!(shares(&by_rays).iter().any(|share| share == "0"));
+    let error = folder.refused(&["isovist", "tower.glb", "--at", "3,1.5,3", "-o", "x.svg"]);
+    assert_eq!(error, "x.svg: isovists of scenes in space are written as CSV; give a name that ends in .csv");
+    let error = folder.refused(&["isovist", "tower.glb", "--at", "3,1.5,3", "--radius", "2", "-o", "x.csv"]);
+    assert!(error.contains("--radius"), "{error}");
+}

@@ -61,12 +61,12 @@ pub enum PointsErrorKind {
     Box(String),
     /// The text is not GeoJSON.
     #[error("{}", .0.kind)]
-    GeoJson(#[source] GeoJsonError),
+    GeoJson(#[source] Box<GeoJsonError>),
 }
 
 impl From<GeoJsonError> for PointsError {
     fn from(error: GeoJsonError) -> Self {
-        Self::at(error.line, error.column, PointsErrorKind::GeoJson(error))
+        Self::at(error.line, error.column, PointsErrorKind::GeoJson(error.into()))
     }
 }
 

@@ -5,6 +5,7 @@ mod measures;
 mod oracle;
 mod regions;
 mod seen;
+mod space;
 
 use proptest::prelude::*;
 use sightlines_cells::Plan;

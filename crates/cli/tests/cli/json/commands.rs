@@ -80,7 +80,7 @@ fn plans(all: &mut Results) {
     add("info of a table", "info o.pvs");
     add("info of a plan", "info office.geojson");
     add("plan", "plan office.geojson -o copy.geojson");
-    add("isovist", "isovist office.geojson --at 3,3 -o i.geojson");
+    add("isovist of a plan", "isovist office.geojson --at 3,3 -o i.geojson");
     add("vga", "vga office.geojson --spacing 2 --measures all -o o.csv");
     add("vga", "vga office.geojson --spacing 2 --measure clustering -o o.svg");
     add("vga", "vga office.geojson --points p.csv -o p.geojson");
@@ -161,6 +161,7 @@ fn scenes(all: &mut Results) {
     let least = "--floors 1 --rooms-x 1 --rooms-y 1 --furniture 0";
     add("generate tower", &format!("generate tower -o least.glb {least}"));
     add("plan", "plan tower.glb --height 1.2 -o tower.geojson");
+    add("isovist of a scene", "isovist tower.glb --at 3,1.5,3 --rays 200 -o tower.csv");
     add("build of a scene", "build least.glb -o least.pvs --door all=-99,-99,-99,99,99,99");
     add("query of a point", "query least.pvs --eye 2,1,2");
     add("query of a view", "query least.pvs --eye 2,1,2 --closed all");

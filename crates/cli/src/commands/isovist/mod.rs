@@ -1,19 +1,22 @@
-//! `isovist`: what is seen from points of a floor plan.
+//! `isovist`: what is seen from points of a floor plan, or of a scene in space.
+
+mod space;
 
 use crate::Answer;
 use crate::error::InputError;
 use crate::file_error::{FileError, from_file_error};
-use crate::input;
+use crate::input::{self, refuse};
 use crate::output::{self, bytes, count};
 use crate::picture::{PictureError, PictureKind, save_picture};
 use crate::place::{LookupError, Point};
 use crate::plans::PlanArgs;
+use crate::surfaces::SurfaceArgs;
 use serde::Serialize;
 use sightlines::bake::Bakeable;
 use sightlines::cells::Plan;
-use sightlines::formats::Input;
 use sightlines::formats::points::read_points;
 use sightlines::formats::scene::SceneReadOptions;
+use sightlines::formats::{Input, InputKind};
 use sightlines::geometry::{Point2, Segment2};
 use sightlines::isovist::{
     Boundary, EyeError, Isovist, LimitError, Limits, Measures, MeshError, Sector, Viewer, WallMesh,
@@ -46,6 +49,12 @@ pub(crate) enum Error {
     /// An angle without a direction, or a direction without an angle.
     #[error("--dir and --fov go together: a direction, and how wide the view around it is")]
     Sector,
+    /// The isovist of a scene in space as something else than a table.
+    #[error("{}: isovists of scenes in space are written as CSV; give a name that ends in .csv", .0.display())]
+    SpaceKind(PathBuf),
+    /// A table of another scene.
+    #[error("{} is not of {}: {difference}", table.display(), scene.display())]
+    Unlike { table: PathBuf, scene: PathBuf, difference: String },
     /// A file whose name has no extension of a result.
     #[error("{}: the name of the result ends in .geojson, .json, .csv, .svg or .png", .0.display())]
     Kind(PathBuf),
@@ -56,19 +65,28 @@ from_file_error!(Error);
 /// Arguments of `isovist`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct IsovistArgs {
-    /// A plan as GeoJSON or DXF, or a map of a WAD. Of a scene in space, `plan --height` cuts one
-    #[arg(value_name = "PLAN")]
+    /// A plan as GeoJSON or DXF, or a map of a WAD; or a scene in space, of which `plan --height` cuts a plan
+    #[arg(value_name = "PLAN|SCENE")]
     plan: PathBuf,
     /// The map of the WAD; optional if there is only one
     #[arg(long, help_heading = "Input", value_name = "NAME")]
     map: Option<String>,
     #[command(flatten)]
     plans: PlanArgs,
+    #[command(flatten)]
+    surfaces: SurfaceArgs,
+    /// Scenes in space: the scene's table, so that no rays are spent on objects that it hides
+    #[arg(long, help_heading = "Input", value_name = "FILE.pvs")]
+    table: Option<PathBuf>,
+    /// Scenes in space: rays of each eye; more give narrower intervals
+    #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 20_000)]
+    #[arg(value_parser = clap::value_parser!(u32).range(100..=100_000_000))]
+    rays: u32,
     /// A point to look from; may be given several times
     #[arg(
         long,
         help_heading = "Viewer",
-        value_name = "X,Y",
+        value_name = "X,Y[,Z]",
         allow_hyphen_values = true,
         required_unless_present = "points"
     )]
@@ -89,7 +107,8 @@ pub(crate) struct IsovistArgs {
     #[arg(long, help_heading = "Picture", value_name = "PX", default_value_t = 1600)]
     #[arg(value_parser = clap::value_parser!(u32).range(i64::from(MIN_SIZE)..=i64::from(MAX_SIZE)))]
     size: u32,
-    /// What to write: polygons with their measures, measures alone, or a picture
+    /// What to write: polygons with their measures, measures alone, or a picture. Of scenes in space, CSV with the volume of the isovist
+    /// and the visible share of each object, with their intervals of 95 %
     #[arg(short, long, help_heading = "Output", value_name = "OUT.geojson|OUT.csv|OUT.svg|OUT.png")]
     output: PathBuf,
     /// Print the result as JSON
@@ -143,8 +162,13 @@ struct Eye {
 
 pub(crate) fn run(args: &IsovistArgs) -> Result<Answer, Error> {
     let kind = Kind::of(&args.output)?;
-    let inputs: Vec<&Path> = std::iter::once(&args.plan).chain(&args.points).map(PathBuf::as_path).collect();
-    output::check(&inputs, &[&args.output])?;
+    let inputs = std::iter::once(&args.plan).chain(&args.points).chain(&args.table).map(PathBuf::as_path);
+    output::check(&inputs.collect::<Vec<_>>(), &[&args.output])?;
+    if input::kind_of(&args.plan)? == Some(InputKind::Scene) {
+        return space::run(args, kind);
+    }
+    refuse(&args.plan, &[("--table", args.table.is_some())], "scenes in space", "a plan")?;
+    refuse(&args.plan, &args.surfaces.given(), "scenes in space", "a plan")?;
     let limits = limits(args)?;
     let (plan, crs) = plan(args)?;
     let mesh = WallMesh::new(&plan).map_err(|source| Error::Mesh { path: args.plan.clone(), source })?;
@@ -194,14 +218,9 @@ fn plan(args: &IsovistArgs) -> Result<(Plan, Option<String>), Error> {
     let (path, map) = (&args.plan, args.map.as_deref());
     match input::read(path, map, &SceneReadOptions::default(), &args.plans.options(path)?)? {
         Input::Plan(file) => Ok((file.plan, file.crs)),
-        Input::Scene(_) => Err(InputError::Kind {
-            path: path.clone(),
-            expected: "a plan (of a scene in space, `sightlines plan --height` cuts one)",
-        }
-        .into()),
         other => match input::bakeable(path, other, map, None)? {
             Bakeable::Plan { plan, .. } => Ok((plan, None)),
-            _ => Err(InputError::Kind { path: path.clone(), expected: "a plan nor a WAD" }.into()),
+            _ => Err(InputError::Kind { path: path.clone(), expected: "a plan nor a WAD nor a scene in space" }.into()),
         },
     }
 }

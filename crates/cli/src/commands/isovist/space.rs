@@ -1,0 +1,105 @@
+//! `isovist` of a scene in space: volumes, and how much is seen of each object.
+
+use super::{Error, IsovistArgs, Kind};
+use crate::Answer;
+use crate::input::{self, refuse};
+use crate::output::{self, bytes, count};
+use crate::same_scene::difference;
+use serde::Serialize;
+use sightlines::isovist::{Estimate, Surroundings};
+use std::fmt::{self, Write};
+
+/// What is seen from one eye.
+struct Seen {
+    eye: [f64; 3],
+    volume: Estimate,
+    shares: Vec<Estimate>,
+}
+
+pub(super) fn run(args: &IsovistArgs, kind: Kind) -> Result<Answer, Error> {
+    let path = &args.plan;
+    let given = [
+        ("--points", args.points.is_some()),
+        ("--radius", args.radius.is_some()),
+        ("--dir", args.dir.is_some()),
+        ("--fov", args.fov.is_some()),
+    ];
+    refuse(path, &given, "plans", "a scene in space")?;
+    if kind != Kind::Csv {
+        return Err(Error::SpaceKind(args.output.clone()));
+    }
+    let file = input::scene(path, &args.surfaces.options())?;
+    let table = args.table.as_ref().map(|path| input::table(path)).transpose()?;
+    if let (Some(table), Some(table_path)) = (&table, &args.table) {
+        if let Some(difference) = difference(table, &file.scene) {
+            return Err(Error::Unlike { table: table_path.clone(), scene: path.clone(), difference });
+        }
+    }
+    let around = Surroundings::new(&file.scene);
+    let mut all = Vec::new();
+    for (seed, point) in (1u64..).zip(&args.at) {
+        let eye = point.coordinates(3, path).map_err(Error::Lookup)?;
+        let eye = [eye[0], eye[1], eye[2]];
+        let volume = around.volume(eye, args.rays, seed);
+        let shares = around.visible_shares(eye, table.as_ref(), (args.rays / 16).max(64), seed);
+        all.push(Seen { eye, volume, shares });
+    }
+    let names: Vec<&str> = file.scene.objects().iter().map(|object| object.name.as_str()).collect();
+    let text = csv(&all, &names);
+    output::save(&args.output, text.as_bytes())?;
+    let n = all.len() as f64;
+    let outcome = Outcome {
+        out: args.output.display().to_string(),
+        n_bytes: text.len() as u64,
+        n_objects: names.len(),
+        n_isovists: all.len(),
+        n_rays: args.rays,
+        mean_volume: all.iter().map(|seen| seen.volume.value).sum::<f64>() / n,
+        mean_half_interval: all.iter().map(|seen| (seen.volume.high - seen.volume.low) / 2.0).sum::<f64>() / n,
+        n_seen: all.iter().map(|seen| seen.shares.iter().filter(|share| share.value > 0.0).count()).sum::<usize>()
+            as f64
+            / n,
+    };
+    output::print(args.json, &outcome)?;
+    Ok(Answer::Yes)
+}
+
+/// A row for each eye and object: what is seen of the object, and the volume of the eye.
+fn csv(all: &[Seen], names: &[&str]) -> String {
+    let mut out =
+        String::from("x,y,z,index,volume,volume_low,volume_high,object,visible_share,share_low,share_high,name\n");
+    for (index, Seen { eye: [x, y, z], volume, shares }) in all.iter().enumerate() {
+        for (object, (share, name)) in shares.iter().zip(names).enumerate() {
+            let Estimate { value: v, low: vl, high: vh } = volume;
+            let Estimate { value: s, low: sl, high: sh } = share;
+            let name = name.replace('"', "\"\"");
+            let _ = writeln!(out, "{x},{y},{z},{index},{v},{vl},{vh},{object},{s},{sl},{sh},\"{name}\"");
+        }
+    }
+    out
+}
+
+/// What was written.
+#[derive(Debug, Serialize)]
+struct Outcome {
+    out: String,
+    n_bytes: u64,
+    n_objects: usize,
+    n_isovists: usize,
+    n_rays: u32,
+    /// In cubic units of the scene.
+    mean_volume: f64,
+    /// Half of the interval in which a volume lies with a probability of 95 %.
+    mean_half_interval: f64,
+    /// Objects of which something was seen, on average.
+    n_seen: f64,
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "wrote {}, {}", self.out, bytes(self.n_bytes))?;
+        writeln!(f, "isovists       {}, each by {} rays", self.n_isovists, self.n_rays)?;
+        writeln!(f, "mean volume    {:.3} \u{b1} {:.3}", self.mean_volume, self.mean_half_interval)?;
+        writeln!(f, "objects        {:.1} of {} seen on average", self.n_seen, count(self.n_objects as u64, "object"))
+    }
+}
