@@ -3,7 +3,7 @@
 use crate::common::Folder;
 
 /// All commands, with those that have others below them.
-const COMMANDS: [&str; 22] = [
+const COMMANDS: [&str; 23] = [
     "build",
     "reject",
     "vis",
