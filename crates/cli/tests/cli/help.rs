@@ -3,13 +3,14 @@
 use crate::common::Folder;
 
 /// All commands, with those that have others below them.
-const COMMANDS: [&str; 22] = [
+const COMMANDS: [&str; 24] = [
     "build",
     "reject",
     "vis",
     "portals",
     "plan",
     "verify",
+    "isovist",
     "query",
     "walk",
     "pack",

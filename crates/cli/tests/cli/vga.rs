@@ -67,7 +67,7 @@ fn seeds_points_and_names_choose() {
     let (seeded, (header, _)) = run(&["--spacing", "0.5", "--seed", "1,1", "--measures", "control,entropy"]);
     assert_eq!(all["n_points"], seeded["n_points"]);
     assert_eq!(header[3..], ["control", "entropy"].map(str::to_owned));
-    folder.write("points.csv", "x,y\n1,1\n2,5\n11;1\n");
+    folder.write("points.csv", "x,y\n1,1\n2,5\n11,1\n");
     let (of_file, (_, rows)) = run(&["--points", "points.csv"]);
     assert_eq!((rows.len(), rows[2][0], &of_file["grid"]), (3, 11.0, &Value::Null));
     assert_eq!(rows[0][3], 1.0, "two in one room, and one far away");
@@ -120,13 +120,16 @@ fn what_cannot_be_analysed_is_refused() {
             &["rooms.geojson", "--spacing", "1", "--measure", "control", "-o", "o.csv"],
             "o.csv: --measure is for pictures",
         ),
-        (&["rooms.geojson", "--points", "bad.csv", "-o", "o.csv"], "bad.csv: line 3: \"1,none\" is not a point"),
-        (&["rooms.geojson", "--points", "none.csv", "-o", "o.csv"], "none.csv: there are no points in the file"),
-        (&["rooms.geojson", "--points", "nan.csv", "-o", "o.csv"], "nan.csv: point 0: "),
+        (&["rooms.geojson", "--points", "bad.csv", "-o", "o.csv"], "bad.csv: line 3 column 3: 'none' is not a number"),
+        (
+            &["rooms.geojson", "--points", "none.csv", "-o", "o.csv"],
+            "none.csv: line 1 column 1: there are no points in the file",
+        ),
+        (&["rooms.geojson", "--points", "nan.csv", "-o", "o.csv"], "nan.csv: line 1 column 3: "),
         (&["rooms.geojson", "--points", "lost.csv", "-o", "o.csv"], "lost.csv: "),
         (&["rooms.geojson", "--points", "bad.csv", "-o", "o.svg"], "o.svg: a picture of points needs --spacing"),
         (&["open.geojson", "--spacing", "1", "-o", "o.csv"], "open.geojson: no pixel is enclosed"),
-        (&["bad.csv", "--spacing", "1", "-o", "o.csv"], "bad.csv: neither a GeoJSON plan nor a WAD"),
+        (&["bad.csv", "--spacing", "1", "-o", "o.csv"], "bad.csv: neither a plan nor a WAD"),
     ] {
         let found = refused(args);
         assert!(found.starts_with(error), "{args:?}: {found}");

@@ -21,15 +21,9 @@ pub(crate) enum Error {
     /// Walls in which nothing can be looked for.
     #[error("{}: {source}", path.display())]
     Mesh { path: PathBuf, source: MeshError },
-    /// A line of a file of points that is none.
-    #[error("{}: line {line}: {text:?} is not a point: two numbers, such as -1.5,2", path.display())]
-    Line { path: PathBuf, line: usize, text: String },
     /// A point that cannot be used.
     #[error("{}: {source}", path.display())]
     Points { path: PathBuf, source: PointsError },
-    /// A file without points.
-    #[error("{}: there are no points in the file", .0.display())]
-    NoPoints(PathBuf),
     /// A point where nothing can be looked for.
     #[error("{}: {source}", path.display())]
     Eye { path: PathBuf, source: EyeError },

@@ -11,11 +11,14 @@ use crate::named::one_of;
 use crate::output;
 use crate::picture::PictureError;
 use crate::place::Point;
+use crate::plans::PlanArgs;
 use crate::progress::Bar;
 use error::Error;
 use outcome::{Outcome, Range};
+use sightlines::bake::Bakeable;
 use sightlines::cells::Plan;
-use sightlines::formats::Input;
+use sightlines::formats::InputKind;
+use sightlines::formats::scene::SceneReadOptions;
 use sightlines::geometry::{Aabb, Point2, Segment2};
 use sightlines::isovist::{Touch, WallMesh};
 use sightlines::report::{Field, MAX_SIZE, MIN_SIZE, PointColumn, field_png, field_svg, points_csv, points_geojson};
@@ -35,20 +38,22 @@ use std::time::Instant;
                   points."
 )]
 pub(crate) struct VgaArgs {
-    /// The plan: GeoJSON, or a WAD
+    /// The plan: GeoJSON, DXF, or a map of a WAD
     #[arg(value_name = "PLAN")]
     plan: PathBuf,
-    /// The map of a WAD with several
+    /// The map of the WAD; optional if there is only one
     #[arg(long, help_heading = "Input", value_name = "NAME")]
     map: Option<String>,
+    #[command(flatten)]
+    plans: PlanArgs,
     /// Distance of neighbouring points along an axis, in scene units; of points of a file the side of their squares in pictures
     #[arg(long, help_heading = "Points", value_name = "LENGTH", required_unless_present = "points")]
     spacing: Option<f64>,
     /// Fill the grid from this point; repeatable
     #[arg(long, help_heading = "Points", value_name = "X,Y", allow_hyphen_values = true, conflicts_with = "points")]
     seed: Vec<Point>,
-    /// Take the points of this file, `x,y` on each line, in place of a grid
-    #[arg(long, help_heading = "Points", value_name = "FILE.csv")]
+    /// Take the points of this file in place of a grid: CSV with `x,y` on each line, or GeoJSON
+    #[arg(long, help_heading = "Points", value_name = "FILE")]
     points: Option<PathBuf>,
     /// What is measured, separated by commas: local, global, metric, angular, all, or names of measures
     #[arg(
@@ -200,7 +205,7 @@ pub(crate) fn run(args: &VgaArgs, show_progress: bool) -> Result<Answer, Error> 
     if args.measure.is_some() && !kind.is_picture() {
         return Err(Error::Measure(args.output.clone()));
     }
-    let plan = plan_of(&args.plan, args.map.as_deref())?;
+    let plan = plan_of(args)?;
     let (points, grid) = match (&args.points, args.spacing) {
         (None, Some(spacing)) => {
             let (points, size) = points::of_grid(&args.plan, &plan, spacing, &seeds(args)?)?;
@@ -253,22 +258,16 @@ pub(crate) fn run(args: &VgaArgs, show_progress: bool) -> Result<Answer, Error> 
 }
 
 /// The plan of a file.
-fn plan_of(path: &Path, map: Option<&str>) -> Result<Plan, Error> {
-    const EXPECTED: &str = "a GeoJSON plan nor a WAD";
-    match input::kind_of(path)? {
-        Some(sightlines::formats::InputKind::Plan | sightlines::formats::InputKind::Wad) => {}
-        _ => return Err(InputError::Kind { path: path.to_owned(), expected: EXPECTED }.into()),
-    }
-    match input::read(path, map, &Default::default())? {
-        Input::Plan(plan) => Ok(plan),
-        Input::Wad(_) => {
-            let doom = input::doom(path, map)?;
-            let plan = doom.plan();
-            let name = map.map(str::to_owned);
-            Ok(plan.map_err(|source| InputError::Plan { path: path.to_owned(), map: name, source })?)
+fn plan_of(args: &VgaArgs) -> Result<Plan, Error> {
+    let (path, map) = (&args.plan, args.map.as_deref());
+    let options = args.plans.options(path)?;
+    if matches!(input::kind_of(path)?, Some(InputKind::Plan | InputKind::Wad)) {
+        let read = input::read(path, map, &SceneReadOptions::default(), &options)?;
+        if let Bakeable::Plan { plan, .. } = input::bakeable(path, read, map, None)? {
+            return Ok(plan);
         }
-        _ => Err(InputError::Kind { path: path.to_owned(), expected: EXPECTED }.into()),
     }
+    Err(InputError::Kind { path: path.to_owned(), expected: "a plan nor a WAD" }.into())
 }
 
 fn seeds(args: &VgaArgs) -> Result<Vec<Point2>, Error> {
