@@ -17,6 +17,7 @@ mod long;
 mod plan;
 mod scenes;
 mod table;
+mod vga;
 
 use pyo3::prelude::*;
 
@@ -33,6 +34,8 @@ fn _native(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(isovist::isovist_of, m)?)?;
     m.add_function(wrap_pyfunction!(isovist::sees, m)?)?;
     m.add_function(wrap_pyfunction!(isovist::sees_each, m)?)?;
+    m.add_function(wrap_pyfunction!(vga::vga, m)?)?;
+    m.add_function(wrap_pyfunction!(vga::vga_measures, m)?)?;
     m.add_function(wrap_pyfunction!(bake::bake_file, m)?)?;
     m.add_function(wrap_pyfunction!(bake::bake_bytes, m)?)?;
     m.add_function(wrap_pyfunction!(bake::bake_meshes, m)?)?;

@@ -12,8 +12,7 @@ PROGRAM = """
 import sys, time
 import sightlines as sl
 
-data = sl.scenes.tower(floors=40, rooms_x=12, rooms_y=8, furniture=2)
-office = sl.scenes.office(24, 24)
+scene = {scene}
 
 def told(phase, done, total):
     if done and not told.ready:
@@ -32,18 +31,22 @@ else:
     print("finished", flush=True)
 """
 
+TOWER, OFFICE = "sl.scenes.tower(floors=24, rooms_x=8, rooms_y=6, furniture=0)", "sl.scenes.office(24, 24)"
+
 CALLS = {
-    "space": "sl.bake(data, progress=told, threads=1)",
-    "isovists": "office.isovists(office.grid(0.05), progress=told, threads=1)",
-    "plan": "sl.scenes.office(128, 128).bake(progress=told, threads=1, subdivide='triangulation')",
+    "space": (TOWER, "sl.bake(scene, progress=told, threads=1)"),
+    "plan": ("sl.scenes.office(96, 96)", "scene.bake(progress=told, threads=1, subdivide='triangulation')"),
+    "isovists": (OFFICE, "scene.isovists(scene.grid(0.05), progress=told, threads=1)"),
+    "vga": (OFFICE, "scene.vga(0.25, progress=told, threads=1)"),
 }
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals are POSIX's")
 @pytest.mark.parametrize("kind", CALLS)
 def test_a_signal_stops_a_bake(kind):
+    scene, call = CALLS[kind]
     child = subprocess.Popen(
-        [sys.executable, "-c", PROGRAM.format(call=CALLS[kind])], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        [sys.executable, "-c", PROGRAM.format(scene=scene, call=call)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
     try:
         assert child.stdout.readline().strip() == "ready"

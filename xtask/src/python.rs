@@ -49,13 +49,8 @@ pub(crate) fn check(release: bool) -> Result<(), Failure> {
     let install = ["-m", "pip", "install", "--quiet", "--no-index", "--no-deps", "--force-reinstall"];
     step::run(in_package(&python).args(install).arg(&wheel))?;
     step::run(in_package(&python).args(["-m", "mypy"]))?;
-    step::run(in_package(&python).args([
-        "-m",
-        "mypy.stubtest",
-        "--mypy-config-file",
-        "pyproject.toml",
-        "sightlines._native",
-    ]))?;
+    let stubs = ["-m", "mypy.stubtest", "--mypy-config-file", "pyproject.toml", "sightlines._native"];
+    step::run(in_package(&python).args(stubs))?;
     step::run(in_package(&python).args(["-m", "pytest", "-q", "-p", "no:cacheprovider"]))?;
     let size = in_file(&wheel, fs::metadata(&wheel))?.len();
     eprintln!("{}: {:.1} MB", wheel.display(), size as f64 / 1e6);

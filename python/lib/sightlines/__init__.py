@@ -1,6 +1,6 @@
 """Exact visibility for floor plans and buildings.
 
-* :class:`Plan`: walls in the plane, from GeoJSON, numpy, shapely or geopandas.
+* :class:`Plan`: walls in the plane, from GeoJSON, DXF, numpy, shapely or geopandas: isovists, sight between points, visibility graphs.
 * :func:`bake`: the table of a scene in space, from a file, bytes or trimesh.
 * :class:`Table`: which cells and objects are seen from where, and why; :func:`load` reads one.
 * :mod:`sightlines.scenes`: generated plans and buildings to try things on.
@@ -13,6 +13,7 @@ from ._native import Error, __version__
 from ._isovist import Isovist, Isovists
 from ._plan import Plan
 from ._table import Explanation, Table, load
+from ._vga import VisibilityGraph
 from . import scenes
 
-__all__ = ["Error", "Explanation", "Isovist", "Isovists", "Plan", "Table", "__version__", "bake", "load", "scenes"]
+__all__ = ["Error", "Explanation", "Isovist", "Isovists", "Plan", "Table", "VisibilityGraph", "__version__", "bake", "load", "scenes"]

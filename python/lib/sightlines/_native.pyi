@@ -24,6 +24,8 @@ __all__ = [
     "sees",
     "sees_each",
     "tower",
+    "vga",
+    "vga_measures",
 ]
 
 __version__: str
@@ -143,6 +145,14 @@ def sees(
 def sees_each(
     plan: Plan, at: NDArray[np.float64], passes: bool, threads: int, progress: _Progress | None = None
 ) -> NDArray[np.bool_]: ...
+def vga(
+    plan: Plan,
+    spacing: float,
+    seeds: NDArray[np.float64] | None,
+    options: Mapping[str, Any],
+    progress: _Progress | None = None,
+) -> tuple[NDArray[np.float64], list[tuple[str, NDArray[np.float64]]], int]: ...
+def vga_measures() -> list[tuple[str, str, str, str]]: ...
 def bake_file(
     path: _Path, map: str | None, options: Mapping[str, Any], progress: _Progress | None = None
 ) -> tuple[Table, _Said]: ...

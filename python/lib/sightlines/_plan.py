@@ -21,6 +21,8 @@ from ._table import Table
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from ._vga import VisibilityGraph
+
 
 _Limit = tuple[Union[float, None], Union[tuple[list[float], float], None], Union[float, None]]
 
@@ -211,6 +213,52 @@ class Plan:
         at, _ = points_of(points, 2, "points")
         with Reporter(progress) as report:
             return _native.sees_each(self._inner, at, touching, threads_of(threads), report)
+
+    def vga(
+        self,
+        spacing: float,
+        *,
+        seeds: Any = None,
+        measures: Sequence[str] = ("local", "global"),
+        radius: int | None = None,
+        metric_radius: float | None = None,
+        angular_radius: float | None = None,
+        turns: str = "near_walls",
+        touching: bool = False,
+        threads: int | None = None,
+        progress: Progress = True,
+    ) -> VisibilityGraph:
+        """Visibility graph analysis: a grid of points, who sees whom (exact), and the measures of space syntax, as depthmapX defines them.
+
+        :param spacing: of the points, which lie at its multiples
+        :param seeds: points from which the grid is filled, up to the walls; by default all points that are enclosed by walls, the insides of
+            pillars among them
+        :param measures: names of measures, or of groups: ``"local"`` (connectivity, first_moment, second_moment, clustering, control,
+            controllability), ``"global"`` (node_count, mean_depth, integration_hh, integration_tekl, integration_p, entropy,
+            relativised_entropy), ``"metric"`` and ``"angular"`` (lengths and turns of paths; slower)
+        :param radius: the most steps that count in global measures
+        :param metric_radius: the longest paths that count in metric measures
+        :param angular_radius: the largest depth that counts in angular measures, in right angles
+        :param turns: where paths of metric and angular measures may turn: ``"near_walls"``, as in depthmapX, or ``"anywhere"``
+        :param touching: as for :meth:`sees`
+        :param threads: None for one for each core. The result does not depend on it
+        :raises ValueError: for a spacing that is none, plans that enclose nothing, seeds in walls or outside, and unknown measures
+        """
+        from ._vga import analyse
+
+        return analyse(
+            self,
+            spacing,
+            seeds=seeds,
+            measures=measures,
+            radius=radius,
+            metric_radius=metric_radius,
+            angular_radius=angular_radius,
+            turns=turns,
+            touching=touching,
+            threads=threads,
+            progress=progress,
+        )
 
     def grid(self, spacing: float) -> NDArray[np.float64]:
         """Points (n, 2) at multiples of the spacing, within the bounds of the walls; for fields of isovists.

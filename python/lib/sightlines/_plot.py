@@ -128,3 +128,18 @@ def plot_values(
     if ax.figure is not None:
         ax.figure.colorbar(drawn, ax=ax, label=label)
     return ax
+
+
+def plot_image(
+    image: NDArray[np.float64],
+    extent: tuple[float, float, float, float],
+    label: str,
+    ax: Axes | None,
+    cmap: str,
+    style: dict[str, Any],
+) -> Axes:
+    ax = axes(ax)
+    drawn = ax.imshow(image, extent=extent, origin="lower", **{"cmap": cmap, "interpolation": "nearest", **style})
+    if ax.figure is not None:
+        ax.figure.colorbar(drawn, ax=ax, label=label)
+    return ax
