@@ -1,6 +1,8 @@
 //! Inputs by name. [`sightlines::formats::input`] decides which format a file has; this module returns what a command can use, or an
 //! error.
 
+pub(crate) use crate::refuse::refuse;
+
 use crate::error::InputError;
 use crate::{plans, surfaces};
 use sightlines::bake::from_table::planar_graph;
@@ -158,18 +160,5 @@ fn which_map(path: &Path, error: MapChoiceError) -> InputError {
         MapChoiceError::Which { names } => InputError::WhichMap { path, names },
         MapChoiceError::NoSuchMap { name, names } => InputError::NoSuchMap { path, name, names },
         _ => InputError::NoMaps(path),
-    }
-}
-
-/// Refuses the first of the given options, which are meant for something else.
-pub(crate) fn refuse(
-    path: &Path,
-    given: &[(&'static str, bool)],
-    meant: &'static str,
-    found: &'static str,
-) -> Result<(), InputError> {
-    match given.iter().find(|(_, is_given)| *is_given) {
-        Some((option, _)) => Err(InputError::Option { path: path.to_owned(), option, meant, found }),
-        None => Ok(()),
     }
 }

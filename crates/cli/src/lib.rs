@@ -31,6 +31,7 @@ mod plain;
 mod plans;
 mod progress;
 mod reasons;
+mod refuse;
 mod region;
 mod same_scene;
 mod sight;

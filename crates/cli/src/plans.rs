@@ -1,7 +1,7 @@
 //! How floor plans are read: arguments, warnings, and what a table states of it.
 
 use crate::error::InputError;
-use crate::input::refuse;
+use crate::refuse::refuse;
 use sightlines::bake::Baked;
 use sightlines::formats::input::read_plan_file;
 use sightlines::formats::{PlanFile, PlanReadOptions, ReadError, detect_file};

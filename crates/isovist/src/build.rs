@@ -7,10 +7,10 @@
 //! exact.
 
 use crate::MeshError;
-use crate::corner::{Corner, orient_exact, orient_filter};
-use crate::mesh::{Edge, NONE, exact_of, next, previous};
+use crate::corner::{Corner, exact_of, orient_exact, orient_filter};
+use crate::delaunay::delaunay;
+use crate::edge::{Edge, NONE, around, next, previous};
 use sightlines_geometry::{Aabb, Point2, Segment2, orient2d};
-use spade::{DelaunayTriangulation, HasPosition, Triangulation};
 use std::collections::VecDeque;
 
 /// The mesh while it is made.
@@ -25,20 +25,6 @@ pub(crate) struct Builder {
     wall_of: Vec<u32>,
     /// An edge that leaves each corner.
     leaving: Vec<u32>,
-}
-
-/// A point with its index.
-#[derive(Debug, Clone, Copy)]
-struct Vertex {
-    position: spade::Point2<f64>,
-    index: u32,
-}
-
-impl HasPosition for Vertex {
-    type Scalar = f64;
-    fn position(&self) -> spade::Point2<f64> {
-        self.position
-    }
 }
 
 /// What a wall reaches next from a corner.
@@ -58,7 +44,10 @@ impl Builder {
         let order = |p: &Point2, q: &Point2| p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y));
         points.sort_by(order);
         points.dedup();
-        let mut builder = Self::delaunay(&points)?;
+        let (edges, leaving) = delaunay(&points)?;
+        let corners = points.iter().copied().map(Corner::exact).collect();
+        let wall_of = vec![NONE; edges.len()];
+        let mut builder = Self { corners, crossings: Vec::new(), crossed: Vec::new(), edges, wall_of, leaving };
         let index =
             |p: &Point2| points.binary_search_by(|q| order(q, p)).expect("every end is among the points") as u32;
         for (wall, (s, _)) in walls.iter().enumerate() {
@@ -69,34 +58,6 @@ impl Builder {
             edge.wall = if wall == NONE { NONE } else { walls[wall as usize].1 };
         }
         Ok(builder)
-    }
-
-    fn delaunay(points: &[Point2]) -> Result<Self, MeshError> {
-        let refused = |x: f64| spade::validate_coordinate(x).is_err();
-        if let Some(p) = points.iter().find(|p| refused(p.x) || refused(p.y)) {
-            return Err(MeshError::Vertex { x: p.x, y: p.y });
-        }
-        let with_index = |(index, p): (u32, &Point2)| Vertex { position: spade::Point2::new(p.x, p.y), index };
-        let all: Vec<Vertex> = (0u32..).zip(points).map(with_index).collect();
-        let first = points.first().copied().unwrap_or_default();
-        let delaunay = DelaunayTriangulation::<Vertex>::bulk_load(all);
-        let delaunay = delaunay.map_err(|_| MeshError::Vertex { x: first.x, y: first.y })?;
-        let mut slot = vec![NONE; delaunay.num_directed_edges()];
-        for (triangle, face) in (0u32..).zip(delaunay.inner_faces()) {
-            for (k, edge) in (0u32..).zip(face.adjacent_edges()) {
-                slot[edge.fix().index()] = 3 * triangle + k;
-            }
-        }
-        let mut edges = Vec::with_capacity(3 * delaunay.num_inner_faces());
-        let mut leaving = vec![NONE; points.len()];
-        for edge in delaunay.inner_faces().flat_map(|face| face.adjacent_edges()) {
-            let from = edge.from().data().index;
-            leaving[from as usize] = edges.len() as u32;
-            edges.push(Edge { from, twin: slot[edge.rev().fix().index()], wall: NONE });
-        }
-        let corners = points.iter().copied().map(Corner::exact).collect();
-        let wall_of = vec![NONE; edges.len()];
-        Ok(Self { corners, crossings: Vec::new(), crossed: Vec::new(), edges, wall_of, leaving })
     }
 
     /// Puts a wall between two corners into the mesh.
@@ -382,28 +343,6 @@ impl Builder {
         let edges = edges.collect();
         (self.corners, self.crossings, edges)
     }
-}
-
-/// The edges that leave a corner, one for each triangle around it, given one of them.
-pub(crate) fn around(edges: &[Edge], first: u32) -> impl Iterator<Item = u32> + '_ {
-    // Counter-clockwise until the first again or the frame, then clockwise from the first.
-    let forward = |e: u32| edges[previous(e) as usize].twin;
-    let backward = |e: u32| match edges[e as usize].twin {
-        NONE => NONE,
-        twin => next(twin),
-    };
-    let mut state = Some((first, true));
-    std::iter::from_fn(move || {
-        let (current, ccw) = state?;
-        let step = if ccw { forward(current) } else { backward(current) };
-        state = match (step, ccw) {
-            (NONE, true) => Some(backward(first)).filter(|&e| e != NONE).map(|e| (e, false)),
-            (NONE, false) => None,
-            (e, true) if e == first => None,
-            (e, ccw) => Some((e, ccw)),
-        };
-        Some(current)
-    })
 }
 
 /// Whether `s` is clearly inside the circle through p, q and r, which run counter-clockwise.

@@ -100,3 +100,12 @@ pub(crate) fn orient_filter(a: Corner, b: Corner, c: Corner) -> Option<f64> {
     let moved = 2.0 * (s * (v.x.abs() + v.y.abs()) + t * (u.x.abs() + u.y.abs()) + 2.0 * s * t);
     (det.abs() > BOUND * (left.abs() + right.abs()) + moved).then_some(det)
 }
+
+/// A corner in exact form; crossings are the last corners.
+pub(crate) fn exact_of(corners: &[Corner], crossings: &[[Segment2; 2]], corner: u32) -> Exact {
+    let first = corners.len() - crossings.len();
+    match (corner as usize).checked_sub(first) {
+        Some(crossing) => Exact::Crossing(crossings[crossing][0], crossings[crossing][1]),
+        None => Exact::Point(corners[corner as usize].at),
+    }
+}

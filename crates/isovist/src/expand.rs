@@ -6,8 +6,8 @@
 //! corners, exactly.
 
 use crate::WallMesh;
+use crate::edge::{NONE, next, previous};
 use crate::locate::Place;
-use crate::mesh::{NONE, next, previous};
 use sightlines_geometry::Point2;
 
 /// A part of what is seen through an edge: from the ray through `right`, counter-clockwise, to the ray through `left`.

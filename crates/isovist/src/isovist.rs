@@ -1,8 +1,8 @@
 //! The visibility polygon of a point.
 
 use crate::constructed::{Target, meet};
+use crate::edge::{NONE, next};
 use crate::expand::{Rays, Visitor, Window};
-use crate::mesh::{NONE, next};
 use crate::{EyeError, WallMesh};
 use sightlines_cells::LineId;
 use sightlines_geometry::{Point2, Segment2};

@@ -11,10 +11,13 @@
 mod build;
 mod constructed;
 mod corner;
+mod delaunay;
+mod edge;
 mod expand;
 mod isovist;
 mod limit;
 mod locate;
+mod locator;
 mod measures;
 mod mesh;
 mod points;

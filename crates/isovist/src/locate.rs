@@ -1,18 +1,8 @@
 //! In which triangle a point lies.
 
 use crate::WallMesh;
-use crate::corner::Corner;
-use crate::mesh::{Edge, NONE, next, previous};
-use sightlines_geometry::{Aabb, Point2};
-
-/// Triangles to start from, on a grid.
-#[derive(Debug, Clone)]
-pub(crate) struct Locator {
-    min: Point2,
-    scale: Point2,
-    n: usize,
-    start: Vec<u32>,
-}
+use crate::edge::{NONE, around, next, previous};
+use sightlines_geometry::Point2;
 
 /// Where a point lies in the mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,35 +40,6 @@ pub enum EyeError {
     },
 }
 
-impl Locator {
-    /// About as many cells as triangles.
-    pub(crate) fn new(corners: &[Corner], edges: &[Edge], frame: &Aabb<2>) -> Self {
-        let n = ((edges.len() as f64 / 3.0).sqrt() as usize).clamp(1, 2048);
-        let size = Point2::from(frame.max) - Point2::from(frame.min);
-        let mut locator = Self { min: Point2::from(frame.min), scale: n as f64 / size, n, start: vec![NONE; n * n] };
-        for triangle in 0..edges.len() as u32 / 3 {
-            let at = |k: u32| corners[edges[(3 * triangle + k) as usize].from as usize].at;
-            let cell = locator.cell((at(0) + at(1) + at(2)) / 3.0);
-            locator.start[cell] = triangle;
-        }
-        // A cell without a triangle starts where the one before it does.
-        let mut last = locator.start.iter().copied().find(|&t| t != NONE).unwrap_or(0);
-        for start in &mut locator.start {
-            if *start == NONE {
-                *start = last;
-            }
-            last = *start;
-        }
-        locator
-    }
-
-    fn cell(&self, p: Point2) -> usize {
-        let place = |x: f64| (x as usize).min(self.n - 1);
-        let at = (p - self.min) * self.scale;
-        place(at.y) * self.n + place(at.x)
-    }
-}
-
 impl WallMesh {
     /// Checks a point and finds where it lies.
     ///
@@ -93,7 +54,7 @@ impl WallMesh {
         if !inside(0, p.x) || !inside(1, p.y) {
             return Err(EyeError::Outside { x: p.x, y: p.y });
         }
-        let mut triangle = self.locator.start[self.locator.cell(p)];
+        let mut triangle = self.locator.start(p);
         let mut steps = 0u32;
         loop {
             let mut away = NONE;
@@ -138,6 +99,6 @@ impl WallMesh {
 
     /// The edges that leave the corner where an edge starts, one for each triangle around it.
     pub(crate) fn leaving(&self, edge: u32) -> impl Iterator<Item = u32> + '_ {
-        crate::build::around(&self.edges, edge)
+        around(&self.edges, edge)
     }
 }

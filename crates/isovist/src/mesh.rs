@@ -3,37 +3,11 @@
 use crate::MeshError;
 use crate::build::Builder;
 use crate::constructed::low_part;
-use crate::corner::{Corner, Exact, orient_exact, orient_filter};
-use crate::locate::Locator;
+use crate::corner::{Corner, Exact, exact_of, orient_exact, orient_filter};
+use crate::edge::{Edge, NONE, next};
+use crate::locator::Locator;
 use sightlines_cells::{LineId, Plan};
 use sightlines_geometry::{Aabb, Point2, Segment2, orient2d};
-
-/// No triangle, no wall.
-pub(crate) const NONE: u32 = u32::MAX;
-
-/// One edge of a triangle, running counter-clockwise: the triangle is on its left. Edges `3 t` to `3 t + 2` are those of
-/// triangle `t`.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Edge {
-    /// The corner where it starts.
-    pub(crate) from: u32,
-    /// The edge of the neighbouring triangle that runs the other way; [`NONE`] on the frame.
-    pub(crate) twin: u32,
-    /// The line of the plan that it is a piece of; [`NONE`] if sight passes.
-    pub(crate) wall: u32,
-}
-
-/// The next edge of the same triangle.
-#[inline(always)]
-pub(crate) fn next(edge: u32) -> u32 {
-    if edge % 3 == 2 { edge - 2 } else { edge + 1 }
-}
-
-/// The edge before it in the same triangle.
-#[inline(always)]
-pub(crate) fn previous(edge: u32) -> u32 {
-    if edge.is_multiple_of(3) { edge + 2 } else { edge - 1 }
-}
 
 /// A floor plan, prepared for questions about points: triangles that fill a frame around the plan, with every wall along
 /// their edges.
@@ -180,14 +154,5 @@ impl WallMesh {
         // The corner is where two lines cross, so it is the only point on both.
         let [l, m] = self.crossings[corner as usize - (self.corners.len() - self.crossings.len())];
         orient2d(l.a, l.b, p) == 0.0 && orient2d(m.a, m.b, p) == 0.0
-    }
-}
-
-/// A corner in exact form; crossings are the last corners.
-pub(crate) fn exact_of(corners: &[Corner], crossings: &[[Segment2; 2]], corner: u32) -> Exact {
-    let first = corners.len() - crossings.len();
-    match (corner as usize).checked_sub(first) {
-        Some(crossing) => Exact::Crossing(crossings[crossing][0], crossings[crossing][1]),
-        None => Exact::Point(corners[corner as usize].at),
     }
 }

@@ -1,8 +1,8 @@
 //! Which of many points an eye sees.
 
+use crate::edge::NONE;
 use crate::expand::{Rays, Visitor, Window};
 use crate::locate::Place;
-use crate::mesh::NONE;
 use crate::{EyeError, Touch, WallMesh};
 use sightlines_geometry::{Point2, orient2d};
 

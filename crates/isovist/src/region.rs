@@ -1,8 +1,8 @@
 //! What is seen from regions and paths: from any of their points, or from all of them.
 
+use crate::edge::{NONE, next, previous};
 use crate::expand::{Rays, Visitor, Window};
 use crate::locate::Place;
-use crate::mesh::{NONE, next, previous};
 use crate::{EyeError, Touch, WallMesh};
 use sightlines_geometry::{Point2, Segment2, orient2d, polygon_contains};
 use sightlines_pvs::{CellId, CellRecord, Table, bits};

@@ -1,7 +1,7 @@
 //! Whether two points see each other.
 
+use crate::edge::{NONE, next, previous};
 use crate::locate::Place;
-use crate::mesh::{NONE, next, previous};
 use crate::{EyeError, WallMesh};
 use sightlines_geometry::{Point2, along};
 

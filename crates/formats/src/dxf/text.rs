@@ -1,6 +1,6 @@
 //! Names in a drawing.
 
-/// A text of a drawing: UTF-8, or Latin-1 where it is not; `\U+XXXX` is the character with that number.
+/// A text of a drawing: UTF-8, or Latin-1 where it is not; `\U+hhhh` is the character with that number.
 pub(super) fn decode(bytes: &[u8]) -> String {
     let text = match std::str::from_utf8(bytes) {
         Ok(text) => text.to_owned(),
