@@ -1,6 +1,5 @@
 //! Grids over a plan: where pixels lie, and which walls touch them.
 
-use crate::fill;
 use crate::points::Points;
 use sightlines_cells::Plan;
 use sightlines_geometry::{Aabb, CoordinateError, Point2, Segment2, check_coordinate};
@@ -155,48 +154,8 @@ impl Grid {
         Some(Pixel { column: place(p.x, self.origin.x, self.n_columns)?, row: place(p.y, self.origin.y, self.n_rows)? })
     }
 
-    /// The points that are reached from seeds, by steps to any of the eight neighbours of a pixel along which no wall lies: the segment
-    /// between the two centres and no wall have a point in common. Up the columns, from left to right.
-    ///
-    /// # Errors
-    /// [`GridError::SeedOutside`], [`GridError::SeedBlocked`].
-    ///
-    /// # Cost
-    /// O(pixels reached · walls that touch a pixel).
-    ///
-    /// # Source
-    /// The steps and the test of seeds are those of depthmapX, `PointMap::makePoints` and `expand` in salalib/pointdata.cpp; decisions
-    /// are exact here, and within 1e-10 of a spacing there. A wall that touches the way from the seed to its centre blocks it here.
-    pub fn fill(&self, seeds: &[Point2]) -> Result<Points, GridError> {
-        let pixel = |&seed: &Point2| {
-            let Point2 { x, y } = seed;
-            let pixel = self.pixel_at(seed).ok_or(GridError::SeedOutside { x, y })?;
-            let centre = self.centre(pixel);
-            let way = Segment2::new(seed, centre);
-            if self.walls_of(pixel).any(|wall| wall.meets(&way)) {
-                return Err(GridError::SeedBlocked { x, y, to_x: centre.x, to_y: centre.y });
-            }
-            Ok(pixel)
-        };
-        let seeds: Vec<Pixel> = seeds.iter().map(pixel).collect::<Result<_, _>>()?;
-        Ok(self.points(&fill::from_seeds(self, &seeds)))
-    }
-
-    /// The points that are enclosed: those that steps as in [`fill`](Self::fill) do not reach from outside the grid and whose centre lies
-    /// on no wall. The insides of pillars and of thick walls are enclosed, too; name a seed where they are not wanted.
-    ///
-    /// # Errors
-    /// [`GridError::NothingEnclosed`]
-    ///
-    /// # Cost
-    /// That of [`fill`](Self::fill) for all pixels.
-    pub fn enclosed(&self) -> Result<Points, GridError> {
-        let filled = fill::enclosed(self);
-        if filled.contains(&true) { Ok(self.points(&filled)) } else { Err(GridError::NothingEnclosed) }
-    }
-
     /// The points of some pixels.
-    fn points(&self, filled: &[bool]) -> Points {
+    pub(crate) fn points(&self, filled: &[bool]) -> Points {
         let pixels: Vec<Pixel> = (0..filled.len()).filter(|&k| filled[k]).map(|k| self.pixel(k)).collect();
         let places = pixels.iter().map(|p| [f64::from(p.column), f64::from(p.row)]).collect();
         let touched: Vec<bool> = (0..filled.len()).map(|k| self.is_touched(self.pixel(k))).collect();
