@@ -95,13 +95,13 @@ pub(crate) struct IsovistArgs {
     #[arg(long, help_heading = "Viewer", value_name = "FILE")]
     points: Option<PathBuf>,
     /// How far is seen, in units of the plan [default: as far as walls let]
-    #[arg(long, help_heading = "Viewer", value_name = "R")]
+    #[arg(long, help_heading = "Viewer", value_name = "R", allow_negative_numbers = true)]
     radius: Option<f64>,
     /// The direction of view; needs --fov [default: all directions]
     #[arg(long, help_heading = "Viewer", value_name = "DX,DY", allow_hyphen_values = true)]
     dir: Option<Point>,
     /// The angle of view around --dir, in degrees
-    #[arg(long, help_heading = "Viewer", value_name = "DEGREES")]
+    #[arg(long, help_heading = "Viewer", value_name = "DEGREES", allow_negative_numbers = true)]
     fov: Option<f64>,
     /// Pictures: longer side of the plan in pixels
     #[arg(long, help_heading = "Picture", value_name = "PX", default_value_t = 1600)]
