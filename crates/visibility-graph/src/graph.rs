@@ -151,10 +151,10 @@ impl VisibilityGraph {
             }
         }
         let mut depth = 0;
-        for point in 0..n {
-            depth += goes_on[point];
+        for (point, change) in (0u32..).zip(&goes_on[..n]) {
+            depth += change;
             if depth > 0 {
-                join(point as u32, point as u32 + 1);
+                join(point, point + 1);
             }
         }
         (0..n as u32).map(|p| root(&mut parent, p)).collect()

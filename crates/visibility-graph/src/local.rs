@@ -143,8 +143,9 @@ impl<'a> Sight<'a> {
 
 /// What is in one of two lists of runs and not in the other: -1 for the old one, 1 for the new one. Ascending.
 fn differences(old: &[Run], new: &[Run], mut each: impl FnMut(Run, i32)) {
-    let ends =
-        |runs: &[Run], k: usize| runs.get(k / 2).map_or(u32::MAX, |run| if k % 2 == 0 { run.start } else { run.end });
+    let ends = |runs: &[Run], k: usize| {
+        runs.get(k / 2).map_or(u32::MAX, |run| if k.is_multiple_of(2) { run.start } else { run.end })
+    };
     // How many ends of each are passed: inside a run after an odd number.
     let (mut a, mut b) = (0, 0);
     let mut from = 0;
