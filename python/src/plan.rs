@@ -9,7 +9,7 @@ use numpy::{PyArray3, PyReadonlyArray2};
 use pyo3::prelude::*;
 use sightlines_bake::{BakeError, Bakeable, PlanBakeOptions, Subdivide, bake_plan};
 use sightlines_cells::PlanLine;
-use sightlines_formats::plan::read_plan_file;
+use sightlines_formats::input::read_plan_file;
 use sightlines_formats::{PlanReadOptions, Source, detect_file, geojson};
 use sightlines_geometry::Point2;
 use sightlines_isovist::{MeshError, WallMesh};
