@@ -26,7 +26,7 @@ pub(crate) struct PlanArgs {
 impl PlanArgs {
     /// These arguments as options of readers. Refuses them for anything but DXF.
     pub(crate) fn options(&self, path: &Path) -> Result<PlanReadOptions, InputError> {
-        if !detect_file(path)?.is_some_and(|format| format.name == "dxf") {
+        if detect_file(path)?.is_none_or(|format| format.name != "dxf") {
             let given = [("--layers", !self.layers.is_empty()), ("--curve-deviation", self.curve_deviation.is_some())];
             refuse(path, &given, "DXF", "none")?;
         }

@@ -33,6 +33,25 @@ pub struct Measures {
     pub skewness: f64,
 }
 
+impl Measures {
+    /// The measures with their names, in the order of the fields.
+    pub const fn named(&self) -> [(&'static str, f64); 11] {
+        [
+            ("area", self.area),
+            ("perimeter", self.perimeter),
+            ("occlusivity", self.occlusivity),
+            ("compactness", self.compactness),
+            ("drift", self.drift),
+            ("drift_angle", self.drift_angle),
+            ("minimal_radial", self.minimal_radial),
+            ("maximal_radial", self.maximal_radial),
+            ("mean_radial", self.mean_radial),
+            ("variance", self.variance),
+            ("skewness", self.skewness),
+        ]
+    }
+}
+
 impl Isovist {
     /// All measures. O(vertices).
     ///

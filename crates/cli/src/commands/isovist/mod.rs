@@ -138,21 +138,6 @@ impl Kind {
     }
 }
 
-/// The measures by their names in files.
-const MEASURES: [(&str, fn(&Measures) -> f64); 11] = [
-    ("area", |m| m.area),
-    ("perimeter", |m| m.perimeter),
-    ("occlusivity", |m| m.occlusivity),
-    ("compactness", |m| m.compactness),
-    ("drift", |m| m.drift),
-    ("drift_angle", |m| m.drift_angle),
-    ("minimal_radial", |m| m.minimal_radial),
-    ("maximal_radial", |m| m.maximal_radial),
-    ("mean_radial", |m| m.mean_radial),
-    ("variance", |m| m.variance),
-    ("skewness", |m| m.skewness),
-];
-
 /// A point to look from, and how errors name it.
 struct Eye {
     at: Point2,
@@ -173,7 +158,7 @@ pub(crate) fn run(args: &IsovistArgs) -> Result<Answer, Error> {
     let (plan, crs) = plan(args)?;
     let mesh = WallMesh::new(&plan).map_err(|source| Error::Mesh { path: args.plan.clone(), source })?;
     let areas = areas(&mesh, &eyes(args)?, &limits)?;
-    let names = MEASURES.map(|(name, _)| name);
+    let names = Measures::default().named().map(|(name, _)| name);
     let n_bytes = match kind {
         Kind::GeoJson => save(&args.output, &areas_geojson(&areas, &names, crs.as_deref()))?,
         Kind::Csv => save(&args.output, &areas_csv(&areas, &names))?,
@@ -287,7 +272,7 @@ fn areas(mesh: &WallMesh, eyes: &[Eye], limits: &Limits) -> Result<Vec<Area>, Er
             eye: isovist.eye(),
             outline: isovist.vertices().to_vec(),
             edges: isovist.boundaries().iter().map(edge).collect(),
-            values: MEASURES.iter().map(|(_, value)| value(&measures)).collect(),
+            values: measures.named().map(|(_, value)| value).to_vec(),
         })
     };
     eyes.iter().map(&mut area).collect()

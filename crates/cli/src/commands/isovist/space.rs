@@ -30,10 +30,10 @@ pub(super) fn run(args: &IsovistArgs, kind: Kind) -> Result<Answer, Error> {
     }
     let file = input::scene(path, &args.surfaces.options())?;
     let table = args.table.as_ref().map(|path| input::table(path)).transpose()?;
-    if let (Some(table), Some(table_path)) = (&table, &args.table) {
-        if let Some(difference) = difference(table, &file.scene) {
-            return Err(Error::Unlike { table: table_path.clone(), scene: path.clone(), difference });
-        }
+    if let (Some(table), Some(table_path)) = (&table, &args.table)
+        && let Some(difference) = difference(table, &file.scene)
+    {
+        return Err(Error::Unlike { table: table_path.clone(), scene: path.clone(), difference });
     }
     let around = Surroundings::new(&file.scene);
     let mut all = Vec::new();
