@@ -70,6 +70,6 @@ fn isovists_of_pages_have_the_areas_of_the_crate() {
 
 #[test]
 fn isovists_of_pages_of_real_plans_have_the_areas_of_the_crate() {
-    let Some(data) = data_folder() else { return };
+    let Some(data) = data_folder("SIGHTLINES_DATA") else { return };
     check(&read_plan(data.join("plans/mlstruct_fp_test_0.geojson")).expect("a plan"));
 }
