@@ -204,12 +204,7 @@ fn isovists(
 
 /// A mesh whose frame has these points in it.
 fn wider(plan: &sightlines_cells::Plan, points: impl Iterator<Item = Point2> + Clone) -> Result<WallMesh, Failed> {
-    let walls = plan.lines().iter().filter(|line| line.opaque).flat_map(|line| [line.a, line.b]);
-    let bounds = Aabb::around(walls.chain(points).map(|p| [p.x, p.y]));
-    let size = (bounds.max[0] - bounds.min[0]).max(bounds.max[1] - bounds.min[1]).max(1.0);
-    let margin = |x: f64| 0.25 * size + 4.0 * f64::EPSILON * x.abs();
-    let frame = Aabb { min: bounds.min.map(|x| x - margin(x)), max: bounds.max.map(|x| x + margin(x)) };
-    WallMesh::with_frame(plan, frame).map_err(Failed::Mesh)
+    WallMesh::around(plan, points).map_err(Failed::Mesh)
 }
 
 fn is_inside(mesh: &WallMesh, mut points: impl Iterator<Item = Point2>) -> bool {

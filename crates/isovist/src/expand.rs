@@ -9,6 +9,7 @@ use crate::WallMesh;
 use crate::edge::{NONE, next, previous};
 use crate::locate::Place;
 use sightlines_geometry::Point2;
+use std::collections::HashSet;
 
 /// A part of what is seen through an edge: from the ray through `right`, counter-clockwise, to the ray through `left`.
 #[derive(Debug, Clone, Copy)]
@@ -93,8 +94,13 @@ impl WallMesh {
 
     #[inline(always)]
     fn follow<const CLOSED: bool>(&self, eye: Point2, stack: &mut Vec<Window>, visitor: &mut impl Visitor) {
+        // Single rays by edge and corner: several ways lead along one line of walls, and each edge is crossed once.
+        let mut followed: HashSet<(u32, u32)> = HashSet::new();
         // Each window is about to leave a triangle through its edge.
         while let Some(Window { edge, right, left }) = stack.pop() {
+            if CLOSED && self.orient(eye, right, left) == 0.0 && !followed.insert((edge, right)) {
+                continue;
+            }
             let crossed = self.edges[edge as usize];
             if crossed.wall != NONE || crossed.twin == NONE {
                 visitor.end(Window { edge, right, left });

@@ -11,7 +11,7 @@ pub struct Limits {
     /// Nothing outside of this sector is seen.
     pub sector: Option<Sector>,
     /// How far the straight pieces that stand for a circle may be inside of it, in units of the plan; a thousandth of the
-    /// radius if it is `None`.
+    /// radius if it is `None`, and a billionth of it at least.
     pub deviation: Option<f64>,
 }
 
@@ -63,7 +63,7 @@ impl Limits {
             if !(positive(angle) && angle < 360.0) {
                 return Err(LimitError::Angle(angle));
             }
-            if !direction.is_finite() || direction.try_normalize().is_none() {
+            if !direction.is_finite() || direction == Point2::ZERO {
                 return Err(LimitError::Direction(direction));
             }
         }
@@ -82,7 +82,9 @@ impl Isovist {
     pub fn limited(&self, limits: &Limits) -> Result<Self, LimitError> {
         limits.check()?;
         let relative = self.edges().map(|(from, to, kind)| Part { from: from - self.eye, to: to - self.eye, kind });
-        let mut parts: Vec<Part> = relative.filter(|part| part.from.perp_dot(part.to) > 0.0).collect();
+        // What is along a ray joins the parts and comes back in the end.
+        let mut parts: Vec<Part> =
+            relative.filter(|part| part.kind != Boundary::Occluding && part.from.perp_dot(part.to) > 0.0).collect();
         let mut limited = Self { eye: self.eye, angle: self.angle, ..Self::default() };
         if let Some(sector) = limits.sector {
             limited.angle = sector.angle.to_radians();
@@ -90,7 +92,8 @@ impl Isovist {
             parts = in_sector(&parts, right, left, sector.angle);
         }
         if let Some(radius) = limits.radius {
-            let deviation = limits.deviation.unwrap_or(radius * 1e-3);
+            // Finer pieces than this are rounding.
+            let deviation = limits.deviation.unwrap_or(radius * 1e-3).max(radius * 1e-9);
             parts = parts.into_iter().flat_map(|part| in_circle(part, radius, deviation)).collect();
         }
         limited.join(&parts, limits.sector.is_some());
@@ -111,6 +114,8 @@ impl Isovist {
             let next = parts.get(i + 1).or(parts.first().filter(|_| !is_sector));
             match next {
                 Some(next) if next.from == part.to => {}
+                // Both ends are on the circle and on one ray.
+                Some(next) if next.kind == Boundary::Limit && part.kind == Boundary::Limit => {}
                 Some(_) => add(self, part.to, Boundary::Occluding),
                 None => add(self, part.to, Boundary::Limit),
             }
@@ -123,7 +128,8 @@ impl Sector {
     fn sides(&self) -> (Point2, Point2) {
         let half = 0.5 * self.angle.to_radians();
         let (sin, cos) = (libm::sin(half), libm::cos(half));
-        let d = self.direction.normalize();
+        // Large and small directions keep their squares within range.
+        let d = (self.direction / self.direction.abs().max_element()).normalize();
         (
             Point2::new(d.x * cos + d.y * sin, d.y * cos - d.x * sin),
             Point2::new(d.x * cos - d.y * sin, d.y * cos + d.x * sin),
@@ -134,42 +140,59 @@ impl Sector {
 /// Where a ray in direction `d` from the eye meets the line of a part.
 fn at(part: &Part, d: Point2) -> Point2 {
     let step = part.to - part.from;
-    d * (part.from.perp_dot(step) / d.perp_dot(step))
+    let far = part.from.perp_dot(step) / d.perp_dot(step);
+    // A part that a side has left no length has no direction.
+    if far.is_finite() { d * far } else { part.from }
 }
 
 /// The parts inside a sector, from its right side to its left one.
+///
+/// Each part begins where the one before it ends, so the order of their beginnings alone tells which part holds a side: no side falls between two.
 fn in_sector(parts: &[Part], right: Point2, left: Point2, angle: f64) -> Vec<Part> {
-    // Whether a direction within the half circle from `from` to `to` lies strictly inside a part.
-    let holds = |part: &Part, d: Point2| part.from.perp_dot(d) >= 0.0 && d.perp_dot(part.to) > 0.0;
-    let Some(first) = parts.iter().position(|part| holds(part, right)) else { return Vec::new() };
+    let n = parts.len();
+    let starts: Vec<f64> = parts.iter().map(|part| turn_from(right, part.from)).collect();
+    // The part that holds the right side: the last one before the turn begins anew.
+    let Some(first) = (0..n).max_by(|&i, &j| starts[i].total_cmp(&starts[j]).then(i.cmp(&j))) else {
+        return Vec::new();
+    };
+    let end = match turn_from(right, left) {
+        // Rounding may move the left side of a narrow or a wide sector past the right one.
+        turn if angle < 90.0 && turn > 2.0 => 0.0,
+        turn if angle > 270.0 && turn < 2.0 => 4.0,
+        turn => turn,
+    };
     let mut inside = Vec::new();
-    for (i, part) in parts[first..].iter().chain(&parts[..=first]).enumerate() {
-        let mut part = *part;
-        let (starts, again) = (i == 0, i == parts.len());
-        if starts {
+    for j in 0..n {
+        let (mut part, next) = (parts[(first + j) % n], starts[(first + j + 1) % n]);
+        if j == 0 {
             part.from = at(&part, right);
         }
-        // The first part holds both sides of a narrow sector; of a wide one, the left side comes when it is met again.
-        let ends = holds(&part, left) && (!starts || right.perp_dot(left) > 0.0 && angle < 180.0);
-        if ends {
-            let end = at(&part, left);
-            if end != part.from {
-                inside.push(Part { to: end, ..part });
-            }
-            break;
-        }
-        if again {
-            break;
+        if next >= end {
+            part.to = at(&part, left);
+            inside.push(part);
+            return inside;
         }
         inside.push(part);
     }
+    // What is left of the first part, on the other side of the sector.
+    inside.push(Part { to: at(&parts[first], left), ..parts[first] });
     inside
+}
+
+/// How far a direction is turned counter-clockwise from another one, from 0 to 4: monotonic in the angle, without functions of angles.
+fn turn_from(from: Point2, d: Point2) -> f64 {
+    let (x, y) = (from.dot(d), from.perp_dot(d));
+    let part = x / (x.abs() + y.abs());
+    if y >= 0.0 { 1.0 - part } else { 3.0 + part }
 }
 
 /// A part within a circle around the eye: what is outside becomes pieces of the circle.
 fn in_circle(part: Part, radius: f64, deviation: f64) -> Vec<Part> {
     let step = part.to - part.from;
     let length = step.length();
+    if length == 0.0 || !length.is_finite() {
+        return Vec::new();
+    }
     let direction = step / length;
     let (s, e) = (part.from.dot(direction), part.to.dot(direction));
     let foot = part.from - direction * s;

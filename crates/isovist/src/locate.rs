@@ -44,7 +44,7 @@ impl WallMesh {
     /// Checks a point and finds where it lies.
     ///
     /// A walk towards the point from a triangle near it, O(1) on average: a triangle is left through an edge that has the point on
-    /// its other side. Of two such edges, a count of steps picks one, so that no walk goes round for ever.
+    /// its other side. A walk that takes too many steps ends in a search of all triangles.
     pub(crate) fn locate(&self, p: Point2) -> Result<(Point2, Place), EyeError> {
         let check = |x: f64| sightlines_geometry::check_coordinate(x);
         let wrong = |kind| EyeError::Coordinate { x: p.x, y: p.y, kind };
@@ -55,6 +55,8 @@ impl WallMesh {
             return Err(EyeError::Outside { x: p.x, y: p.y });
         }
         let mut triangle = self.locator.start(p);
+        // Far more steps than walks take, and fewer than all triangles of a large mesh.
+        let most_steps = 1000 + self.n_triangles() as u32 / 16;
         let mut steps = 0u32;
         loop {
             let mut away = NONE;
@@ -76,11 +78,11 @@ impl WallMesh {
             if away != NONE {
                 let twin = self.edges[away as usize].twin;
                 debug_assert_ne!(twin, NONE, "a point inside the frame lies in a triangle");
-                if twin == NONE || steps > 1_000_000 {
+                if twin == NONE {
                     return Err(EyeError::Outside { x: p.x, y: p.y });
                 }
-                triangle = twin / 3;
                 steps += 1;
+                triangle = if steps == most_steps { self.scan(p).unwrap_or(twin / 3) } else { twin / 3 };
                 continue;
             }
             let place = match n_on {
@@ -95,6 +97,18 @@ impl WallMesh {
             };
             return Ok((p, place));
         }
+    }
+
+    /// The first triangle that a point is in, or on the border of.
+    #[cold]
+    fn scan(&self, p: Point2) -> Option<u32> {
+        let holds = |&triangle: &u32| {
+            (3 * triangle..3 * triangle + 3).all(|edge| {
+                let (u, v) = self.ends(edge);
+                self.orient(p, u, v) >= 0.0
+            })
+        };
+        (0..self.n_triangles() as u32).find(holds)
     }
 
     /// The edges that leave the corner where an edge starts, one for each triangle around it.

@@ -89,6 +89,10 @@ impl Isovist {
                 third += 0.5 * h * (e * to - s * from + h * h * angle);
             }
         }
+        if m.perimeter == 0.0 {
+            // All vertices are one point.
+            return Measures::default();
+        }
         m.area = 0.5 * twice_area;
         m.compactness = 4.0 * std::f64::consts::PI * m.area / (m.perimeter * m.perimeter);
         if twice_area > 0.0 {

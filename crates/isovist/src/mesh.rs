@@ -36,17 +36,20 @@ impl WallMesh {
     /// # Errors
     /// [`MeshError::Empty`] for a plan without opaque lines, [`MeshError::Vertex`] for coordinates that cannot be triangulated.
     pub fn new(plan: &Plan) -> Result<Self, MeshError> {
-        let walls = plan.lines().iter().filter(|line| line.opaque);
-        let bounds = Aabb::around(walls.flat_map(|line| [line.a, line.b]).map(|p| [p.x, p.y]));
-        if bounds.is_empty() {
+        if !plan.lines().iter().any(|line| line.opaque) {
             return Err(MeshError::Empty);
         }
-        let size = (bounds.max[0] - bounds.min[0]).max(bounds.max[1] - bounds.min[1]);
-        let margin = |x: f64| 0.25 * size + 4.0 * f64::EPSILON * x.abs();
-        let limit = 2.0 * sightlines_geometry::coordinate::MAX_MAGNITUDE;
-        let min = bounds.min.map(|x| (x - margin(x)).max(-limit));
-        let max = bounds.max.map(|x| (x + margin(x)).min(limit));
-        Self::with_frame(plan, Aabb { min, max })
+        Self::around(plan, [])
+    }
+
+    /// Prepares a plan within a frame that leaves a quarter of its larger side free around the walls and some points. A plan without walls hides
+    /// nothing.
+    ///
+    /// # Errors
+    /// [`MeshError::Vertex`] for coordinates that cannot be triangulated.
+    pub fn around(plan: &Plan, points: impl IntoIterator<Item = Point2>) -> Result<Self, MeshError> {
+        let walls = plan.lines().iter().filter(|line| line.opaque).flat_map(|line| [line.a, line.b]);
+        Self::with_frame(plan, frame_around(Aabb::around(walls.chain(points).map(|p| [p.x, p.y]))))
     }
 
     /// Prepares a plan within a frame, at which every view ends.
@@ -155,4 +158,19 @@ impl WallMesh {
         let [l, m] = self.crossings[corner as usize - (self.corners.len() - self.crossings.len())];
         orient2d(l.a, l.b, p) == 0.0 && orient2d(m.a, m.b, p) == 0.0
     }
+}
+
+/// A box around another one, with a quarter of its larger side between them. Its numbers are coordinates that can be triangulated.
+fn frame_around(bounds: Aabb<2>) -> Aabb<2> {
+    use sightlines_geometry::coordinate::{MAX_MAGNITUDE, MIN_MAGNITUDE};
+    let bounds = if bounds.is_empty() { Aabb { min: [0.0; 2], max: [0.0; 2] } } else { bounds };
+    let size = (bounds.max[0] - bounds.min[0]).max(bounds.max[1] - bounds.min[1]);
+    let size = if size > 0.0 { size } else { 1.0 };
+    let limit = 2.0 * MAX_MAGNITUDE;
+    let place = |x: f64, outwards: f64| {
+        let x = x + outwards * (0.25 * size + 4.0 * f64::EPSILON * x.abs());
+        // What is too small for a coordinate moves outwards.
+        if x.abs() < MIN_MAGNITUDE { outwards * MIN_MAGNITUDE } else { x.clamp(-limit, limit) }
+    };
+    Aabb { min: bounds.min.map(|x| place(x, -1.0)), max: bounds.max.map(|x| place(x, 1.0)) }
 }

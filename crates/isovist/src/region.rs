@@ -154,20 +154,21 @@ impl WallMesh {
     }
 
     /// Whether the end of a wall where an edge starts is in a triangle, but not on the piece; if walls may be touched, whether a wall goes on
-    /// from there inside the triangle.
+    /// from there inside the triangle, and not along the ray from the eye.
     fn is_in_the_way(&self, &Triangle { eye, a, b }: &Triangle, edge: u32, touch: Touch) -> bool {
         let end = self.corners[self.edges[edge as usize].from as usize].at;
         let (on_right, on_left, before) = (orient2d(eye, a, end), orient2d(b, eye, end), orient2d(a, b, end));
         if on_right < 0.0 || on_left < 0.0 || before <= 0.0 {
             return false;
         }
-        if touch == Touch::Blocks || (on_right > 0.0 && on_left > 0.0) {
+        if touch == Touch::Blocks {
             return true;
         }
-        // On a side, or on both where these are one ray.
-        let goes_inside = |corner: u32| match on_right == 0.0 {
-            true => self.side(eye, a, corner) > 0.0,
-            false => self.side(b, eye, corner) > 0.0,
+        // On a side it matters which way a wall goes on; inside, whether it leaves the ray from the eye.
+        let goes_inside = |corner: u32| match (on_right == 0.0, on_left == 0.0) {
+            (true, _) => self.side(eye, a, corner) > 0.0,
+            (false, true) => self.side(b, eye, corner) > 0.0,
+            (false, false) => self.side(eye, end, corner) != 0.0,
         };
         self.leaving(edge).any(|out| {
             let ends = [(out, next(out)), (previous(out), previous(out))];

@@ -118,20 +118,26 @@ impl<'a> Surroundings<'a> {
         }
         let mut random = Random::new(seed);
         let n = n.max(2);
+        // In units of the scene's diagonal, so that no power leaves the range of doubles.
+        let unit = length(sub(self.bounds.max, self.bounds.min));
+        if unit == 0.0 {
+            return Estimate::exact(0.0);
+        }
         let (mut sum, mut squares) = (0.0, 0.0);
         for _ in 0..n {
             let direction = random.direction();
             let inverse = direction.map(|x| if x == 0.0 { f64::NAN } else { 1.0 / x });
             let [_, leaves] = ray_box(&self.bounds, eye, inverse);
             let radius = self.nearest(eye, direction, leaves, |_| true).unwrap_or(leaves);
-            let cube = radius * radius * radius;
+            let share = radius / unit;
+            let cube = share * share * share;
             sum += cube;
             squares += cube * cube;
         }
         let n = f64::from(n);
         let mean = sum / n;
         let variance = ((squares - n * mean * mean) / (n - 1.0)).max(0.0);
-        let sphere = 4.0 / 3.0 * std::f64::consts::PI;
+        let sphere = 4.0 / 3.0 * std::f64::consts::PI * unit * unit * unit;
         let Estimate { value, low, high } = Estimate::of_mean(mean, variance, n);
         Estimate { value: sphere * value, low: sphere * low, high: sphere * high }
     }

@@ -51,6 +51,14 @@ pub enum GridError {
         /// Of the plan.
         height: f64,
     },
+    /// Coordinates so large that doubles hardly tell neighbouring pixels apart.
+    #[error("a spacing of {spacing} is too small for coordinates as large as {largest}")]
+    TooFar {
+        /// The spacing.
+        spacing: f64,
+        /// The largest coordinate, or its negative.
+        largest: f64,
+    },
     /// A pixel whose centre is no usable coordinate.
     #[error("the centre of a pixel: {0}")]
     Coordinate(#[from] CoordinateError),
@@ -86,7 +94,7 @@ impl Grid {
     /// bound, and at most half a pixel outside; of two that are equally near, the outer one.
     ///
     /// # Errors
-    /// [`GridError`]: spacing, no walls, too fine, coordinates.
+    /// [`GridError`]: spacing, no walls, too fine, too far, coordinates.
     ///
     /// # Cost
     /// O(pixels + pixels that walls touch).
@@ -115,6 +123,10 @@ impl Grid {
             }
             n[k] = steps as usize + 1;
             origin[k] = bounds.min[k] - beyond;
+            let largest = origin[k].abs().max((origin[k] + spacing * steps).abs());
+            if largest * f64::EPSILON > 0.25 * SLACK * spacing {
+                return Err(GridError::TooFar { spacing, largest });
+            }
             // The first and the last of these are the extremes; one more on each side is looked at from outside.
             for step in [-1.0, steps + 1.0] {
                 check_coordinate(origin[k] + spacing * step)?;
@@ -249,7 +261,8 @@ impl Grid {
 }
 
 /// Added to the part of a wall on all sides when pixels near it are listed, in pixels. It decides nothing: walls that are listed for
-/// nothing are tested for nothing. Places are at most 2^26 pixels, and computed in a few roundings of 2^-53 of that, or less than 2^-24.
+/// nothing are tested for nothing. Places are at most 2^26 pixels, and computed in a few roundings of 2^-53 of that, or less than 2^-24;
+/// centres are off by a unit in the last place of a coordinate, at most a quarter of this.
 const SLACK: f64 = 1.0 / 4096.0;
 
 /// How far a bound is beyond the multiple of the spacing next to it: from minus half a spacing, not reached, to half a spacing.

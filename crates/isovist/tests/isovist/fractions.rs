@@ -184,6 +184,27 @@ proptest! {
     }
 }
 
+/// Extents at the limits of coordinates, and plans of one wall, have a frame.
+#[test]
+fn extreme_plans_have_a_mesh() {
+    let wall = |a: [f64; 2], b: [f64; 2]| sightlines_cells::Plan::from_walls([(a.into(), b.into())]).unwrap();
+    let (tiny, huge) = (2f64.powi(-100), 2f64.powi(200));
+    for (a, b) in [
+        ([tiny, 0.0], [5.0 * tiny, 0.0]),
+        ([-huge, -huge], [huge, huge]),
+        ([0.0, 0.0], [1.0, 0.0]),
+        ([500_000.0, 5_400_000.0], [500_000.001, 5_400_000.0]),
+    ] {
+        let mesh = WallMesh::new(&wall(a, b)).unwrap();
+        let eye = sightlines_geometry::Point2::new(0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]));
+        assert!(mesh.isovist(eye).unwrap().vertices().len() >= 3, "{a:?}");
+    }
+    let none = sightlines_cells::Plan::default();
+    assert!(WallMesh::new(&none).is_err());
+    let open = WallMesh::around(&none, [point([0, 0]), point([4, 4])]).unwrap();
+    assert!(open.sees(point([0, 0]), point([4, 4]), sightlines_isovist::Touch::Blocks).unwrap());
+}
+
 /// The impostor: with one wall less, the sweep finds another outline.
 #[test]
 fn a_missing_wall_is_found_out() {

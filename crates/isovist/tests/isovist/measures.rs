@@ -54,7 +54,16 @@ proptest! {
         prop_assert!((m.skewness - third).abs() < 0.1 * (second.powf(1.5) + 1.0), "{} {}", m.skewness, third);
         let (least, most) = (radials.iter().copied().fold(f64::INFINITY, f64::min), radials.iter().copied().fold(0.0, f64::max));
         prop_assert!(m.minimal_radial <= least * (1.0 + 1e-9) && m.maximal_radial >= most * (1.0 - 1e-9));
-        prop_assert!(near(m.minimal_radial, least, 2e-2), "{} {}", m.minimal_radial, least);
+        // The nearest point of all walls and the frame is always seen.
+        let at = |k: usize, w: &[i64; 4]| Point2::new(w[k] as f64, w[k + 1] as f64);
+        let frame = [[-1, -1, 13, -1], [13, -1, 13, 13], [13, 13, -1, 13], [-1, 13, -1, -1]];
+        let nearest = walls.iter().chain(&frame).map(|w| {
+            let (a, b) = (at(0, w), at(2, w));
+            let t = ((eye - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
+            eye.distance(a + t * (b - a))
+        });
+        let nearest = nearest.fold(f64::INFINITY, f64::min);
+        prop_assert!(near(m.minimal_radial, nearest, 1e-9), "{} {}", m.minimal_radial, nearest);
         prop_assert!(m.compactness > 0.0 && m.compactness <= 1.0 && m.occlusivity <= m.perimeter);
     }
 
@@ -85,6 +94,59 @@ proptest! {
         prop_assert!(m.1.area <= m.0.area * (1.0 + 1e-9) && m.1.area <= m.2.area * (1.0 + 1e-9));
         prop_assert!(m.1.maximal_radial <= radius * (1.0 + 1e-9));
     }
+}
+
+/// Sectors whose sides pass ends of walls: every direction of a small grid, at right angles to where an end is.
+#[test]
+fn sides_of_sectors_pass_ends_of_walls() {
+    let room = [[-10, -20, 41, -20], [41, -20, 41, 20], [41, 20, -10, 20], [-10, 20, -10, -20]];
+    let mut n = 0;
+    for (x, y) in (1..9).flat_map(|x| (1..9).map(move |y| (x, y))) {
+        for (dx, dy) in [(0, 4), (4, 0)] {
+            let walls: crate::Walls = room.into_iter().chain([[x, y, x + dx, y + dy]]).collect();
+            let frame = Aabb { min: [-50.0; 2], max: [50.0; 2] };
+            let whole = WallMesh::with_frame(&plan(&walls), frame).unwrap().isovist(Point2::ZERO).unwrap();
+            let area = |direction: Point2, angle: f64| {
+                let sector = Some(Sector { direction, angle });
+                whole.limited(&Limits { sector, ..Limits::default() }).unwrap().measures().area
+            };
+            let end = Point2::new(f64::from(x as i32), f64::from(y as i32));
+            for turn in [-1.0, 1.0] {
+                // The middle of a right angle with one side through the end, and a little to both sides of it.
+                let middle = end + turn * end.perp();
+                let near = [-1e-9, 1e-9].map(|off| area(middle + off * middle.perp(), 90.0));
+                let exact = area(middle, 90.0);
+                assert!(near.iter().any(|&a| (a - exact).abs() < 1e-3 * a), "{end} {turn}: {exact} beside {near:?}");
+                n += 1;
+            }
+            // Four quarters are the whole, wherever they begin.
+            let quarters: f64 =
+                (0..4).scan(end, |d, _| Some(std::mem::replace(d, d.perp()))).map(|d| area(d, 90.0)).sum();
+            let most = whole.measures().area;
+            assert!((quarters - most).abs() < 1e-9 * quarters, "{end}: {quarters} {most}");
+            assert!(area(end, 1e-15) < 1e-6, "a narrow sector at {end}, {dx}: {}", area(end, 1e-15));
+            assert!((area(end, 359.999_999) - most).abs() < 1e-3 * most, "a wide one");
+        }
+    }
+    assert_eq!(n, 256);
+}
+
+#[test]
+fn extreme_limits_are_no_trouble() {
+    let whole = isovist(&vec![[0, 0, 12, 0], [12, 0, 12, 12], [12, 12, 0, 12], [0, 12, 0, 0]], Point2::new(6.0, 6.0));
+    let limited = |radius: f64, deviation: f64| {
+        whole.limited(&Limits { radius: Some(radius), deviation: Some(deviation), sector: None }).unwrap()
+    };
+    assert!(limited(1.0, 1e-300).vertices().len() < 200_000);
+    let point = limited(1e-17, 1e-3).measures();
+    assert!(point.area == 0.0 && point.compactness.is_finite() && point.minimal_radial.is_finite());
+    for size in [1e200, 1e-200] {
+        let sector = Some(Sector { direction: Point2::new(size, 0.0), angle: 90.0 });
+        let area = whole.limited(&Limits { sector, ..Limits::default() }).unwrap().measures().area;
+        assert!((area - 36.0).abs() < 1e-9, "{area}");
+    }
+    let round = limited(1.0, 1e-3);
+    assert!(round.boundaries().iter().all(|&b| b == Boundary::Limit), "nothing else is within the radius");
 }
 
 #[test]

@@ -65,3 +65,19 @@ fn a_pillar_in_front_of_a_region_counts() {
     assert!(!mesh.sees_all(eye, Region::Path(&wall), Touch::Blocks).unwrap(), "not what is behind the pillar");
     assert!(mesh.sees_all(at(2.0, 0.5), Region::Path(&wall), Touch::Blocks).unwrap());
 }
+
+/// A wall along the line of sight hides nothing where walls may be touched.
+#[test]
+fn walls_seen_edge_on_hide_nothing() {
+    let mesh = WallMesh::new(&plan(&vec![[2, 0, 3, 0], [-9, -9, 9, -9], [-9, 9, 9, 9]])).unwrap();
+    let path = [point([5, -1]), point([5, 1])];
+    for (eye, touch, truth) in [
+        ([0, 0], Touch::Passes, true),
+        ([2, 0], Touch::Passes, true),
+        ([0, 0], Touch::Blocks, false),
+        ([2, 0], Touch::Blocks, false),
+        ([0, 1], Touch::Passes, false),
+    ] {
+        assert_eq!(mesh.sees_all(point(eye), Region::Path(&path), touch).unwrap(), truth, "{eye:?} {touch:?}");
+    }
+}

@@ -69,3 +69,18 @@ fn conventions_differ() {
     assert!(mesh.sees(at(a), at(b), Touch::Passes).unwrap());
     assert_ne!(sees_brute(&walls, a, b), sees_touching(&walls, a, b));
 }
+
+/// A facade with many windows in one line: of the ways along it, each edge is followed once.
+#[test]
+fn views_along_many_walls_in_line_end() {
+    let mut walls: Walls = (0..60).map(|i| [2 * i + 1, 0, 2 * i + 2, 0]).collect();
+    walls.push([121, -1, 121, 1]);
+    let mesh = WallMesh::new(&plan(&walls)).unwrap();
+    let points: Vec<_> = (0..124).map(|x| point([x, 0])).collect();
+    let index = mesh.index(&points).unwrap();
+    let mut seen = Vec::new();
+    mesh.points_seen(0, &index, Touch::Passes, &mut seen);
+    assert_eq!(seen, (0..=121).collect::<Vec<u32>>(), "up to the wall across");
+    mesh.points_seen(0, &index, Touch::Blocks, &mut seen);
+    assert_eq!(seen, [0, 1]);
+}

@@ -19,7 +19,7 @@ use sightlines::bake::Bakeable;
 use sightlines::cells::Plan;
 use sightlines::formats::InputKind;
 use sightlines::formats::scene::SceneReadOptions;
-use sightlines::geometry::{Aabb, Point2, Segment2};
+use sightlines::geometry::{Point2, Segment2};
 use sightlines::isovist::{Touch, WallMesh};
 use sightlines::report::{Field, MAX_SIZE, MIN_SIZE, PointColumn, field_png, field_svg, points_csv, points_geojson};
 use sightlines::visibility_graph::{
@@ -68,10 +68,10 @@ pub(crate) struct VgaArgs {
     #[arg(long, help_heading = "Method", value_name = "N")]
     radius: Option<u32>,
     /// The longest paths that count in metric measures, in scene units [default: any]
-    #[arg(long, help_heading = "Method", value_name = "LENGTH")]
+    #[arg(long, help_heading = "Method", value_name = "LENGTH", value_parser = positive, allow_negative_numbers = true)]
     metric_radius: Option<f64>,
     /// The largest depth that counts in angular measures, in right angles [default: any]
-    #[arg(long, help_heading = "Method", value_name = "ANGLE")]
+    #[arg(long, help_heading = "Method", value_name = "ANGLE", value_parser = positive, allow_negative_numbers = true)]
     angular_radius: Option<f64>,
     /// Where metric and angular paths may turn
     #[arg(long, help_heading = "Method", value_name = "WHERE", default_value = "near-walls")]
@@ -292,6 +292,11 @@ fn measures(args: &VgaArgs, kind: Kind) -> Vec<Measure> {
     Measure::ALL.into_iter().filter(|&measure| named.iter().any(|choice| choice.has(measure))).collect()
 }
 
+fn positive(text: &str) -> Result<f64, String> {
+    let x: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if x.is_finite() && x > 0.0 { Ok(x) } else { Err("not a positive number".to_owned()) }
+}
+
 /// The measure of a picture.
 fn shown(args: &VgaArgs, measures: &[Measure]) -> Measure {
     args.measure.or(measures.first().copied()).unwrap_or(Measure::Connectivity)
@@ -301,15 +306,7 @@ fn shown(args: &VgaArgs, measures: &[Measure]) -> Measure {
 fn graph(args: &VgaArgs, plan: &Plan, points: &Points, effort: &Effort<'_>) -> Result<VisibilityGraph, Error> {
     let failed = |source| Error::Mesh { path: args.plan.clone(), source };
     let at = points.coordinates();
-    // A frame with room around the walls and all points.
-    let bounds: Aabb<2> = Aabb::around(plan.points().chain(at.iter().copied()).map(|p| [p.x, p.y]));
-    let margin = |k: usize| {
-        let size = bounds.max[k] - bounds.min[k];
-        size + 4.0 * f64::EPSILON * bounds.min[k].abs().max(bounds.max[k].abs()) + f64::MIN_POSITIVE
-    };
-    let [x, y] = [0, 1].map(margin);
-    let frame = Aabb { min: [bounds.min[0] - x, bounds.min[1] - y], max: [bounds.max[0] + x, bounds.max[1] + y] };
-    let mesh = WallMesh::with_frame(plan, frame).map_err(failed)?;
+    let mesh = WallMesh::around(plan, at.iter().copied()).map_err(failed)?;
     let from = args.points.as_ref().unwrap_or(&args.plan);
     let index = mesh.index(at).map_err(|source| Error::Eye { path: from.clone(), source })?;
     let seen = |eye: u32, list: &mut Vec<u32>| mesh.points_seen(eye, &index, args.touch, list);
