@@ -34,7 +34,7 @@ fn guide(name: &str) -> String {
 fn follow(folder: &Folder, name: &str) -> usize {
     let mut n_commands = 0;
     for (kind, text) in blocks(&guide(name)) {
-        if let Some(file) = kind.strip_prefix("json ").or(kind.strip_prefix("rej ")) {
+        if let Some(file) = ["json ", "csv ", "rej "].iter().find_map(|kinds| kind.strip_prefix(kinds)) {
             folder.write(file, &text);
         }
         if kind != "sh" {
