@@ -37,7 +37,7 @@ macro_rules! measures {
         /// A measure of points.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Measure {
-            $(#[doc = concat!($title, " (`", $name, "`).")] $variant,)*
+            $(#[doc = concat!("`", $title, "` (`", $name, "`).")] $variant,)*
         }
 
         impl Measure {

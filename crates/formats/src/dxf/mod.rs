@@ -24,7 +24,7 @@
 //! invisible, and what is in paper space, is left out.
 //!
 //! Binary DXF is refused. A file without its end mark is refused, since walls could be missing. Texts that are not UTF-8 are read as
-//! Latin-1. Lines without length and lines that repeat others are dropped and counted ([`PlanFile`](crate::PlanFile)).
+//! Latin-1. Lines without length and lines that repeat others are dropped and counted ([`PlanFile`]).
 
 mod affine;
 mod angle;
