@@ -141,6 +141,11 @@ class App {
     return METHODS.map((method) => ({ method, ...lookBy(this.model, method, view) }));
   }
 
+  /** The isovist of a point of a plan: its pieces and their area; for scripts that look at the page. */
+  isovistAt(point) {
+    return isovistAt(this.model.table, point);
+  }
+
   /** What each method keeps of a view from a point of the scene. Angles in radians, the horizontal one; for scripts that look at the page. */
   methodsAt(eye, direction, fov, aspect) {
     const { model } = this;

@@ -1,6 +1,6 @@
 // The areas of isovists from all eyes, and whether the pointer draws one.
 ready.then((app) => {
-  const areas = given.map((eye) => isovistAt(app.model.table, eye).area);
+  const areas = given.map((eye) => app.isovistAt(eye).area);
   app.setView("map");
   const before = app.map.svg();
   document.getElementById("isovist").click();

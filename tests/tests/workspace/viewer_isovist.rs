@@ -35,7 +35,7 @@ fn check(plan: &Plan) {
     let Some(browser) = chromium() else { return };
     let table = bake(plan, &BakeOptions::default()).expect("a table").table;
     let eyes = eyes(plan, &table);
-    assert!(eyes.len() > 200, "{} eyes", eyes.len());
+    assert!(eyes.len() > 50, "{} eyes", eyes.len());
     let open = |table: &Table| -> Value {
         let page =
             Page { figure: Some(&Figure::of_plan(plan)), ..Page::new("t", "t.pvs", table) }.html().expect("a page");

@@ -45,7 +45,7 @@ fn tables_of_plans_with_doubled_lines_are_the_same_without_them() {
             Plan::new(lines.collect(), read.plan.objects().to_vec()).unwrap()
         };
         let (right, n) = (table(&read.plan), read.plan.lines().len());
-        assert!((0..n).step_by(n / 8).any(|k| table(&without(k)) != right));
+        assert!((0..n).step_by((n / 8).max(1)).any(|k| table(&without(k)) != right));
     }
 }
 
