@@ -55,10 +55,10 @@ fn squares_have_the_colours_of_their_values_and_the_rest_is_transparent() {
             let there = if (p.y + dy - 5.0).abs() < 2.0 { continue } else { at(p.x + dx, p.y + dy) };
             assert_eq!(there, expected, "{p} {value:?}");
         }
-        let near = (-9..=9).map(|k| at(p.x, 5.0 + 0.05 * f64::from(k)));
-        let darkest = near.filter(|pixel| pixel[3] == 255).min_by_key(|pixel| pixel[0]);
         // Grey, of ink and of the paper around it; squares are blue.
-        assert!(darkest.is_some_and(|[r, _, b, a]| r < 140 && b < r + 30 && a == 255), "{darkest:?}");
+        let near = (-9..=9).map(|k| at(p.x, 5.0 + 0.05 * f64::from(k)));
+        let has_wall = near.clone().any(|[r, _, b, a]| r < 140 && b < r + 30 && a == 255);
+        assert!(has_wall, "{:?}", near.collect::<Vec<_>>());
     }
     assert_eq!(pixels[0], [0; 4], "the margin");
     assert_eq!(pixels[pixels.len() - 1], [255; 4], "the legend has paper");
