@@ -8,7 +8,7 @@ use sightlines_cells::PlanError;
 use sightlines_frame::MoveError;
 use sightlines_kdtree::KdError;
 use sightlines_multifocal::{BackendError, VolumeError};
-use sightlines_progress::Cancelled;
+use sightlines_progress::{Cancelled, Halt};
 use sightlines_pvs::TableError;
 use sightlines_triangulation::TriangulationError;
 
@@ -54,6 +54,9 @@ pub enum BakeError {
     /// The observer cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+    /// The store of units ends the bake: it keeps what was done, and the rest is for others or later.
+    #[error(transparent)]
+    Halted(#[from] Halt),
     /// The parts of the table do not fit together: a defect of this crate.
     #[error("the table is inconsistent: {0}")]
     Table(#[from] TableError),

@@ -7,7 +7,7 @@ use crate::scene::PortalMode;
 use crate::subdivide::Subdivide;
 use sightlines_kdtree::SceneOptions;
 use sightlines_multifocal::Split;
-use sightlines_progress::{Budget, Observer};
+use sightlines_progress::{Budget, Observer, Units};
 use sightlines_pvs::{Frame, GeometryDigest};
 use sightlines_stabtree::SearchOptions;
 use std::fmt;
@@ -125,6 +125,8 @@ pub struct BakeOptions<'a> {
     /// Scenes: what may be spent, such as time. What is not decided then counts as visible, and the table depends on when that was; see
     /// [`LimitReport`](crate::LimitReport). Without a budget the table is always the same.
     pub budget: Option<&'a dyn Budget>,
+    /// Where results of units of work are kept, to go on after a stop or to share a bake among processes. Changes nothing but who computes what.
+    pub units: Units<'a>,
 }
 
 impl Default for BakeOptions<'_> {
@@ -145,6 +147,7 @@ impl Default for BakeOptions<'_> {
             threads: 0,
             progress: None,
             budget: None,
+            units: Units::default(),
         }
     }
 }

@@ -3,12 +3,15 @@
 //! # Scope
 //!
 //! - **Owns**: the [`Observer`] trait, its reports ([`Progress`]) and kinds of work ([`Work`]), the error of a cancelled search ([`Cancelled`]), and
-//!   the counter that threads of a search share ([`Counter`]), and what a search may spend ([`Budget`]).
+//!   the counter that threads of a search share ([`Counter`]), what a search may spend ([`Budget`]), and the contract of stores that keep the
+//!   results of units of work ([`UnitStore`]).
 //! - **Out of scope**: time, terminals, what is searched.
 
 mod budget;
+mod units;
 
 pub use budget::{Allowance, Budget, Shares, scattered};
+pub use units::{Halt, Phase, UnitStore, Units};
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};

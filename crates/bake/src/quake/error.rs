@@ -2,7 +2,7 @@
 
 use super::StateError;
 use sightlines_formats::quake::{BspError, VisibilityError};
-use sightlines_progress::Cancelled;
+use sightlines_progress::{Cancelled, Halt};
 use sightlines_pvs::TableError;
 
 /// Why portals, or a map with them, could not be baked.
@@ -24,6 +24,9 @@ pub enum PrtBakeError {
     /// The observer cancelled the search; its state after the last step was given to `after_step`.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+    /// The store of units ends the search: it keeps what was done, and the rest is for others or later.
+    #[error(transparent)]
+    Halted(#[from] Halt),
     /// The state to begin with is none of these portals.
     #[error(transparent)]
     State(#[from] StateError),

@@ -23,7 +23,7 @@ use sightlines_cells::{CellGraph, Convex};
 use sightlines_formats::quake::bsp::AmbientTextures;
 use sightlines_formats::quake::visibility::{check_portals, lump_with_sounds};
 use sightlines_formats::quake::{Bsp, Prt, graph_of_prt};
-use sightlines_progress::Observer;
+use sightlines_progress::{Observer, Units};
 use sightlines_pvs::Table;
 use sightlines_stabtree::{ConvexOptions, ConvexSearch, ConvexState};
 use std::fmt;
@@ -40,6 +40,8 @@ pub struct PrtOptions<'a> {
     pub progress: Option<&'a dyn Observer>,
     /// Called after each step, for example to store [`ConvexSearch::state`].
     pub after_step: Option<&'a mut dyn FnMut(&ConvexSearch)>,
+    /// Where results of units of work are kept, to share a search among processes.
+    pub units: Units<'a>,
     /// Which textures make sounds in a map of Quake; of no use for a table.
     pub sounds: AmbientTextures,
 }
@@ -107,7 +109,7 @@ fn graph(prt: &Prt) -> Result<CellGraph<Convex>, PrtBakeError> {
 }
 
 fn see(graph: &CellGraph<Convex>, options: PrtOptions<'_>) -> Result<ClusterVisibility, PrtBakeError> {
-    let PrtOptions { search, from, progress, after_step, sounds: _ } = options;
+    let PrtOptions { search, from, progress, after_step, units: _, sounds: _ } = options;
     let start = Instant::now();
     let mut running = match from {
         None => ConvexSearch::new(graph, search),

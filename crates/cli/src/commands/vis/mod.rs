@@ -25,6 +25,7 @@ use sightlines::bake::{PrtBakeError, PrtOptions, vis_map};
 use sightlines::formats::InputKind;
 use sightlines::formats::quake::visibility::check_portals;
 use sightlines::formats::quake::{Bsp, Prt, VisibilityError, graph_of_prt, read_bsp};
+use sightlines::progress::Units;
 use sightlines::stabtree::{ConvexOptions, ConvexSearch};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -149,7 +150,8 @@ pub(crate) fn compute(args: &VisArgs, manner: Manner<'_>) -> Result<Outcome, Err
     let mut save = |search: &ConvexSearch| saved.save(search);
     let sounds = sounds::all_but(&args.silence);
     let search = ConvexOptions { fast: args.fast, threads: args.threads };
-    let options = PrtOptions { search, from, progress: Some(&bar), after_step: Some(&mut save), sounds };
+    let options =
+        PrtOptions { search, from, progress: Some(&bar), after_step: Some(&mut save), units: Units::default(), sounds };
     let map = vis_map(&bsp, &prt, options);
     drop(bar);
     let map = map.map_err(|source| explained(source, args, &prt_path, &saved))?;

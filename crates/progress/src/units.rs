@@ -1,0 +1,182 @@
+//! Units of work whose results are kept: so that a stopped bake goes on where it was, and so that several processes share one.
+
+use crate::Cancelled;
+use std::fmt;
+
+/// A phase of a bake: units whose results depend on the input, the options and the results of earlier phases, and not on each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Phase<'a> {
+    /// Its name, different from that of any other phase of the bake: lower-case letters and hyphens.
+    pub name: &'static str,
+    /// The predicted cost of each unit, in proportion to time; its length is the number of units. Finite, and not negative.
+    pub costs: &'a [f64],
+}
+
+/// Why a bake with a store of units ends early.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Halt {
+    /// The store, or an observer, ends the bake.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// This process has done all that it should of a phase; what is missing is for others.
+    #[error("the other units of this phase are for other processes")]
+    Shared,
+    /// A result cannot be read or written.
+    #[error("{0}")]
+    Store(String),
+}
+
+/// Keeps the results of units, and says which of them a process computes.
+///
+/// A bake calls [`UnitStore::begin`] once for each phase, in order; then, for its units in any order and from any thread,
+/// [`UnitStore::load`], and where that has nothing and [`UnitStore::wants`] says so, [`UnitStore::save`] with the result; then
+/// [`UnitStore::end`]. Equal input, options and program give equal phases and equal results, whoever computes them.
+pub trait UnitStore: Sync {
+    /// A phase begins.
+    ///
+    /// # Errors
+    /// [`Halt`] ends the bake.
+    fn begin(&self, phase: &Phase<'_>) -> Result<(), Halt>;
+
+    /// Whether this process computes a unit that has no result.
+    fn wants(&self, phase: &'static str, unit: usize) -> bool;
+
+    /// The result of a unit, if there is one.
+    ///
+    /// # Errors
+    /// [`Halt`] ends the bake.
+    fn load(&self, phase: &'static str, unit: usize) -> Result<Option<Vec<u8>>, Halt>;
+
+    /// Keeps the result of a unit.
+    ///
+    /// # Errors
+    /// [`Halt`] ends the bake.
+    fn save(&self, phase: &'static str, unit: usize, result: &[u8]) -> Result<(), Halt>;
+
+    /// All units of a phase that are wanted have results.
+    ///
+    /// # Errors
+    /// [`Halt::Shared`] if others are missing, which ends the bake; any other [`Halt`] does too.
+    fn end(&self, phase: &'static str) -> Result<(), Halt>;
+}
+
+/// The store of a bake; none keeps nothing, and wants everything.
+#[derive(Clone, Copy, Default)]
+pub struct Units<'a>(pub Option<&'a dyn UnitStore>);
+
+impl fmt::Debug for Units<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Units").field(&self.0.is_some()).finish()
+    }
+}
+
+impl Units<'_> {
+    /// Whether results are kept at all. If not, callers need not encode them.
+    pub const fn are_kept(&self) -> bool {
+        self.0.is_some()
+    }
+
+    /// As [`UnitStore::begin`].
+    ///
+    /// # Errors
+    /// [`Halt`] of the store.
+    pub fn begin(&self, phase: &Phase<'_>) -> Result<(), Halt> {
+        self.0.map_or(Ok(()), |store| store.begin(phase))
+    }
+
+    /// The result of a unit: kept, or computed and then kept; `None` for one that is for another process.
+    ///
+    /// # Errors
+    /// [`Halt`] of the store, or an error of `compute`.
+    pub fn get<E: From<Halt>>(
+        &self,
+        phase: &'static str,
+        unit: usize,
+        compute: impl FnOnce() -> Result<Vec<u8>, E>,
+    ) -> Result<Option<Vec<u8>>, E> {
+        let Some(store) = self.0 else { return compute().map(Some) };
+        if let Some(kept) = store.load(phase, unit)? {
+            return Ok(Some(kept));
+        }
+        if !store.wants(phase, unit) {
+            return Ok(None);
+        }
+        let result = compute()?;
+        store.save(phase, unit, &result)?;
+        Ok(Some(result))
+    }
+
+    /// As [`UnitStore::end`].
+    ///
+    /// # Errors
+    /// [`Halt`] of the store.
+    pub fn end(&self, phase: &'static str) -> Result<(), Halt> {
+        self.0.map_or(Ok(()), |store| store.end(phase))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashMap;
+    use std::sync::Mutex;
+
+    /// Keeps results in memory, and wants even units.
+    #[derive(Default)]
+    struct Even(Mutex<HashMap<usize, Vec<u8>>>, Mutex<usize>);
+
+    impl UnitStore for Even {
+        fn begin(&self, phase: &Phase<'_>) -> Result<(), Halt> {
+            *self.1.lock().unwrap() = phase.costs.len();
+            Ok(())
+        }
+
+        fn wants(&self, _: &'static str, unit: usize) -> bool {
+            unit.is_multiple_of(2)
+        }
+
+        fn load(&self, _: &'static str, unit: usize) -> Result<Option<Vec<u8>>, Halt> {
+            Ok(self.0.lock().unwrap().get(&unit).cloned())
+        }
+
+        fn save(&self, _: &'static str, unit: usize, result: &[u8]) -> Result<(), Halt> {
+            self.0.lock().unwrap().insert(unit, result.to_vec());
+            Ok(())
+        }
+
+        fn end(&self, _: &'static str) -> Result<(), Halt> {
+            if self.0.lock().unwrap().len() == *self.1.lock().unwrap() { Ok(()) } else { Err(Halt::Shared) }
+        }
+    }
+
+    #[test]
+    fn results_are_computed_once_and_only_where_they_are_wanted() {
+        let store = Even::default();
+        let units = Units(Some(&store));
+        units.begin(&Phase { name: "numbers", costs: &[1.0; 4] }).unwrap();
+        let n_computed = Mutex::new(0);
+        let get = |unit: usize| {
+            let result = units.get("numbers", unit, || {
+                *n_computed.lock().unwrap() += 1;
+                Ok::<_, Halt>(vec![unit as u8])
+            });
+            result.unwrap()
+        };
+        assert_eq!([0, 1, 0, 2].map(get), [Some(vec![0]), None, Some(vec![0]), Some(vec![2])]);
+        assert_eq!(*n_computed.lock().unwrap(), 2);
+        assert_eq!(units.end("numbers"), Err(Halt::Shared));
+        [1, 3].iter().for_each(|&unit| store.save("numbers", unit, &[9]).unwrap());
+        assert_eq!((units.end("numbers"), get(1)), (Ok(()), Some(vec![9])));
+    }
+
+    #[test]
+    fn without_a_store_everything_is_computed() {
+        let units = Units::default();
+        assert!(!units.are_kept());
+        units.begin(&Phase { name: "numbers", costs: &[] }).unwrap();
+        assert_eq!(units.get("numbers", 7, || Ok::<_, Halt>(vec![1])), Ok(Some(vec![1])));
+        assert_eq!(units.get("numbers", 7, || Err(Halt::Cancelled(Cancelled))), Err(Halt::Cancelled(Cancelled)));
+        assert_eq!(units.end("numbers"), Ok(()));
+    }
+}
