@@ -56,8 +56,17 @@ pub enum BakeError {
     Cancelled(#[from] Cancelled),
     /// The store of units ends the bake: it keeps what was done, and the rest is for others or later.
     #[error(transparent)]
-    Halted(#[from] Halt),
+    Halted(Halt),
     /// The parts of the table do not fit together: a defect of this crate.
     #[error("the table is inconsistent: {0}")]
     Table(#[from] TableError),
+}
+
+impl From<Halt> for BakeError {
+    fn from(halt: Halt) -> Self {
+        match halt {
+            Halt::Cancelled(cancelled) => cancelled.into(),
+            halt => Self::Halted(halt),
+        }
+    }
 }

@@ -39,7 +39,7 @@ pub fn bake<'i>(input: impl Into<BakeInput<'i>>, options: &BakeOptions<'_>) -> R
     if options.method == SceneMethod::Auto {
         return bake(input, &choose_for(&input, options).1);
     }
-    let BakeOptions { threads, progress, .. } = *options;
+    let BakeOptions { threads, progress, units, .. } = *options;
     let search = ConvexOptions { fast: options.fast, threads };
     match input {
         BakeInput::Plan(plan) => {
@@ -53,23 +53,25 @@ pub fn bake<'i>(input: impl Into<BakeInput<'i>>, options: &BakeOptions<'_>) -> R
             } else {
                 let BakeOptions { cut, portals, budget, .. } = *options;
                 let budget = Allowance::all(budget);
-                bake_scene(scene, &SceneBakeOptions { cut, portals, threads, file, progress, budget })?.into_any()
+                bake_scene(scene, &SceneBakeOptions { cut, portals, threads, file, progress, budget, units })?
+                    .into_any()
             };
             let digest = options.digest.or(baked.table.digest());
             baked.table = baked.table.with_frame(options.frame)?.with_digest(digest);
             Ok(baked)
         }
         BakeInput::Portals(prt) => {
-            Ok(bake_prt(prt, PrtOptions { search, progress, ..PrtOptions::default() })?.into_any())
+            Ok(bake_prt(prt, PrtOptions { search, progress, units, ..PrtOptions::default() })?.into_any())
         }
         BakeInput::Map(bsp, prt) => {
-            Ok(bake_map(bsp, prt, PrtOptions { search, progress, ..PrtOptions::default() })?.into_any())
+            Ok(bake_map(bsp, prt, PrtOptions { search, progress, units, ..PrtOptions::default() })?.into_any())
         }
     }
 }
 
 fn by_regions(scene: &Scene, options: &BakeOptions<'_>, file: Option<&SceneInfo>) -> Result<Baked, BakeError> {
-    let BakeOptions { method, buffers, split, cut, portals, threads, progress, budget, ref cells, .. } = *options;
+    let BakeOptions { method, buffers, split, cut, portals, threads, progress, budget, units, ref cells, .. } =
+        *options;
     buffers.check().map_err(crate::methods::MethodError::from)?;
     let prepare = |method| OcclusionMethodFactory::new(method, scene, &buffers);
     let factory = method.region_method().map(prepare).transpose()?;
@@ -85,6 +87,7 @@ fn by_regions(scene: &Scene, options: &BakeOptions<'_>, file: Option<&SceneInfo>
         file,
         progress,
         budget: Allowance::all(budget),
+        units,
     };
     Ok(bake_regions(scene, &options)?.into_any())
 }

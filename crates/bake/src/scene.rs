@@ -12,7 +12,7 @@ use sightlines_cells::{Axial, AxialDoor, CellGraph, Portal, Scene, SceneObject};
 use sightlines_formats::SceneInfo;
 use sightlines_geometry::Aabb;
 use sightlines_kdtree::{SceneOptions, SceneSummary, subdivide_scene};
-use sightlines_progress::{Allowance, Observer};
+use sightlines_progress::{Allowance, Observer, Units};
 use sightlines_pvs::{CellRecord, Locator, MirrorRecord, SceneMethods, Table, TableKind, TableParts};
 use sightlines_stabtree::{PairMask, SearchOptions, SpaceVisibility, space_visibility};
 use std::time::Instant;
@@ -55,6 +55,8 @@ pub struct SceneBakeOptions<'a> {
     pub progress: Option<&'a dyn Observer>,
     /// What may be spent; what is not decided then counts as visible.
     pub budget: Allowance<'a>,
+    /// Where results of units of work are kept.
+    pub units: Units<'a>,
 }
 
 impl std::fmt::Debug for SceneBakeOptions<'_> {
@@ -97,8 +99,8 @@ pub(crate) fn see_scene(
     let start = Instant::now();
     let boxes = extents(scene);
     let solid = cut.left_out();
-    let SceneBakeOptions { threads, progress, budget, .. } = *options;
-    let search = SearchOptions { threads, progress, budget, ..SearchOptions::default() };
+    let SceneBakeOptions { threads, progress, budget, units, .. } = *options;
+    let search = SearchOptions { threads, progress, budget, units, ..SearchOptions::default() };
     let graph = match options.portals {
         PortalMode::Bounding => merge_portals(&cut.graph),
         PortalMode::Exact => cut.graph,

@@ -11,7 +11,7 @@ mod budget;
 mod units;
 
 pub use budget::{Allowance, Budget, Shares, scattered};
-pub use units::{Halt, Phase, UnitStore, Units};
+pub use units::{Halt, Phase, UnitStore, Units, shares_of};
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
@@ -42,13 +42,15 @@ pub struct Progress {
     pub total: u64,
     /// The share of this phase, or of all phases of a search that knows them, that is done; from 0 to 1, as an estimate of time.
     pub share: f64,
+    /// The part of the share that was not computed but taken from a store of units, and so says nothing of the pace.
+    pub kept: f64,
 }
 
 impl Progress {
     /// A report of a search with one phase, of [`Work::Other`]; the share is that of its units.
     pub fn new(phase: &'static str, done: u64, total: u64) -> Self {
         let share = if total == 0 { 1.0 } else { done as f64 / total as f64 };
-        Self { phase, work: Work::Other, done, total, share }
+        Self { phase, work: Work::Other, done, total, share, kept: 0.0 }
     }
 
     /// The same report of a kind of work.
@@ -61,6 +63,12 @@ impl Progress {
     #[must_use]
     pub const fn with_share(self, share: f64) -> Self {
         Self { share, ..self }
+    }
+
+    /// The same report of a search that took a part of its share from a store of units.
+    #[must_use]
+    pub const fn with_kept(self, kept: f64) -> Self {
+        Self { kept, ..self }
     }
 }
 
@@ -89,9 +97,9 @@ pub struct Counter<'a> {
     phase: &'static str,
     work: Work,
     total: u64,
-    /// How many units come first, and the share of the time that they take.
-    first: (u64, f64),
     done: AtomicU64,
+    /// The share of the time that is over, and what of it was taken from a store: bits of numbers. Of no meaning where units are alike.
+    shares: [AtomicU64; 2],
     cancelled: AtomicBool,
 }
 
@@ -111,30 +119,14 @@ impl<'a> Counter<'a> {
     /// None of `total` units, of [`Work::Other`], are done. Without an observer nothing is reported, and nothing cancels.
     pub const fn new(observer: Option<&'a dyn Observer>, phase: &'static str, total: usize) -> Self {
         let (done, cancelled) = (AtomicU64::new(0), AtomicBool::new(false));
-        Self { observer, phase, work: Work::Other, total: total as u64, first: (0, 0.0), done, cancelled }
+        let shares = [AtomicU64::new(0), AtomicU64::new(0)];
+        Self { observer, phase, work: Work::Other, total: total as u64, done, shares, cancelled }
     }
 
     /// The same counter for units of a kind of work.
     #[must_use]
     pub fn of(self, work: Work) -> Self {
         Self { work, ..self }
-    }
-
-    /// The same counter for units of two kinds: the first `n` take about this share of the time, however many others there are.
-    #[must_use]
-    pub fn with_first(self, n: usize, share: f64) -> Self {
-        Self { first: (n as u64, share), ..self }
-    }
-
-    /// The share of the time that is over once `done` units are done.
-    fn share(&self, done: u64) -> Option<f64> {
-        let (n, share) = self.first;
-        let part = |done: u64, of: u64| done as f64 / of as f64;
-        // With units of one kind, a report knows the share itself.
-        (0 < n && n < self.total).then(|| match done.checked_sub(n) {
-            None => share * part(done, n),
-            Some(later) => share + (1.0 - share) * part(later.min(self.total - n), self.total - n),
-        })
     }
 
     /// Counts a unit and reports it.
@@ -144,7 +136,30 @@ impl<'a> Counter<'a> {
     pub fn step(&self) -> Result<(), Cancelled> {
         let done = self.done.fetch_add(1, Relaxed) + 1;
         let progress = Progress::new(self.phase, done, self.total).of(self.work);
-        let progress = self.share(done).map_or(progress, |share| progress.with_share(share));
+        self.report(progress)
+    }
+
+    /// Counts a unit that takes a known share of the time, from 0 to 1 for all units together, and reports it. All units of a counter are
+    /// counted so, or none.
+    ///
+    /// * `kept`: whether its result came from a store of units
+    ///
+    /// # Errors
+    /// As [`Counter::step`].
+    pub fn step_by(&self, share: f64, kept: bool) -> Result<(), Cancelled> {
+        let done = self.done.fetch_add(1, Relaxed) + 1;
+        let add = |sum: &AtomicU64, x: f64| {
+            let plus = |bits: u64| (f64::from_bits(bits) + x).to_bits();
+            let before = sum.fetch_update(Relaxed, Relaxed, |bits| Some(plus(bits)));
+            f64::from_bits(plus(before.unwrap_or_else(|bits| bits)))
+        };
+        let [all, of_store] = &self.shares;
+        let (all, of_store) = (add(all, share), add(of_store, if kept { share } else { 0.0 }));
+        let progress = Progress::new(self.phase, done, self.total).of(self.work);
+        self.report(progress.with_share(all.min(1.0)).with_kept(of_store.min(1.0)))
+    }
+
+    fn report(&self, progress: Progress) -> Result<(), Cancelled> {
         if self.observer.is_some_and(|observer| observer.report(progress).is_break()) {
             self.cancelled.store(true, Relaxed);
         }
@@ -208,29 +223,25 @@ mod tests {
         assert_eq!([counter.step(), counter.step(), counter.check()], [Ok(()); 3]);
     }
 
-    /// Few long units come before many short ones; counted alike, the first of them would promise hours.
-    #[test]
-    fn shares_are_of_time_where_units_differ() {
-        let seen = std::sync::Mutex::new(Vec::new());
-        let observer = |progress: Progress| {
-            seen.lock().unwrap().push(progress.share);
-            ControlFlow::Continue(())
-        };
-        for first in [2, 0, 6] {
-            let counter = Counter::new(Some(&observer), "pairs and objects", 6).with_first(first, 0.5);
-            (0..6).for_each(|_| counter.step().unwrap());
-        }
-        let alike = (1..=6).map(|done| f64::from(done) / 6.0);
-        let expected: Vec<f64> =
-            [0.25, 0.5, 0.625, 0.75, 0.875, 1.0].into_iter().chain(alike.clone()).chain(alike).collect();
-        assert_eq!(*seen.lock().unwrap(), expected);
-    }
-
     #[test]
     fn shares_are_those_of_units_unless_given() {
         assert_eq!([Progress::new("", 1, 4).share, Progress::new("", 0, 0).share], [0.25, 1.0]);
-        let half = Progress { phase: "", work: Work::Other, done: 1, total: 4, share: 0.5 };
+        let half = Progress { phase: "", work: Work::Other, done: 1, total: 4, share: 0.5, kept: 0.0 };
         assert_eq!(Progress::new("", 1, 4).with_share(0.5), half);
+    }
+
+    #[test]
+    fn shares_may_be_given_for_each_unit() {
+        let seen = Mutex::new(Vec::new());
+        let observer = |progress: Progress| {
+            seen.lock().expect("no panic").push((progress.done, progress.share, progress.kept));
+            ControlFlow::Continue(())
+        };
+        let counter = Counter::new(Some(&observer), "units", 3);
+        for (share, kept) in [(0.5, true), (0.125, false), (0.375, true)] {
+            counter.step_by(share, kept).unwrap();
+        }
+        assert_eq!(*seen.lock().unwrap(), [(1, 0.5, 0.5), (2, 0.625, 0.5), (3, 1.0, 0.875)]);
     }
 
     #[test]

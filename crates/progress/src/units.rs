@@ -27,6 +27,13 @@ pub enum Halt {
     Store(String),
 }
 
+impl Halt {
+    /// This of a search without a store, which only an observer ends.
+    pub fn without_store(self) -> Cancelled {
+        Cancelled
+    }
+}
+
 /// Keeps the results of units, and says which of them a process computes.
 ///
 /// A bake calls [`UnitStore::begin`] once for each phase, in order; then, for its units in any order and from any thread,
@@ -69,6 +76,13 @@ impl fmt::Debug for Units<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_tuple("Units").field(&self.0.is_some()).finish()
     }
+}
+
+/// The share of each unit in what all of them cost; equal shares if they cost nothing.
+pub fn shares_of(costs: &[f64]) -> Vec<f64> {
+    let all: f64 = costs.iter().sum();
+    let equal = 1.0 / costs.len().max(1) as f64;
+    costs.iter().map(|cost| if all > 0.0 { cost / all } else { equal }).collect()
 }
 
 impl Units<'_> {
@@ -168,6 +182,12 @@ mod tests {
         assert_eq!(units.end("numbers"), Err(Halt::Shared));
         [1, 3].iter().for_each(|&unit| store.save("numbers", unit, &[9]).unwrap());
         assert_eq!((units.end("numbers"), get(1)), (Ok(()), Some(vec![9])));
+    }
+
+    #[test]
+    fn shares_add_up() {
+        assert_eq!(shares_of(&[1.0, 0.0, 3.0]), [0.25, 0.0, 0.75]);
+        assert_eq!((shares_of(&[0.0; 4]), shares_of(&[])), (vec![0.25; 4], vec![]));
     }
 
     #[test]

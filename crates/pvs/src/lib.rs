@@ -2,7 +2,8 @@
 //!
 //! # Scope
 //!
-//! - **Owns**: [`CellId`] and the other ids, the rows of bits ([`BitMatrix`]), point location ([`Locator`],
+//! - **Owns**: [`CellId`] and the other ids, the rows of bits ([`BitMatrix`]), sets of indices as runs
+//!   ([`runs`]), point location ([`Locator`],
 //!   [`PlaneTree`]), stored stab trees ([`StabTrees`]), the validated [`Table`] of all this, its byte format
 //!   ([`format`](mod@format)).
 //! - **Out of scope**: how the table was made, walls, files, threads. A game ships this crate alone.
@@ -24,6 +25,7 @@ mod parts;
 pub mod planes;
 mod query;
 mod records;
+pub mod runs;
 mod set;
 mod side;
 mod sources;

@@ -17,7 +17,7 @@
 //! spirit of the "might see" vectors of Quake's vis, made exact and symmetric.
 
 use crate::network::{NO_ZONE, Network, Step};
-use sightlines_progress::{Allowance, Cancelled, Counter, Observer};
+use sightlines_progress::{Allowance, Cancelled, Counter, Observer, Units};
 use sightlines_pvs::BitMatrix;
 use sightlines_sightline::Stabber;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering::Relaxed};
@@ -34,11 +34,13 @@ pub struct SearchOptions<'a> {
     /// Searches in space: what may be spent. Pairs that are not decided then count as visible, and are listed; without a limit the
     /// answer is always the same. Other searches ignore it.
     pub budget: Allowance<'a>,
+    /// Searches in space, without a budget: where results of groups of pairs are kept. Others ignore it.
+    pub units: Units<'a>,
 }
 
 impl Default for SearchOptions<'_> {
     fn default() -> Self {
-        Self { threads: 0, chords: 8, progress: None, budget: Allowance::default() }
+        Self { threads: 0, chords: 8, progress: None, budget: Allowance::default(), units: Units::default() }
     }
 }
 

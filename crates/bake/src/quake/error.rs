@@ -26,7 +26,7 @@ pub enum PrtBakeError {
     Cancelled(#[from] Cancelled),
     /// The store of units ends the search: it keeps what was done, and the rest is for others or later.
     #[error(transparent)]
-    Halted(#[from] Halt),
+    Halted(Halt),
     /// The state to begin with is none of these portals.
     #[error(transparent)]
     State(#[from] StateError),
@@ -46,4 +46,13 @@ pub enum PrtBakeError {
     /// The parts of the table do not fit together: a defect of this crate.
     #[error("the table is inconsistent: {0}")]
     Table(#[from] TableError),
+}
+
+impl From<Halt> for PrtBakeError {
+    fn from(halt: Halt) -> Self {
+        match halt {
+            Halt::Cancelled(cancelled) => cancelled.into(),
+            halt => Self::Halted(halt),
+        }
+    }
 }

@@ -9,6 +9,7 @@
 mod boxes;
 mod limited;
 mod parts;
+mod row;
 mod see;
 
 pub use crate::grid::{GridError, grid};
@@ -27,10 +28,10 @@ use parts::Start;
 pub(crate) use parts::upright;
 use sightlines_cells::{ANYWHERE, Scene};
 use sightlines_formats::{SceneInfo, ViewCells};
-use sightlines_geometry::{Aabb, Point3};
+use sightlines_geometry::{Aabb, BoxTree, Point3};
 use sightlines_kdtree::{KdError, SceneOptions, subdivide_scene};
 use sightlines_multifocal::{Effort, FromRegion, Occludees, RaySampler, Split, Volume};
-use sightlines_progress::{Allowance, Observer};
+use sightlines_progress::{Allowance, Observer, Units};
 use sightlines_pvs::{BitMatrix, SceneMethods, Table, TableKind};
 use sightlines_stabtree::{BoxVisibility, PairMask, SearchOptions, box_visibility};
 use std::fmt;
@@ -81,6 +82,8 @@ pub struct RegionBakeOptions<'a> {
     pub progress: Option<&'a dyn Observer>,
     /// What may be spent; what is not decided then counts as visible.
     pub budget: Allowance<'a>,
+    /// Where results of units of work are kept.
+    pub units: Units<'a>,
 }
 
 impl<'a> RegionBakeOptions<'a> {
@@ -97,6 +100,7 @@ impl<'a> RegionBakeOptions<'a> {
             file: None,
             progress: None,
             budget: Allowance::default(),
+            units: Units::default(),
         }
     }
 }
@@ -126,9 +130,9 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
     let (mut n_assumed, mut summary, mut left, mut cut_time) = (0, None, None, None);
     let Start { graph, mut parts, cells, rows, objects } = match options.cells {
         CellsFrom::KdTree if by_sightlines => {
-            let RegionBakeOptions { cut, portals, threads, progress, .. } = *options;
+            let RegionBakeOptions { cut, portals, threads, progress, units, .. } = *options;
             let budget = if options.method.is_some() { options.budget.part(SIGHTLINES) } else { options.budget };
-            let options = SceneBakeOptions { cut, portals, threads, file: None, progress, budget };
+            let options = SceneBakeOptions { cut, portals, threads, file: None, progress, budget, units };
             let (graph, parts, report, not_decided) = see_scene(scene, &options)?;
             (n_assumed, cut_time) = (report.n_assumed, Some(report.cut_time));
             left = not_decided;
@@ -174,7 +178,8 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
             let in_the_way = (0u32..).zip(&triangles).map(|(k, of)| if scene.is_opaque(k) { &of[..] } else { none });
             let witness = RaySampler::new(in_the_way).with_single_sided(|object| scene.is_single_sided(object));
             let occludees = Occludees::new(triangles).with_single_sided(|object| scene.is_single_sided(object));
-            let scene = see::Targets { occludees: &occludees, witness: &witness, volumes: &volumes };
+            let tree = BoxTree::build(&cells, 1);
+            let scene = see::Targets { occludees: &occludees, witness: &witness, volumes: &volumes, tree };
             let takes_turns = by_sightlines && matches!(graph, TableGraph::Boxes(_));
             let allowance = if takes_turns { options.budget.part(1.0 - SIGHTLINES) } else { options.budget };
             let seen = see::see(&scene, make, options, allowance, rows, objects)?;
@@ -274,8 +279,8 @@ fn past_walls(
     let cut = SceneOptions { keep_solid: true, view_region: Some(Aabb::around(ends)), max_cells, ..options.cut };
     let cut = subdivide_scene(scene, &cut)?;
     let loose = (options.portals == PortalMode::Bounding).then(|| merge_portals(&cut.graph));
-    let RegionBakeOptions { threads, progress, budget, .. } = *options;
-    let search = SearchOptions { threads, progress, budget, ..SearchOptions::default() };
+    let RegionBakeOptions { threads, progress, budget, units, .. } = *options;
+    let search = SearchOptions { threads, progress, budget, units, ..SearchOptions::default() };
     let graph = loose.as_ref().unwrap_or(&cut.graph);
     Ok(box_visibility(graph, &cut.left_out(), cells, objects, doubt, &search)?)
 }

@@ -1,23 +1,29 @@
 //! From-region queries, cell by cell.
 
 use super::limited::{Limit, Limited};
+use super::row::{CellRow, gaps};
 use super::{MakeMethod, RegionBakeOptions};
 use crate::error::BakeError;
 use rayon::prelude::*;
 use sightlines_geometry::{Aabb, BoxTree};
 use sightlines_multifocal::{BackendError, Effort, FromRegion, Occludees, RaySampler, Umbra, Volume, adaptive};
-use sightlines_progress::{Allowance, Counter, Shares, Work, scattered};
+use sightlines_progress::{Allowance, Counter, Halt, Phase, Shares, Work, scattered, shares_of};
 use sightlines_pvs::BitMatrix;
 use sightlines_stabtree::PairMask;
 
 /// Rays to a cell before its query: most pairs of cells that see each other do so along many lines.
 const RAYS_TO_A_CELL: u32 = 24;
 
+/// Rays to a group of cells, for the same reason: what one reaches is not hidden.
+const RAYS_TO_A_GROUP: u32 = 4;
+
 /// What the queries of all cells share.
 pub(super) struct Targets<'a> {
     pub(super) occludees: &'a Occludees,
     pub(super) witness: &'a RaySampler,
     pub(super) volumes: &'a [Volume],
+    /// Of the volumes; a leaf for each.
+    pub(super) tree: BoxTree<3>,
 }
 
 /// What is left visible, and which of it a ray proves.
@@ -30,19 +36,11 @@ pub(super) struct RegionVisibility {
     pub(super) effort: Effort,
 }
 
-/// What one cell may see.
-struct CellRow {
-    cells: Vec<bool>,
-    objects: Vec<bool>,
-    /// Cells that a ray reaches, and objects.
-    proven: [Vec<bool>; 2],
-    /// Cells that were not decided because the allowance was over, and objects.
-    left: [Vec<bool>; 2],
-    effort: Effort,
-}
-
 /// Most turns of a cell that is not decided in its share of a budget; each begins anew, for what is in doubt.
 const MOST_TURNS: u32 = 4;
+
+/// The phase of units of work: one for each cell.
+const PHASE: &str = "cells";
 
 /// Clears what the method proves hidden of what is still visible in `rows` and `objects`.
 ///
@@ -59,13 +57,18 @@ pub(super) fn see(
     let n_objects = scene.occludees.len();
     let none = || PairMask { boxes: BitMatrix::new(n, n), objects: BitMatrix::new(n, n_objects) };
     let mut known = RegionVisibility { rows, objects, proven: none(), left: none(), effort: Effort::default() };
+    if !allowance.is_limited() {
+        let found = see_all(scene, make, options, Some(&known))?;
+        found.into_iter().enumerate().for_each(|(cell, row)| known.add(cell, &row));
+        return Ok(known);
+    }
     let counter = Counter::new(options.progress, "cells", n).of(Work::Deciding);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build().expect("threads can be started");
     let mut cells: Vec<usize> = scattered(n).collect();
     for turn in 0..MOST_TURNS {
         let shares = Shares::new(allowance, cells.len(), pool.current_num_threads());
         let one = |method: &mut Box<dyn FromRegion + Send>, &cell: &usize| {
-            let row = see_from(scene, &mut **method, options, cell, &known, shares.next_unit())?;
+            let row = see_from(scene, &mut **method, options, cell, Some(&known), shares.next_unit())?;
             if turn == 0 {
                 counter.step()?
             } else {
@@ -75,7 +78,7 @@ pub(super) fn see(
         };
         let found: Vec<(usize, CellRow)> =
             pool.install(|| cells.par_iter().map_init(make, one).collect::<Result<_, BakeError>>())?;
-        cells = found.iter().filter(|(_, row)| row.left.iter().flatten().any(|left| *left)).map(|f| f.0).collect();
+        cells = found.iter().filter(|(_, row)| row.left.iter().any(|left| !left.is_empty())).map(|f| f.0).collect();
         found.into_iter().for_each(|(cell, row)| known.add(cell, &row));
         if cells.is_empty() || allowance.is_over() {
             break;
@@ -85,25 +88,93 @@ pub(super) fn see(
     Ok(known)
 }
 
+/// What each cell sees by itself, without a limit: of everything, or of what is `known` to be possible.
+pub(super) fn see_all(
+    scene: &Targets<'_>,
+    make: MakeMethod<'_>,
+    options: &RegionBakeOptions<'_>,
+    known: Option<&RegionVisibility>,
+) -> Result<Vec<CellRow>, BakeError> {
+    let n = scene.volumes.len();
+    let sizes = [n as u32, scene.occludees.len() as u32];
+    let costs = costs_of(scene, options.units.are_kept());
+    let shares_of_time = shares_of(&costs);
+    options.units.begin(&Phase { name: PHASE, costs: &costs })?;
+    let counter = Counter::new(options.progress, "cells", n).of(Work::Deciding);
+    let one = |method: &mut Option<Box<dyn FromRegion + Send>>, cell: usize| {
+        counter.check()?;
+        let mut computed = None;
+        let result = options.units.get(PHASE, cell, || {
+            let method = method.get_or_insert_with(make);
+            let row = see_from(scene, &mut **method, options, cell, known, Allowance::default())?;
+            let bytes = if options.units.are_kept() { row.to_bytes() } else { Vec::new() };
+            computed = Some(row);
+            Ok::<_, BakeError>(bytes)
+        })?;
+        let is_kept = computed.is_none();
+        let row = match (computed, result) {
+            (Some(row), _) => Some(row),
+            (None, Some(bytes)) => Some(CellRow::from_bytes(&bytes, sizes).ok_or_else(|| unfit(cell))?),
+            (None, None) => None,
+        };
+        counter.step_by(shares_of_time[cell], is_kept)?;
+        Ok((cell, row))
+    };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build().expect("threads can be started");
+    let cells: Vec<usize> = scattered(n).collect();
+    let found: Vec<(usize, Option<CellRow>)> = pool.install(|| {
+        cells
+            .par_iter()
+            .with_max_len(1)
+            .map_init(|| None, |method, &cell| one(method, cell))
+            .collect::<Result<_, BakeError>>()
+    })?;
+    // If others have cells to do, this ends the bake.
+    options.units.end(PHASE)?;
+    let mut rows: Vec<CellRow> = vec![CellRow::default(); n];
+    found.into_iter().for_each(|(cell, row)| rows[cell] = row.expect("a phase that ends has all its results"));
+    Ok(rows)
+}
+
+fn unfit(cell: usize) -> Halt {
+    Halt::Store(format!("the kept result of unit {cell} of the phase '{PHASE}' does not fit this bake"))
+}
+
+/// The predicted cost of each cell: in proportion to what some rays from it reach, if it matters.
+fn costs_of(scene: &Targets<'_>, matters: bool) -> Vec<f64> {
+    let n_objects = scene.occludees.len();
+    let cost = |volume: &Volume| {
+        let mut reached = vec![false; n_objects];
+        scene.witness.see(volume, RAYS_TO_PREDICT, &vec![true; n_objects], &mut reached);
+        1.0 + reached.iter().filter(|reached| **reached).count() as f64
+    };
+    if matters { scene.volumes.par_iter().map(cost).collect() } else { vec![1.0; scene.volumes.len()] }
+}
+
+/// Rays by which the cost of a cell is predicted.
+const RAYS_TO_PREDICT: u32 = 64;
+
 impl RegionVisibility {
     /// Adds what the last turn of a cell has found.
     fn add(&mut self, a: usize, row: &CellRow) {
         self.effort = self.effort + row.effort;
         // Sight is symmetric: either of the two may have found that there is none.
-        for b in (0..row.cells.len()).filter(|&b| !row.cells[b] && a != b) {
+        let (n, n_objects) = (self.rows.n_cols() as u32, self.objects.n_cols() as u32);
+        for b in gaps(&row.cells, n).flatten().map(|b| b as usize).filter(|&b| a != b) {
             self.rows.set(a, b, false);
             self.rows.set(b, a, false);
         }
-        (0..row.objects.len()).filter(|&o| !row.objects[o]).for_each(|o| self.objects.set(a, o, false));
+        gaps(&row.objects, n_objects).flatten().for_each(|o| self.objects.set(a, o as usize, false));
         let [cells, things] = &row.proven;
-        for b in (0..cells.len()).filter(|&b| cells[b]) {
+        for b in cells.iter().cloned().flatten().map(|b| b as usize) {
             self.proven.boxes.set(a, b, true);
             self.proven.boxes.set(b, a, true);
         }
-        (0..things.len()).filter(|&o| things[o]).for_each(|o| self.proven.objects.set(a, o, true));
-        let [cells, things] = &row.left;
-        (0..cells.len()).for_each(|b| self.left.boxes.set(a, b, cells[b]));
-        (0..things.len()).for_each(|o| self.left.objects.set(a, o, things[o]));
+        things.iter().cloned().flatten().for_each(|o| self.proven.objects.set(a, o as usize, true));
+        for (left, of_row) in [(&mut self.left.boxes, &row.left[0]), (&mut self.left.objects, &row.left[1])] {
+            left.row_mut(a).fill(0);
+            of_row.iter().cloned().flatten().for_each(|k| left.set(a, k as usize, true));
+        }
     }
 
     /// What is hidden or proven visible was decided, whichever of two cells it was.
@@ -118,36 +189,69 @@ impl RegionVisibility {
     }
 }
 
+/// Whether two boxes do not overlap along some axis.
+fn apart(a: &Aabb<3>, b: &Aabb<3>) -> bool {
+    (0..3).any(|k| a.max[k] < b.min[k] || b.max[k] < a.min[k])
+}
+
 fn see_from(
     scene: &Targets<'_>,
     method: &mut dyn FromRegion,
     options: &RegionBakeOptions<'_>,
     cell: usize,
-    known: &RegionVisibility,
+    known: Option<&RegionVisibility>,
     unit: Allowance<'_>,
 ) -> Result<CellRow, BackendError> {
     let volume = &scene.volumes[cell];
-    let mut of_objects: Vec<bool> = (0..scene.occludees.len()).map(|o| known.objects.get(cell, o)).collect();
-    let mut of_cells: Vec<bool> = (0..scene.volumes.len()).map(|c| known.rows.get(cell, c)).collect();
-    let mut objects_reached: Vec<bool> = (0..of_objects.len()).map(|o| known.proven.objects.get(cell, o)).collect();
-    let mut cells_reached: Vec<bool> = (0..of_cells.len()).map(|c| known.proven.boxes.get(cell, c)).collect();
+    let (n, n_objects) = (scene.volumes.len(), scene.occludees.len());
+    let bits = |of: fn(&RegionVisibility) -> &BitMatrix, size: usize, unknown: bool| -> Vec<bool> {
+        known.map_or_else(|| vec![unknown; size], |known| (0..size).map(|k| of(known).get(cell, k)).collect())
+    };
+    let mut of_objects = bits(|known| &known.objects, n_objects, true);
+    let mut of_cells = bits(|known| &known.rows, n, true);
+    let mut objects_reached = bits(|known| &known.proven.objects, n_objects, false);
+    let mut cells_reached = bits(|known| &known.proven.boxes, n, false);
     if unit.is_over() {
         let left = [not_proven(&of_cells, &cells_reached), not_proven(&of_objects, &objects_reached)];
-        let proven = [cells_reached, objects_reached];
-        return Ok(CellRow { cells: of_cells, objects: of_objects, proven, left, effort: Effort::default() });
+        return Ok(CellRow::new([of_cells, of_objects], [cells_reached, objects_reached], left, Effort::default()));
     }
     let limit = Limit::new(unit);
     let mut left_cells = vec![false; of_cells.len()];
     let mut see_cells = |umbra: &mut dyn Umbra| {
         // Objects have half of what there is.
         limit.set(unit.part(0.5));
-        for (other, visible) in of_cells.iter_mut().enumerate().filter(|(_, visible)| **visible) {
-            let target = scene.volumes[other].bounds();
-            limit.take_refused();
-            let reached = &mut cells_reached[other];
-            *reached = *reached || !limit.refuses() && scene.witness.sees(volume, target, RAYS_TO_A_CELL);
-            *visible = *reached || !umbra.hides(target);
-            left_cells[other] = *visible && !*reached && other != cell && limit.take_refused();
+        // Groups of cells first: what hides the box of a group hides all of it.
+        let mut pending = if n == 0 { Vec::new() } else { vec![0u32] };
+        while let Some(k) = pending.pop() {
+            let node = &scene.tree.nodes()[k as usize];
+            let members = &scene.tree.order()[node.start as usize..node.end as usize];
+            if members.iter().all(|&other| !of_cells[other as usize]) {
+                continue;
+            }
+            if !node.is_leaf() {
+                let may_be_hidden = apart(volume.bounds(), &node.bounds)
+                    && !limit.refuses()
+                    && !members.iter().any(|&other| cells_reached[other as usize])
+                    && !scene.witness.sees(volume, &node.bounds, RAYS_TO_A_GROUP);
+                if may_be_hidden && umbra.hides(&node.bounds) {
+                    members.iter().for_each(|&other| of_cells[other as usize] = false);
+                } else {
+                    pending.extend(scene.tree.children(k));
+                }
+                continue;
+            }
+            for other in members.iter().map(|&other| other as usize) {
+                if !of_cells[other] {
+                    continue;
+                }
+                let target = scene.volumes[other].bounds();
+                limit.take_refused();
+                let reached =
+                    cells_reached[other] || !limit.refuses() && scene.witness.sees(volume, target, RAYS_TO_A_CELL);
+                let visible = reached || !umbra.hides(target);
+                left_cells[other] = visible && !reached && other != cell && limit.take_refused();
+                (cells_reached[other], of_cells[other]) = (reached, visible);
+            }
         }
         limit.set(unit);
         limit.take_refused();
@@ -170,7 +274,7 @@ fn see_from(
         false => vec![false; of_objects.len()],
     };
     let (proven, left) = ([cells_reached, objects_reached], [left_cells, left_objects]);
-    Ok(CellRow { cells: of_cells, objects: of_objects, proven, left, effort })
+    Ok(CellRow::new([of_cells, of_objects], proven, left, effort))
 }
 
 /// What is visible, and not proven to be.

@@ -102,6 +102,12 @@ impl AtomicBitMatrix {
         (rows[0]..rows[1]).all(|row| self.part(row, cols).all(|(word, mask)| word & mask == mask))
     }
 
+    /// The set columns of a row from one column to before another, ascending.
+    pub(super) fn ones_within(&self, row: usize, cols: [usize; 2]) -> impl Iterator<Item = usize> + '_ {
+        let words = (cols[0] / 64..).zip(self.part(row, cols));
+        words.flat_map(|(i, (word, mask))| crate::search::ones(word & mask).map(move |b| i * 64 + b))
+    }
+
     /// The set columns of a row, ascending.
     pub(crate) fn ones(&self, row: usize) -> impl Iterator<Item = usize> + '_ {
         let words = &self.words[row * self.width..][..self.width];
@@ -124,6 +130,8 @@ mod tests {
                 let inside = || (rows[0]..rows[1]).flat_map(|r| (cols[0]..cols[1]).map(move |c| (r, c)));
                 assert_eq!(marks.any(rows, cols), inside().any(|p| set.contains(&p)), "{rows:?} {cols:?}");
                 assert_eq!(marks.all(rows, cols), inside().all(|p| set.contains(&p)), "{rows:?} {cols:?}");
+                let ones = (cols[0]..cols[1]).filter(|&c| set.contains(&(rows[0], c)));
+                assert!(marks.ones_within(rows[0], cols).eq(ones));
             }
         }
         assert_eq!(marks.ones(1).collect::<Vec<_>>(), [63, 64]);

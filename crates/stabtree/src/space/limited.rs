@@ -3,11 +3,12 @@
 //! With a budget each group of pairs has a share of it, in which it is decided coarsely first. What one leaves goes to those that were
 //! not done, in further turns. What is left when the budget is spent counts as visible.
 
+use super::kept;
 use super::pairs::Pair;
 use super::witness_log::{WitnessLog, Worker};
-use super::{AtomicBitMatrix, PairMask, SLIVER, SpaceSearch, slivers};
+use super::{AtomicBitMatrix, PAIRS, PairMask, SLIVER, SpaceSearch, slivers};
 use rayon::prelude::*;
-use sightlines_progress::{Allowance, Cancelled, Counter, Shares};
+use sightlines_progress::{Allowance, Counter, Halt, Phase, Shares, Units, shares_of};
 use sightlines_pvs::BitMatrix;
 use sightlines_sightline::ShaftCounters;
 use std::collections::VecDeque;
@@ -29,29 +30,44 @@ impl SpaceSearch<'_> {
         threads: usize,
         allowance: Allowance<'_>,
         counter: &Counter<'_>,
-    ) -> Result<Done, Cancelled> {
+        units: Units<'_>,
+    ) -> Result<Done, Halt> {
         let (mut done, mut is_first) = (Vec::new(), true);
+        let costs: Vec<f64> = tasks.iter().map(|pair| self.cost_of(*pair)).collect();
+        let shares_of_time = shares_of(&costs);
+        units.begin(&Phase { name: kept::PAIRS, costs: &costs })?;
         while is_first || (!tasks.is_empty() && !allowance.is_over()) {
             let shares = Shares::new(allowance, tasks.len(), threads);
-            let turn = std::mem::take(&mut tasks).into_par_iter().with_max_len(1).map_init(
+            let turn = std::mem::take(&mut tasks).into_par_iter().enumerate().with_max_len(1).map_init(
                 || self.worker(),
-                |worker, task| {
+                |worker, (unit, task)| {
+                    // The observer may have cancelled while others were at work.
+                    counter.check()?;
                     let before = worker.shaft.counters();
-                    let rest = self.settle_below(task, worker, shares.next_unit(), allowance);
+                    let (mut rest, mut is_computed) = (Vec::new(), false);
+                    let result = units.get(kept::PAIRS, unit, || {
+                        is_computed = true;
+                        rest = self.settle_below(task, worker, shares.next_unit(), allowance);
+                        Ok::<_, Halt>(if units.are_kept() { self.result_of_pairs(task) } else { Vec::new() })
+                    })?;
+                    if let Some(bytes) = result.filter(|_| !is_computed) {
+                        self.restore_pairs(task, &bytes).ok_or_else(|| kept::unfit(kept::PAIRS, unit))?;
+                    }
                     if is_first {
-                        counter.step()?
+                        counter.step_by(PAIRS * shares_of_time[unit], !is_computed)?
                     } else {
                         counter.check()?
                     }
                     Ok((rest, (worker.shaft.counters() - before, worker.take_log())))
                 },
             );
-            for (rest, did) in turn.collect::<Result<Vec<_>, Cancelled>>()? {
+            for (rest, did) in turn.collect::<Result<Vec<_>, Halt>>()? {
                 tasks.extend(rest);
                 done.push(did);
             }
             is_first = false;
         }
+        units.end(kept::PAIRS)?;
         self.give_up_pairs(&tasks);
         Ok(done)
     }
@@ -107,30 +123,44 @@ impl SpaceSearch<'_> {
         threads: usize,
         allowance: Allowance<'_>,
         counter: &Counter<'_>,
-    ) -> Result<Done, Cancelled> {
+        units: Units<'_>,
+    ) -> Result<Done, Halt> {
         let (mut done, mut is_first) = (Vec::new(), true);
+        let costs: Vec<f64> = (0..self.boxes.len()).map(|object| self.cost_of_object(object)).collect();
+        let shares_of_time = shares_of(&costs);
+        units.begin(&Phase { name: kept::OBJECTS, costs: &costs })?;
         let mut tasks: Vec<(usize, Vec<u32>)> = (0..self.boxes.len()).map(|object| (object, vec![0])).collect();
         while is_first || (!tasks.is_empty() && !allowance.is_over()) {
             let shares = Shares::new(allowance, tasks.len(), threads);
             let turn = std::mem::take(&mut tasks).into_par_iter().with_max_len(4).map_init(
                 || self.worker(),
                 |worker, (object, nodes)| {
+                    counter.check()?;
                     let before = worker.shaft.counters();
-                    let rest = self.settle_object(object, worker, nodes, shares.next_unit(), allowance);
+                    let (mut rest, mut is_computed) = (Vec::new(), false);
+                    let result = units.get(kept::OBJECTS, object, || {
+                        is_computed = true;
+                        rest = self.settle_object(object, worker, nodes, shares.next_unit(), allowance);
+                        Ok::<_, Halt>(if units.are_kept() { self.result_of_object(object) } else { Vec::new() })
+                    })?;
+                    if let Some(bytes) = result.filter(|_| !is_computed) {
+                        self.restore_object(object, &bytes).ok_or_else(|| kept::unfit(kept::OBJECTS, object))?;
+                    }
                     if is_first {
-                        counter.step()?
+                        counter.step_by((1.0 - PAIRS) * shares_of_time[object], !is_computed)?
                     } else {
                         counter.check()?
                     }
                     Ok(((object, rest), (worker.shaft.counters() - before, worker.take_log())))
                 },
             );
-            for (rest, did) in turn.collect::<Result<Vec<_>, Cancelled>>()? {
+            for (rest, did) in turn.collect::<Result<Vec<_>, Halt>>()? {
                 tasks.extend(Some(rest).filter(|(_, nodes)| !nodes.is_empty()));
                 done.push(did);
             }
             is_first = false;
         }
+        units.end(kept::OBJECTS)?;
         self.give_up_objects(&tasks);
         Ok(done)
     }

@@ -18,6 +18,7 @@ mod explain;
 mod first_true;
 mod from_boxes;
 mod horizons;
+mod kept;
 mod limited;
 mod live;
 mod objects;
@@ -42,7 +43,7 @@ use rayon::prelude::*;
 use sightlines_cells::{Axial, CellGraph};
 use sightlines_geometry::Aabb;
 use sightlines_geometry::BoxTree;
-use sightlines_progress::{Allowance, Cancelled, Counter, Work, scattered};
+use sightlines_progress::{Allowance, Counter, Halt, Units, Work, scattered};
 use sightlines_pvs::BitMatrix;
 use sightlines_sightline::Shaft;
 use sightlines_sightline::{Blockers, ShaftCounters};
@@ -149,6 +150,9 @@ const SLIVER: u32 = u32::MAX;
 /// Pairs of groups are halved on one thread until there are this many for each thread.
 const TASKS_PER_THREAD: usize = 256;
 
+/// The same for all threads, if the results are kept. A unit is what is lost when a bake is stopped, and what a process takes at once.
+const KEPT_TASKS: usize = 4096;
+
 /// The same for a search that decides few pairs.
 const FEW_TASKS_PER_THREAD: usize = 16;
 
@@ -167,13 +171,13 @@ const FEW_TASKS_PER_THREAD: usize = 16;
 /// few bits each. Memory: two bit matrices.
 ///
 /// # Errors
-/// [`Cancelled`] by the observer.
+/// [`Halt`] by the observer, or by the store of units.
 pub fn space_visibility(
     graph: &CellGraph<Axial>,
     solid: &[Aabb<3>],
     objects: &[Aabb<3>],
     options: &SearchOptions<'_>,
-) -> Result<SpaceVisibility, Cancelled> {
+) -> Result<SpaceVisibility, Halt> {
     let blockers = Blockers::new(opaque_rectangles(graph, solid));
     let mut search = SpaceSearch::new(graph, objects, &blockers);
     search.use_columns();
@@ -274,17 +278,22 @@ impl<'a> SpaceSearch<'a> {
     }
 
     /// Decides all requested pairs; returns the effort, and the log of lines.
-    fn answer(&self, threads: usize, options: &SearchOptions<'_>) -> Result<(ShaftCounters, WitnessLog), Cancelled> {
+    fn answer(&self, threads: usize, options: &SearchOptions<'_>) -> Result<(ShaftCounters, WitnessLog), Halt> {
         let n = self.cell_at.len();
         // Who keeps lines for later has room for no pairs that are left.
         let budget = if self.left.is_some() { options.budget } else { Allowance::default() };
         if n == 0 {
             return Ok((ShaftCounters::default(), WitnessLog::default()));
         }
+        // A result of a group says nothing of what was left, of lines, or of pairs that were not asked for.
+        let are_all_decided = self.left.is_none() && !self.logging && self.doubt.is_none();
+        let units = if are_all_decided { options.units } else { Units::default() };
         let mut first = self.worker();
         let mut tasks = vec![[0, 0]];
         let per_thread = if self.doubt.is_some() { FEW_TASKS_PER_THREAD } else { TASKS_PER_THREAD };
-        while tasks.len() < per_thread * threads && !budget.is_over() {
+        // What is kept must not depend on the number of threads.
+        let n_tasks = if units.are_kept() { KEPT_TASKS } else { per_thread * threads };
+        while tasks.len() < n_tasks && !budget.is_over() {
             let mut smaller = Vec::new();
             tasks.iter().for_each(|&pair| self.settle(pair, &mut first, &mut |p| smaller.push(p)));
             tasks = smaller;
@@ -295,16 +304,14 @@ impl<'a> SpaceSearch<'a> {
         let tasks: Vec<Pair> = scattered(tasks.len()).map(|i| tasks[i]).collect();
         let n_units = tasks.len() + self.boxes.len();
         let counter = Counter::new(options.progress, "pairs and objects", n_units).of(Work::Deciding);
-        // There are many times as many objects, each of which takes little.
-        let counter = counter.with_first(tasks.len(), PAIRS);
-        let pairs = self.settle_pairs(tasks, threads, budget.part(PAIRS), &counter)?;
+        let pairs = self.settle_pairs(tasks, threads, budget.part(PAIRS), &counter, units)?;
         let survey = (0..n).into_par_iter().map(|place| {
             let mut log = self.logging.then(WitnessLog::default);
             self.survey_objects(place, log.as_mut());
             (ShaftCounters::default(), log.unwrap_or_default())
         });
         let survey: Vec<(ShaftCounters, WitnessLog)> = survey.collect();
-        let objects = self.settle_objects(threads, budget, &counter)?;
+        let objects = self.settle_objects(threads, budget, &counter, units)?;
         let mut all = (first.shaft.counters(), first.take_log());
         for (counters, log) in pairs.into_iter().chain(survey).chain(objects) {
             all.0 = all.0 + counters;

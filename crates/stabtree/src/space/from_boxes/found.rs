@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use sightlines_cells::{Axial, CellGraph};
 use sightlines_geometry::Aabb;
 use sightlines_pvs::BitMatrix;
+use sightlines_pvs::runs::{read_runs, runs_of, write_runs};
 use sightlines_sightline::{Blockers, FreeLine};
 
 /// What is known to be visible: shared by all threads, and only ever extended.
@@ -125,6 +126,25 @@ impl FoundVisible<'_> {
             left.objects.iter_ones(eye).for_each(|i| self.see(Kind::Object, eye, i));
         }
         (left.boxes.count_ones() + left.objects.count_ones() > 0).then_some(left)
+    }
+
+    /// What a box sees of what it was asked about, once that is decided: of boxes only later ones.
+    pub(super) fn result_of(&self, eye: usize, asked: &PairMask) -> Vec<u8> {
+        let boxes = asked.boxes.iter_ones(eye).filter(|&other| other > eye && self.boxes.get(eye, other));
+        let objects = asked.objects.iter_ones(eye).filter(|&object| self.objects.get(eye, object));
+        let mut out = Vec::new();
+        write_runs(&runs_of(boxes.map(|other| other as u32)), &mut out);
+        write_runs(&runs_of(objects.map(|object| object as u32)), &mut out);
+        out
+    }
+
+    /// Marks what a box sees by a result; `None` if it is of other boxes, and then some may be marked.
+    pub(super) fn restore(&self, eye: usize, mut bytes: &[u8]) -> Option<()> {
+        let boxes = read_runs(&mut bytes, self.of_boxes.boxes.len() as u32)?;
+        let objects = read_runs(&mut bytes, self.of_objects.boxes.len() as u32)?;
+        boxes.into_iter().flatten().for_each(|other| self.see(Kind::Box, eye, other as usize));
+        objects.into_iter().flatten().for_each(|object| self.see(Kind::Object, eye, object as usize));
+        bytes.is_empty().then_some(())
     }
 
     /// Marks that a box sees something of a kind.

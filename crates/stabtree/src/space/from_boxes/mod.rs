@@ -11,6 +11,7 @@ mod found;
 mod targets;
 
 use super::atomic_bits::AtomicBitMatrix;
+use super::kept::unfit;
 use super::on_threads;
 use super::opaque::opaque_rectangles;
 use super::pairs::{CELL_BUDGET, GROUP_BUDGET, apart};
@@ -19,11 +20,14 @@ use found::FoundVisible;
 use rayon::prelude::*;
 use sightlines_cells::{Axial, CellGraph};
 use sightlines_geometry::Aabb;
-use sightlines_progress::{Allowance, Cancelled, Counter, Shares};
+use sightlines_progress::{Allowance, Counter, Halt, Phase, Shares, Units, shares_of};
 use sightlines_pvs::BitMatrix;
 use sightlines_sightline::{Blockers, Shaft, ShaftCounters, ShaftLine, Target, Verdict};
 use std::collections::VecDeque;
 use targets::{CellLocator, Targets};
+
+/// The phase of units of work: one for each box.
+const PHASE: &str = "boxes";
 
 /// The pairs to decide: of two boxes, which has to be symmetric, and of a box and an object.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -69,7 +73,7 @@ pub struct BoxVisibility {
 /// targets are found in the same cell, or on earlier lines. Memory: four bits for each pair.
 ///
 /// # Errors
-/// [`Cancelled`] by the observer.
+/// [`Halt`] by the observer, or by the store of units.
 ///
 /// # Panics
 /// If a matrix of `asked` has the wrong size.
@@ -80,7 +84,7 @@ pub fn box_visibility(
     objects: &[Aabb<3>],
     asked: &PairMask,
     options: &SearchOptions<'_>,
-) -> Result<BoxVisibility, Cancelled> {
+) -> Result<BoxVisibility, Halt> {
     let fits = |m: &BitMatrix, n_cols: usize| m.n_rows() == boxes.len() && m.n_cols() == n_cols;
     assert!(fits(&asked.boxes, boxes.len()) && fits(&asked.objects, objects.len()), "a row for each box");
     let blockers = Blockers::new(opaque_rectangles(graph, solid));
@@ -117,6 +121,12 @@ pub fn box_visibility(
         counters: ShaftCounters::default(),
     };
     let mut unfinished: Vec<Unfinished> = (0..boxes.len()).map(Unfinished::all_of).collect();
+    // A result of a box says nothing of what was left.
+    let units = if options.budget.is_limited() { Units::default() } else { options.units };
+    let n_asked = |eye: usize| (asked.boxes.count_row(eye) + asked.objects.count_row(eye)) as f64;
+    let costs: Vec<f64> = (0..boxes.len()).map(n_asked).collect();
+    let shares_of_time = shares_of(&costs);
+    units.begin(&Phase { name: PHASE, costs: &costs })?;
     on_threads(options.threads, |threads| {
         known.mark_within(graph, &places);
         // What a box was refused for the sake of the others it gets when they are done.
@@ -126,18 +136,31 @@ pub fn box_visibility(
             let found = std::mem::take(&mut unfinished).into_par_iter().with_max_len(1).map_init(
                 || Shaft::new(&blockers),
                 |shaft, from| {
-                    let found = one(shaft, from, shares.next_unit());
-                    if is_first { counter.step() } else { counter.check() }.map(|()| found)
+                    counter.check()?;
+                    let (eye, mut found) = (from.eye, None);
+                    let result = units.get(PHASE, eye, || {
+                        found = Some(one(shaft, from, shares.next_unit()));
+                        Ok::<_, Halt>(if units.are_kept() { known.result_of(eye, asked) } else { Vec::new() })
+                    })?;
+                    if let Some(bytes) = result.filter(|_| found.is_none()) {
+                        known.restore(eye, &bytes).ok_or_else(|| unfit(PHASE, eye))?;
+                    }
+                    if is_first {
+                        counter.step_by(shares_of_time[eye], found.is_none())?
+                    } else {
+                        counter.check()?
+                    }
+                    Ok(found)
                 },
             );
-            for (rest, n_assumed, counters) in found.collect::<Result<Vec<_>, Cancelled>>()? {
+            for (rest, n_assumed, counters) in found.collect::<Result<Vec<_>, Halt>>()?.into_iter().flatten() {
                 answer.n_assumed += n_assumed;
                 answer.counters = answer.counters + counters;
                 unfinished.extend(Some(rest).filter(Unfinished::is_some));
             }
             is_first = false;
         }
-        Ok(())
+        units.end(PHASE)
     })?;
     answer.left = known.give_up(&unfinished, asked, &places, boxes);
     for eye in 0..boxes.len() {

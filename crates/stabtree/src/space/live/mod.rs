@@ -29,7 +29,7 @@ use matching::{Matching, heirs, same_boxes};
 use rayon::prelude::*;
 use sightlines_cells::{Axial, CellGraph};
 use sightlines_geometry::{Aabb, BoxTree};
-use sightlines_progress::{Cancelled, Observer, Uncancelled};
+use sightlines_progress::{Cancelled, Halt, Observer, Uncancelled};
 use sightlines_sightline::{Blockers, ShaftCounters};
 use std::cell::Cell;
 
@@ -170,7 +170,7 @@ impl LiveSpace {
         let (doubt, mut kept, n_cut) = step.prepare(log, &change, &same_objects);
         update.n_lines_cut = n_cut;
         search.doubt = Some(doubt);
-        let (counters, found) = search.answer(threads, options)?;
+        let (counters, found) = search.answer(threads, options).map_err(Halt::without_store)?;
         kept.append(found);
         update.counters = counters;
         kept.compact();
@@ -196,7 +196,7 @@ fn anew(
     let blockers = Blockers::new(walls.rectangles());
     let mut search = SpaceSearch::new(graph, objects, &blockers);
     search.logging = true;
-    let (counters, log) = search.answer(threads, options)?;
+    let (counters, log) = search.answer(threads, options).map_err(Halt::without_store)?;
     Ok((search.into_seen(counters), log))
 }
 
