@@ -38,7 +38,7 @@ impl Halt {
 ///
 /// A bake calls [`UnitStore::begin`] once for each phase, in order; then, for its units in any order and from any thread,
 /// [`UnitStore::load`], and where that has nothing and [`UnitStore::wants`] says so, [`UnitStore::save`] with the result; then
-/// [`UnitStore::end`]. Equal input, options and program give equal phases and equal results, whoever computes them.
+/// [`UnitStore::end`]. A phase of one unit is what all later ones need: whoever divides the others among processes computes it first. Equal input, options and program give equal phases and equal results, whoever computes them.
 pub trait UnitStore: Sync {
     /// A phase begins.
     ///

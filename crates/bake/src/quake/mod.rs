@@ -40,7 +40,8 @@ pub struct PrtOptions<'a> {
     pub progress: Option<&'a dyn Observer>,
     /// Called after each step, for example to store [`ConvexSearch::state`].
     pub after_step: Option<&'a mut dyn FnMut(&ConvexSearch)>,
-    /// Where results of units of work are kept, to share a search among processes.
+    /// Where results of units of work are kept, to share a search among processes: then there is no state to begin with, and no step after
+    /// which to store one.
     pub units: Units<'a>,
     /// Which textures make sounds in a map of Quake; of no use for a table.
     pub sounds: AmbientTextures,
@@ -109,8 +110,17 @@ fn graph(prt: &Prt) -> Result<CellGraph<Convex>, PrtBakeError> {
 }
 
 fn see(graph: &CellGraph<Convex>, options: PrtOptions<'_>) -> Result<ClusterVisibility, PrtBakeError> {
-    let PrtOptions { search, from, progress, after_step, units: _, sounds: _ } = options;
+    let PrtOptions { search, from, progress, after_step, units, sounds: _ } = options;
     let start = Instant::now();
+    if units.are_kept() {
+        let mut running = ConvexSearch::new(graph, search);
+        running.run_in_units(progress, units)?;
+        return Ok(ClusterVisibility {
+            seen: running.finish(),
+            n_portals: graph.portals().len(),
+            see_time: start.elapsed(),
+        });
+    }
     let mut running = match from {
         None => ConvexSearch::new(graph, search),
         Some(state) => ConvexSearch::resume(graph, search, state).ok_or(StateError::Unfit)?,

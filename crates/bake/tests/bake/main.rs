@@ -15,3 +15,4 @@ mod reject;
 mod reject_text;
 mod space;
 mod stab;
+mod units;

@@ -23,6 +23,7 @@ mod certify;
 mod cut;
 mod explain;
 mod gates;
+mod kept;
 mod pairs;
 mod sampled;
 mod state;
@@ -36,14 +37,14 @@ pub use explain::{
 pub use state::{ConvexCounters, ConvexOptions, ConvexState, ConvexVisibility, WorkChain};
 
 pub(crate) use batch::Workers;
-use beams::BeamTracer;
+use beams::{BeamTracer, Traced};
 pub(crate) use gates::Gates;
-use pairs::{SequenceTracer, cells_of};
+use pairs::{PairVerdict, SequenceTracer, cells_of};
 use sightlines_cells::{CellGraph, Convex};
 use sightlines_progress::{Cancelled, Observer, Progress};
 use sightlines_pvs::BitMatrix;
 use sightlines_sightline::{LimitReached, Verdict};
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 
 /// Number of stages, and the stage number of a finished search.
 const N_STAGES: u32 = 4;
@@ -223,7 +224,7 @@ impl ConvexSearch {
     }
 
     /// The units of the next batch, as a range; moves on.
-    fn take(&mut self, all: usize, size: usize) -> std::ops::Range<usize> {
+    fn take(&mut self, all: usize, size: usize) -> Range<usize> {
         let start = self.state.done as usize;
         let end = (start + size).min(all);
         self.state.done = end as u64;
@@ -308,10 +309,25 @@ impl ConvexSearch {
 
     fn trace_beams(&mut self) {
         let range = self.take(self.order.len(), FEW);
+        let traced = self.beams_of(range.clone());
+        self.chain.add(traced.iter().map(|(_, counters)| counters.work()));
+        let done = self.state.done as usize;
+        let mut is_done = vec![false; self.order.len()];
+        self.order[..done].iter().for_each(|&gate| is_done[gate as usize] = true);
+        let (traced, counters): (Vec<Traced>, Vec<ConvexCounters>) = traced.into_iter().unzip();
+        counters.into_iter().for_each(|counters| self.state.counters += counters);
+        self.apply_beams(range, &traced, &is_done);
+        if done == self.order.len() {
+            self.set_possible();
+            self.next_stage();
+        }
+    }
+
+    /// Beams of the gates at some places of the order, by what is known now.
+    fn beams_of(&self, places: Range<usize>) -> Vec<(Traced, ConvexCounters)> {
         let (gates, state, order) = (&self.gates, &self.state, &self.order);
-        let done = state.done as usize;
-        let traced = self.workers.map(
-            range.clone(),
+        self.workers.map(
+            places,
             || BeamTracer::new(gates),
             |tracer, place| {
                 let gate = order[place];
@@ -321,24 +337,24 @@ impl ConvexSearch {
                 let traced = tracer.trace(gates, gate, in_doubt, &state.through);
                 (traced, tracer.take_counters())
             },
-        );
-        self.chain.add(traced.iter().map(|(_, counters)| counters.work()));
+        )
+    }
+
+    /// Adds what beams of the gates at some places have found. `is_done`: the gates whose beams were added, these among them.
+    fn apply_beams(&mut self, places: Range<usize>, traced: &[Traced], is_done: &[bool]) {
         let mut touched: Vec<u32> = Vec::new();
-        for (place, (traced, counters)) in range.zip(traced) {
+        for (place, traced) in places.zip(traced) {
             let gate = self.order[place];
             let row = self.state.through.row_mut(gate as usize);
             row.iter_mut().zip(&traced.hidden).for_each(|(row, hidden)| *row &= !hidden);
             traced.chains.iter().for_each(|chain| sampled::mark(&self.gates, chain, &mut self.state.visible));
-            self.state.counters += counters;
             touched.push(self.gates.get(gate).from);
         }
         // A cell that cannot be seen from a cell with all gates done cannot see that cell either.
         touched.sort_unstable();
         touched.dedup();
-        let mut place_of = vec![0u32; self.order.len()];
-        self.order.iter().zip(0u32..).for_each(|(&gate, place)| place_of[gate as usize] = place);
-        let is_done = |cell: u32| self.gates.exits(cell).iter().all(|&g| (place_of[g as usize] as usize) < done);
-        for cell in touched.into_iter().filter(|&cell| is_done(cell)) {
+        let all_done = |cell: u32| self.gates.exits(cell).iter().all(|&gate| is_done[gate as usize]);
+        for cell in touched.into_iter().filter(|&cell| all_done(cell)) {
             let mut reach = vec![0u64; self.state.through.row(0).len()];
             for &gate in self.gates.exits(cell) {
                 let row = self.state.through.row(gate as usize);
@@ -352,50 +368,57 @@ impl ConvexSearch {
                 }
             }
         }
-        if done == self.order.len() {
-            self.set_possible();
+    }
+
+    fn decide_pairs(&mut self) {
+        let mut pairs: Vec<[u32; 2]> = Vec::new();
+        let mut done = self.state.done as usize;
+        while let Some(&cell) = self.scattered.get(done).filter(|_| pairs.len() < PAIRS) {
+            pairs.extend(self.pairs_in_doubt(cell));
+            done += 1;
+        }
+        let decided = self.verdicts_on(&pairs);
+        self.state.done = done as u64;
+        self.chain.add(decided.iter().map(|(_, counters)| counters.work()));
+        for (pair, (sight, counters)) in pairs.into_iter().zip(decided) {
+            self.state.counters += counters;
+            self.apply_verdict(pair, &sight);
+        }
+        if self.state.done as usize == self.gates.n_cells() {
             self.next_stage();
         }
     }
 
-    fn decide_pairs(&mut self) {
-        let (gates, state, rank) = (&self.gates, &self.state, &self.rank);
-        // Each pair is decided from the cell that sees less.
-        let others = |cell: usize| -> Vec<u32> {
-            let row = state.possible.row(cell).iter().zip(state.visible.row(cell));
-            let in_doubt: Vec<u64> = row.map(|(possible, visible)| possible & !visible).collect();
-            cells_of(&in_doubt).filter(|&other| rank[other as usize] > rank[cell]).collect()
-        };
-        let mut pairs: Vec<[u32; 2]> = Vec::new();
-        let mut done = state.done as usize;
-        while let Some(&cell) = self.scattered.get(done).filter(|_| pairs.len() < PAIRS) {
-            pairs.extend(others(cell as usize).into_iter().map(|other| [cell, other]));
-            done += 1;
-        }
-        let decided = self.workers.map(
+    /// The pairs that are in doubt and decided from a cell: each pair is decided from the cell that sees less.
+    fn pairs_in_doubt(&self, cell: u32) -> Vec<[u32; 2]> {
+        let (state, rank) = (&self.state, &self.rank);
+        let row = state.possible.row(cell as usize).iter().zip(state.visible.row(cell as usize));
+        let in_doubt: Vec<u64> = row.map(|(possible, visible)| possible & !visible).collect();
+        let others = cells_of(&in_doubt).filter(|&other| rank[other as usize] > rank[cell as usize]);
+        others.map(|other| [cell, other]).collect()
+    }
+
+    fn verdicts_on(&self, pairs: &[[u32; 2]]) -> Vec<(PairVerdict, ConvexCounters)> {
+        let (gates, through) = (&self.gates, &self.state.through);
+        self.workers.map(
             0..pairs.len(),
             || SequenceTracer::new(gates),
-            |tracer, k| (tracer.decide(gates, pairs[k], &state.through), tracer.take_counters()),
-        );
-        self.state.done = done as u64;
-        self.chain.add(decided.iter().map(|(_, counters)| counters.work()));
-        for ([a, b], (sight, counters)) in pairs.into_iter().zip(decided) {
-            self.state.counters += counters;
-            match sight {
-                Verdict::Visible(chain) => sampled::mark(&self.gates, &chain, &mut self.state.visible),
-                Verdict::Undecided(LimitReached) => self.state.undecided.push([a.min(b), a.max(b)]),
-                Verdict::Hidden(()) => {
-                    for [from, to] in [[a, b], [b, a]] {
-                        self.state.possible.set(from as usize, to as usize, false);
-                        for &gate in self.gates.exits(from) {
-                            self.state.through.set(gate as usize, to as usize, false);
-                        }
+            |tracer, k| (tracer.decide(gates, pairs[k], through), tracer.take_counters()),
+        )
+    }
+
+    fn apply_verdict(&mut self, [a, b]: [u32; 2], sight: &PairVerdict) {
+        match sight {
+            Verdict::Visible(chain) => sampled::mark(&self.gates, chain, &mut self.state.visible),
+            Verdict::Undecided(LimitReached) => self.state.undecided.push([a.min(b), a.max(b)]),
+            Verdict::Hidden(()) => {
+                for [from, to] in [[a, b], [b, a]] {
+                    self.state.possible.set(from as usize, to as usize, false);
+                    for &gate in self.gates.exits(from) {
+                        self.state.through.set(gate as usize, to as usize, false);
                     }
                 }
             }
-        }
-        if self.state.done as usize == self.gates.n_cells() {
-            self.next_stage();
         }
     }
 }
