@@ -1,9 +1,10 @@
 //! A search in units whose results are kept, so that several processes share one.
 //!
-//! Three phases. The first is one unit: bounds, and lines through every portal. Then come beams, [`FEW`] gates to a unit, and then the pairs
-//! in doubt, [`CELLS`] cells to a unit. Unlike the steps of a search in one process, a unit knows only what units before it
-//! have found that this process has the results of. So more may be asked, and the same is found, except for pairs that are given up
-//! ([`ConvexVisibility::undecided`](super::ConvexVisibility::undecided)): which those are depends on what is known before.
+//! The first phase is one unit: bounds, and lines through every portal. Then come beams, [`FEW`] gates to a unit, and then the pairs
+//! in doubt, [`CELLS`] cells to a unit. Unlike the steps of a search in one process, a unit knows only what earlier phases
+//! have found, and units of its own that this process has the results of. So more is asked, and the same is found, except that pairs
+//! may be given up for another reason ([`ConvexVisibility::undecided`](super::ConvexVisibility::undecided)): on none of the real maps that were tried they differ.
+//! Beams and pairs are several phases each, so that what the quick ones find serves the slow ones.
 
 use super::beams::Traced;
 use super::pairs::PairVerdict;
@@ -12,10 +13,29 @@ use sightlines_progress::{Halt, Observer, Phase, Units};
 use sightlines_pvs::BitMatrix;
 use sightlines_pvs::runs::{read_runs, read_varint, runs_of, write_runs, write_varint};
 use sightlines_sightline::{LimitReached, Verdict};
+use std::ops::Range;
 
 const FIRST: &str = "first";
-const BEAMS: &str = "beams";
-const SEQUENCES: &str = "sequences";
+/// Phases of beams, each with the share of gates that comes before its end. The last gates take most time, with its square.
+const BEAMS: [(&str, f64); 4] = [("beams", 0.4), ("beams-again", 0.65), ("more-beams", 0.84), ("last-beams", 1.0)];
+/// Phases of pairs, each with the share of cells that comes before its end.
+const SEQUENCES: [(&str, f64); 3] = [("sequences", 0.2), ("more-sequences", 0.55), ("last-sequences", 1.0)];
+
+/// The units of some phases: which of `n` things each has, `size` to a unit.
+fn divided<const K: usize>(
+    phases: [(&'static str, f64); K],
+    n: usize,
+    size: usize,
+) -> Vec<(&'static str, Vec<Range<usize>>)> {
+    let mut start = 0;
+    let phase = |(name, share): (&'static str, f64)| {
+        let end = ((n as f64 * share) as usize).next_multiple_of(size).min(n);
+        let units = (start..end).step_by(size).map(|first| first..end.min(first + size)).collect();
+        start = start.max(end);
+        (name, units)
+    };
+    phases.map(phase).into()
+}
 
 /// Cells of a unit of pairs.
 const CELLS: usize = 16;
@@ -87,63 +107,65 @@ impl ConvexSearch {
     }
 
     fn beams_in_units(&mut self, observer: Option<&dyn Observer>, units: Units<'_>) -> Result<(), Halt> {
-        let n = self.order.len();
-        let ranges: Vec<_> = (0..n.div_ceil(FEW)).map(|k| k * FEW..n.min((k + 1) * FEW)).collect();
-        // Time grows with the square of what lies behind a gate.
-        let cost = |&gate: &u32| (self.state.through.count_row(gate as usize) as f64).powi(2);
-        let costs: Vec<f64> = ranges.iter().map(|range| self.order[range.clone()].iter().map(cost).sum()).collect();
-        units.begin(&Phase { name: BEAMS, costs: &costs })?;
-        let mut is_done = vec![false; n];
-        for (unit, range) in ranges.into_iter().enumerate() {
-            let (mut found, n_cells) = (None, self.gates.n_cells());
-            let result = units.get(BEAMS, unit, || {
-                let (traced, counters): (Vec<Traced>, Vec<ConvexCounters>) =
-                    self.beams_of(range.clone()).into_iter().unzip();
-                let mut all = ConvexCounters::default();
-                counters.into_iter().for_each(|counters| all += counters);
-                let bytes = beams_to_bytes(&traced, all);
-                found = Some((traced, all));
-                Ok::<_, Halt>(bytes)
-            })?;
-            let found = match (found, result) {
-                (None, Some(bytes)) => {
-                    let read = beams_from_bytes(&bytes, range.len(), n_cells, &self.gates);
-                    Some(read.ok_or_else(|| unfit(BEAMS, unit))?)
+        let mut is_done = vec![false; self.order.len()];
+        for (phase, ranges) in divided(BEAMS, self.order.len(), FEW) {
+            // Time grows with the square of what lies behind a gate.
+            let cost = |&gate: &u32| (self.state.through.count_row(gate as usize) as f64).powi(2);
+            let costs: Vec<f64> = ranges.iter().map(|range| self.order[range.clone()].iter().map(cost).sum()).collect();
+            units.begin(&Phase { name: phase, costs: &costs })?;
+            for (unit, range) in ranges.into_iter().enumerate() {
+                let (mut found, n_cells) = (None, self.gates.n_cells());
+                let result = units.get(phase, unit, || {
+                    let (traced, counters): (Vec<Traced>, Vec<ConvexCounters>) =
+                        self.beams_of(range.clone()).into_iter().unzip();
+                    let mut all = ConvexCounters::default();
+                    counters.into_iter().for_each(|counters| all += counters);
+                    let bytes = beams_to_bytes(&traced, all);
+                    found = Some((traced, all));
+                    Ok::<_, Halt>(bytes)
+                })?;
+                let found = match (found, result) {
+                    (None, Some(bytes)) => {
+                        let read = beams_from_bytes(&bytes, range.len(), n_cells, &self.gates);
+                        Some(read.ok_or_else(|| unfit(phase, unit))?)
+                    }
+                    (found, _) => found,
+                };
+                self.state.done = range.end as u64;
+                if let Some((traced, counters)) = found {
+                    self.state.counters += counters;
+                    self.order[range.clone()].iter().for_each(|&gate| is_done[gate as usize] = true);
+                    self.apply_beams(range, &traced, &is_done);
                 }
-                (found, _) => found,
-            };
-            self.state.done = range.end as u64;
-            if let Some((traced, counters)) = found {
-                self.state.counters += counters;
-                self.order[range.clone()].iter().for_each(|&gate| is_done[gate as usize] = true);
-                self.apply_beams(range, &traced, &is_done);
+                self.tell(observer)?;
             }
-            self.tell(observer)?;
+            units.end(phase)?;
         }
-        units.end(BEAMS)?;
         self.set_possible();
         self.next_stage();
         Ok(())
     }
 
     fn sequences_in_units(&mut self, observer: Option<&dyn Observer>, units: Units<'_>) -> Result<(), Halt> {
-        let chunks: Vec<Vec<u32>> = self.scattered.chunks(CELLS).map(<[u32]>::to_vec).collect();
-        let cost = |cells: &Vec<u32>| cells.iter().map(|&cell| self.pairs_in_doubt(cell).len() as f64).sum();
-        let costs: Vec<f64> = chunks.iter().map(cost).collect();
-        units.begin(&Phase { name: SEQUENCES, costs: &costs })?;
-        for (unit, cells) in chunks.into_iter().enumerate() {
-            let mut is_computed = false;
-            let result = units.get(SEQUENCES, unit, || {
-                is_computed = true;
-                Ok::<_, Halt>(self.decide_cells(&cells))
-            })?;
-            if let Some(bytes) = result.filter(|_| !is_computed) {
-                self.restore_cells(&cells, &bytes).ok_or_else(|| unfit(SEQUENCES, unit))?;
+        for (phase, ranges) in divided(SEQUENCES, self.scattered.len(), CELLS) {
+            let chunks: Vec<Vec<u32>> = ranges.into_iter().map(|range| self.scattered[range].to_vec()).collect();
+            let cost = |cells: &Vec<u32>| cells.iter().map(|&cell| self.pairs_in_doubt(cell).len() as f64).sum();
+            let costs: Vec<f64> = chunks.iter().map(cost).collect();
+            units.begin(&Phase { name: phase, costs: &costs })?;
+            for (unit, cells) in chunks.into_iter().enumerate() {
+                let mut is_computed = false;
+                let result = units.get(phase, unit, || {
+                    is_computed = true;
+                    Ok::<_, Halt>(self.decide_cells(&cells))
+                })?;
+                if let Some(bytes) = result.filter(|_| !is_computed) {
+                    self.restore_cells(&cells, &bytes).ok_or_else(|| unfit(phase, unit))?;
+                }
+                self.state.done += cells.len() as u64;
+                self.tell(observer)?;
             }
-            self.state.done += cells.len() as u64;
-            self.tell(observer)?;
+            units.end(phase)?;
         }
-        units.end(SEQUENCES)?;
         self.next_stage();
         Ok(())
     }
