@@ -20,7 +20,7 @@ use crate::error::BakeError;
 use crate::graph::TableGraph;
 use crate::limit::{LimitReport, state_limit};
 use crate::objects::object_lists;
-use crate::places::{PlaceOptions, PlacesError, observed_places};
+use crate::places::{PlaceOptions, PlaceSummary, PlacesError, observed_places};
 use crate::reports::RegionReport;
 use crate::scene::{PortalMode, SceneBakeOptions, extents, merge_portals, n_triangles, see_scene};
 use crate::table::{object_record, state_file};
@@ -32,7 +32,7 @@ use sightlines_geometry::{Aabb, BoxTree, Point3};
 use sightlines_kdtree::{KdError, SceneOptions, subdivide_scene};
 use sightlines_multifocal::{Effort, FromRegion, Occludees, RaySampler, Split, Volume};
 use sightlines_progress::{Allowance, Observer, Units};
-use sightlines_pvs::{BitMatrix, SceneMethods, Table, TableKind};
+use sightlines_pvs::{BitMatrix, SceneMethods, Table, TableKind, TableParts};
 use sightlines_stabtree::{BoxVisibility, PairMask, SearchOptions, box_visibility};
 use std::fmt;
 use std::time::Instant;
@@ -50,6 +50,13 @@ pub enum CellsFrom {
     Places(PlaceOptions),
     /// These boxes, without portals; they may overlap, and leave gaps.
     Boxes(ViewCells),
+}
+
+impl CellsFrom {
+    /// Whether there are portals between the cells.
+    pub const fn have_portals(&self) -> bool {
+        matches!(self, Self::KdTree)
+    }
 }
 
 /// The share of a budget for sightlines, if there is also a from-region method.
@@ -139,19 +146,11 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
             parts::of_seen(graph, parts)
         }
         CellsFrom::KdTree => parts::of_cut(scene, subdivide_scene(scene, &options.cut)?, boxes.len()),
-        CellsFrom::Grid(n) => {
-            let around = options.cut.view_region.unwrap_or_else(|| scene.bounds());
-            parts::of_boxes(&grid(&around, *n)?.cells, boxes.len())
+        alone => {
+            let cut = cells_alone(scene, options, alone)?;
+            summary = cut.places;
+            parts::of_alone((cut.cells, cut.parts), boxes.len())
         }
-        CellsFrom::Places(how) => {
-            let cut = observed_places(scene, &options.cut, how, options.progress).map_err(|error| match error {
-                PlacesError::Cancelled(cancelled) => cancelled.into(),
-                error => BakeError::from(error),
-            })?;
-            summary = Some(cut.summary);
-            parts::of_places(cut.cells, boxes.len())
-        }
-        CellsFrom::Boxes(cells) => parts::of_boxes(&upright(cells), boxes.len()),
     };
     let volumes = volumes(&cells)?;
     let touching = see::touching(&cells, &boxes);
@@ -168,16 +167,7 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
         Some(make) => {
             let made = make();
             let method = (made.name(), made.only_in_air());
-            // What may be anywhere touches every cell, and need not be decided.
-            let covering = |(object, extent): (u32, &Aabb<3>)| {
-                if *extent == ANYWHERE { Vec::new() } else { scene.covering_triangles(object) }
-            };
-            let triangles: Vec<Vec<[Point3; 3]>> = (0u32..).zip(&boxes).map(covering).collect();
-            // What is see-through stops no ray.
-            let none: &[[Point3; 3]] = &[];
-            let in_the_way = (0u32..).zip(&triangles).map(|(k, of)| if scene.is_opaque(k) { &of[..] } else { none });
-            let witness = RaySampler::new(in_the_way).with_single_sided(|object| scene.is_single_sided(object));
-            let occludees = Occludees::new(triangles).with_single_sided(|object| scene.is_single_sided(object));
+            let (occludees, witness) = targets_of(scene, &boxes);
             let tree = BoxTree::build(&cells, 1);
             let scene = see::Targets { occludees: &occludees, witness: &witness, volumes: &volumes, tree };
             let takes_turns = by_sightlines && matches!(graph, TableGraph::Boxes(_));
@@ -219,9 +209,7 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
     parts.cell_objects = object_lists(touching);
     parts.objects_seen = Some(objects);
     if parts.objects.is_empty() {
-        parts.objects = scene.objects().iter().zip(&boxes).map(|(o, b)| object_record(&o.name, b)).collect();
-        parts.object_polygons = scene.objects().iter().map(n_triangles).collect();
-        parts.object_sources = scene.sources().to_vec();
+        state_objects(&mut parts, scene, &boxes);
     }
     let (method, only_in_air) = method.map_or((None, false), |(name, only_in_air)| (Some(name), only_in_air));
     let text = method.clone().unwrap_or_default();
@@ -262,6 +250,56 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
         time,
     };
     Ok(Baked { graph, table, report })
+}
+
+/// Cells without portals, with what is known of them.
+struct CellsAlone {
+    cells: Vec<Aabb<3>>,
+    /// The parts of the table, but for objects and what is visible.
+    parts: TableParts,
+    places: Option<PlaceSummary>,
+}
+
+fn cells_alone(scene: &Scene, options: &RegionBakeOptions<'_>, how: &CellsFrom) -> Result<CellsAlone, BakeError> {
+    let (mut places, cut) = (None, &options.cut);
+    let (cells, parts) = match how {
+        CellsFrom::KdTree => unreachable!("those have portals"),
+        CellsFrom::Grid(n) => {
+            let around = cut.view_region.unwrap_or_else(|| scene.bounds());
+            parts::boxes_alone(&grid(&around, *n)?.cells)
+        }
+        CellsFrom::Places(how) => {
+            let found = observed_places(scene, cut, how, options.progress).map_err(|error| match error {
+                PlacesError::Cancelled(cancelled) => cancelled.into(),
+                error => BakeError::from(error),
+            })?;
+            places = Some(found.summary);
+            parts::places_alone(found.cells)
+        }
+        CellsFrom::Boxes(cells) => parts::boxes_alone(&upright(cells)),
+    };
+    Ok(CellsAlone { cells, parts, places })
+}
+
+/// What from-region methods are asked about, and the rays that find what is visible.
+fn targets_of(scene: &Scene, boxes: &[Aabb<3>]) -> (Occludees, RaySampler) {
+    // What may be anywhere touches every cell, and need not be decided.
+    let covering = |(object, extent): (u32, &Aabb<3>)| {
+        if *extent == ANYWHERE { Vec::new() } else { scene.covering_triangles(object) }
+    };
+    let triangles: Vec<Vec<[Point3; 3]>> = (0u32..).zip(boxes).map(covering).collect();
+    // What is see-through stops no ray.
+    let none: &[[Point3; 3]] = &[];
+    let in_the_way = (0u32..).zip(&triangles).map(|(k, of)| if scene.is_opaque(k) { &of[..] } else { none });
+    let witness = RaySampler::new(in_the_way).with_single_sided(|object| scene.is_single_sided(object));
+    (Occludees::new(triangles).with_single_sided(|object| scene.is_single_sided(object)), witness)
+}
+
+/// States the objects of a scene.
+fn state_objects(parts: &mut TableParts, scene: &Scene, boxes: &[Aabb<3>]) {
+    parts.objects = scene.objects().iter().zip(boxes).map(|(o, b)| object_record(&o.name, b)).collect();
+    parts.object_polygons = scene.objects().iter().map(n_triangles).collect();
+    parts.object_sources = scene.sources().to_vec();
 }
 
 /// What boxes anywhere see by sightlines, with the insides of solid things as cells, out to the farthest box.

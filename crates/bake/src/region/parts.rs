@@ -51,23 +51,28 @@ pub(super) fn of_cut(scene: &Scene, cut: SceneSubdivision, n_objects: usize) -> 
     all_visible(cut.graph.into(), parts, cells, n_objects)
 }
 
-/// Given boxes, of which everything may see everything.
-pub(super) fn of_boxes(boxes: &[ViewCell], n_objects: usize) -> Start {
+/// Given boxes, and the parts of their table but for what is visible.
+pub(super) fn boxes_alone(boxes: &[ViewCell]) -> (Vec<Aabb<3>>, TableParts) {
     let cells: Vec<Aabb<3>> = boxes.iter().map(|b| b.bounds).collect();
     let parts = TableParts {
         cell_names: boxes.iter().map(|b| b.id.clone()).collect(),
         info: vec![("subdivide".to_owned(), "boxes".to_owned())],
         ..parts_of(&cells, TableKind::SceneGivenCells { hidden_by: SceneMethods::default() })
     };
-    all_visible(TableGraph::Boxes(cells.clone()), parts, cells, n_objects)
+    (cells, parts)
 }
 
-/// Places, of which everything may see everything.
-pub(super) fn of_places(cells: Vec<Aabb<3>>, n_objects: usize) -> Start {
+/// Places, and the parts of their table but for what is visible.
+pub(super) fn places_alone(cells: Vec<Aabb<3>>) -> (Vec<Aabb<3>>, TableParts) {
     let parts = TableParts {
         info: vec![("subdivide".to_owned(), "places".to_owned())],
         ..parts_of(&cells, TableKind::SceneGivenCells { hidden_by: SceneMethods::default() })
     };
+    (cells, parts)
+}
+
+/// Cells without portals, of which everything may see everything.
+pub(super) fn of_alone((cells, parts): (Vec<Aabb<3>>, TableParts), n_objects: usize) -> Start {
     all_visible(TableGraph::Boxes(cells.clone()), parts, cells, n_objects)
 }
 
