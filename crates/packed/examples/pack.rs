@@ -30,7 +30,7 @@ fn walk<S: Source>(packed: &Packed<S>) -> Result<(), Box<dyn Error>> {
         let (min, max) = packed.cell_box(CellId(cell as u32))?;
         let eye = std::array::from_fn(|k| f64::midpoint(min[k], max[k]));
         // Outside every cell nothing is known; the middle of a cell is inside.
-        let Place::Inside(here) = packed.cells_at(eye, &mut buffer) else { continue };
+        let Place::Inside(here) = packed.cells_at(eye, &mut buffer)? else { continue };
         for &cell in here {
             packed.coarse(cell, &mut at_once)?;
             packed.visible(cell, &mut seen)?;
@@ -48,7 +48,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         Some(path) => Table::from_bytes(&std::fs::read(path)?)?,
         None => rooms(1000, 20)?,
     };
-    let (bytes, report) = pack_report(&table, &PackOptions { max_bytes })?;
+    let (bytes, report) = pack_report(&table, &PackOptions { max_bytes, class: None })?;
     println!(
         "{} bytes as a plain table, {} packed, {} of them rows",
         table.to_bytes().len(),

@@ -52,7 +52,11 @@ pub enum PackedErrorKind {
     #[error("this is no packed visibility table")]
     Magic,
     /// A version that is too new, or never existed.
-    #[error("version {major} of the packed format; this reader knows version {}", crate::format::MAJOR)]
+    #[error(
+        "version {major} of the packed format; this reader knows versions {} to {}",
+        crate::format::MAJOR,
+        crate::format::MAJOR_LARGE
+    )]
     Major {
         /// The version found.
         major: u16,
@@ -128,6 +132,14 @@ pub enum PackedErrorKind {
     Coarse {
         /// The page.
         page: u32,
+    },
+    /// A page of the locator has another box or polygon of a cell than the cell itself.
+    #[error("page {page} of the locator has another place of cell {cell}")]
+    Page {
+        /// The page.
+        page: u32,
+        /// The cell.
+        cell: CellId,
     },
     /// The exits of a cell are not its portals.
     #[error("the exits of cell {cell} are not its portals")]
@@ -214,5 +226,62 @@ pub enum PackError {
     Zstd {
         /// The store.
         store: SectionId,
+    },
+}
+
+/// Why a table cannot be written row by row.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum StreamError {
+    /// The file cannot be written.
+    #[error("cannot write: {0}")]
+    Io(#[from] io::Error),
+    /// The parts are not valid.
+    #[error(transparent)]
+    Table(#[from] TableError),
+    /// Something cannot be packed.
+    #[error(transparent)]
+    Pack(#[from] PackError),
+    /// More or fewer rows than cells.
+    #[error("{n_rows} rows do not fit {n_cells} cells")]
+    NumberOfRows {
+        /// Number of rows.
+        n_rows: u64,
+        /// Number of cells.
+        n_cells: u32,
+    },
+    /// A row with a cell or an object that does not exist.
+    #[error("a row of cell {cell} has an entry that does not exist")]
+    Unknown {
+        /// The cell.
+        cell: CellId,
+    },
+    /// A row that is not ascending.
+    #[error("a row of cell {cell} is not ascending")]
+    Order {
+        /// The cell.
+        cell: CellId,
+    },
+    /// A cell that does not see itself.
+    #[error("cell {cell} does not see itself")]
+    NotReflexive {
+        /// The cell.
+        cell: CellId,
+    },
+    /// A row of objects where there are none, or none where there are.
+    #[error("cell {cell} {} a row of objects", if *.expected { "lacks" } else { "must not have" })]
+    RowOfObjects {
+        /// The cell.
+        cell: CellId,
+        /// Whether there are rows of objects.
+        expected: bool,
+    },
+    /// A cell that does not see an object that touches it.
+    #[error("cell {cell} does not see object {object}, which touches it")]
+    Unseen {
+        /// The cell.
+        cell: CellId,
+        /// The object.
+        object: ObjectId,
     },
 }

@@ -19,6 +19,7 @@
 
 #![forbid(unsafe_code)]
 
+mod blocks;
 mod bytes;
 mod cache;
 pub mod classes;
@@ -27,22 +28,33 @@ mod doors;
 mod error;
 mod find;
 pub mod format;
+mod index;
 mod locate;
+mod masks;
 mod merge;
 mod pack;
 mod packed;
+mod paged;
+mod pages;
 mod query;
+mod rows;
+mod sections;
 mod sizes;
 mod source;
 mod store;
+mod stream;
+mod verify;
 mod whole;
 mod write;
+mod write_pages;
 
 pub use cache::PackedStats;
 pub use classes::Distinct;
-pub use error::{PackError, PackedError, PackedErrorKind};
-pub use pack::{PackOptions, PackReport, pack, pack_report};
+pub use error::{PackError, PackedError, PackedErrorKind, StreamError};
+pub use format::SizeClass;
+pub use pack::{PackOptions, pack, pack_report};
 pub use packed::Packed;
 pub use query::{ExitVisitor, PackedQuery, StabNode};
 pub use sizes::PartSize;
 pub use source::Source;
+pub use stream::{PackReport, PackWriter, StreamOptions};

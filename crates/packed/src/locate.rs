@@ -1,6 +1,6 @@
 //! Point location in the bytes of the resident part.
 
-use crate::bytes::{Reader, f64_at, u32_at, u64_at};
+use crate::bytes::{Place, Reader, f64_at, u32_at, u64_at};
 use crate::container::{ResidentPart, Section};
 use crate::error::{PackedError, PackedErrorKind as Kind};
 use crate::format::{self, NONE};
@@ -8,9 +8,9 @@ use sightlines_pvs::{CellId, Locator, LocatorNode, PlaneChild, PlaneNode, PlaneT
 use std::ops::Range;
 
 /// Bytes of a node of the locator.
-const NODE: usize = 16;
+pub(crate) const NODE: usize = 16;
 
-/// Boxes, polygons, locator and planes, by their positions in the resident part.
+/// Boxes, polygons and locator, by their positions in the resident part.
 #[derive(Debug)]
 pub(crate) struct PointLocation {
     d: usize,
@@ -19,7 +19,6 @@ pub(crate) struct PointLocation {
     polygons: Option<(Range<usize>, Range<usize>)>,
     nodes: Range<usize>,
     entries: Range<usize>,
-    pub(crate) planes: Option<PlaneTree>,
 }
 
 impl PointLocation {
@@ -43,7 +42,6 @@ impl PointLocation {
             }),
             entries: nodes.end..nodes.end + 4 * n_entries,
             nodes,
-            planes: resident.find(format::PLANES).map(|section| planes(section, d, n_cells)).transpose()?,
         })
     }
 
@@ -80,17 +78,13 @@ impl PointLocation {
     /// Puts the cells at a point with finite coordinates into `out`, in any order, perhaps repeated. `pending` is
     /// scratch space.
     pub(crate) fn locate(&self, resident: &ResidentPart, p: [f64; 3], pending: &mut Vec<u32>, out: &mut Vec<CellId>) {
-        if let Some(planes) = &self.planes {
-            planes.for_each_cell(p, pending, |cell| out.push(cell));
-        } else {
-            self.for_each_candidate(resident, p, p, pending, |cell| {
-                let (min, max) = self.cell_box(resident, cell.idx());
-                let in_box = (0..3).all(|k| min[k] <= p[k] && p[k] <= max[k]);
-                if in_box && polygon_may_contain(self.polygon(resident, cell.idx()), [p[0], p[1]]) {
-                    out.push(cell);
-                }
-            });
-        }
+        self.for_each_candidate(resident, p, p, pending, |cell| {
+            let (min, max) = self.cell_box(resident, cell.idx());
+            let in_box = (0..3).all(|k| min[k] <= p[k] && p[k] <= max[k]);
+            if in_box && polygon_may_contain(self.polygon(resident, cell.idx()), [p[0], p[1]]) {
+                out.push(cell);
+            }
+        });
     }
 
     /// Puts the cells that a box with finite corners touches into `out`, as [`PointLocation::locate`] does; polygons of cells are
@@ -103,13 +97,6 @@ impl PointLocation {
         pending: &mut Vec<u32>,
         out: &mut Vec<CellId>,
     ) {
-        if let Some(planes) = &self.planes {
-            let mut add = |cell| {
-                out.push(cell);
-                true
-            };
-            return planes.for_each_cell_of_box(min, max, pending, &mut add);
-        }
         self.for_each_candidate(resident, min, max, pending, |cell| {
             let (low, high) = self.cell_box(resident, cell.idx());
             if (0..3).all(|k| low[k] <= max[k] && min[k] <= high[k]) {
@@ -135,30 +122,10 @@ impl PointLocation {
         pending: &mut Vec<u32>,
         mut visit: impl FnMut(CellId),
     ) {
-        pending.clear();
-        let mut at = 0;
-        loop {
-            let (axis, second, rest) = self.node(resident, at);
-            if axis == NONE {
-                let first = rest as usize;
-                (first..first + second as usize).for_each(|entry| visit(self.entry(resident, entry)));
-                match pending.pop() {
-                    Some(next) => at = next as usize,
-                    None => return,
-                }
-                continue;
-            }
-            let (low, high, split) = (min[axis as usize], max[axis as usize], f64::from_bits(rest));
-            if low > split {
-                at = second as usize;
-            } else {
-                // On the split, both children count.
-                if high >= split {
-                    pending.push(second);
-                }
-                at += 1;
-            }
-        }
+        let nodes = &resident.bytes()[self.nodes.clone()];
+        for_each_leaf(nodes, min, max, pending, |_, first, n| {
+            (first..first + n).for_each(|entry| visit(self.entry(resident, entry)));
+        });
     }
 
     /// The nodes of the locator.
@@ -173,6 +140,42 @@ impl PointLocation {
             }
         };
         (0..self.nodes.len() / NODE).map(node).collect()
+    }
+}
+
+/// Calls `visit` with each leaf whose closed region meets a closed box: the scratch space, and the leaf's fields. The
+/// nodes must have been checked. `pending` is scratch space: what is in it stays.
+#[inline]
+pub(crate) fn for_each_leaf(
+    nodes: &[u8],
+    min: [f64; 3],
+    max: [f64; 3],
+    pending: &mut Vec<u32>,
+    mut visit: impl FnMut(&mut Vec<u32>, usize, usize),
+) {
+    let mut at = 0;
+    let below = pending.len();
+    loop {
+        let (axis, second, rest) =
+            (u32_at(nodes, NODE * at), u32_at(nodes, NODE * at + 4), u64_at(nodes, NODE * at + 8));
+        if axis == NONE {
+            visit(pending, rest as usize, second as usize);
+            if pending.len() == below {
+                return;
+            }
+            at = pending.pop().map_or(0, |next| next as usize);
+            continue;
+        }
+        let (low, high, split) = (min[axis as usize], max[axis as usize], f64::from_bits(rest));
+        if low > split {
+            at = second as usize;
+        } else {
+            // On the split, both children count.
+            if high >= split {
+                pending.push(second);
+            }
+            at += 1;
+        }
     }
 }
 
@@ -200,13 +203,29 @@ fn polygons(section: Section<'_>, d: usize, n_cells: u32) -> Result<usize, Packe
 /// Checks that `LOCA` is a tree in preorder over cells; returns the numbers of nodes and entries.
 fn check_locator(section: Section<'_>, d: usize, n_cells: u32) -> Result<(usize, usize), PackedError> {
     let Section { bytes, place } = section;
-    let wrong = |value: u64| place.fail(Kind::Value { value });
     if bytes.len() < 8 {
         return Err(place.fail(Kind::Cut));
     }
     let (n_nodes, n_entries) = (u32_at(bytes, 0), u32_at(bytes, 4));
     section.expect(8 + NODE as u64 * u64::from(n_nodes) + 4 * u64::from(n_entries))?;
     let (nodes, entries) = bytes[8..].split_at(NODE * n_nodes as usize);
+    check_tree(nodes, d, u64::from(n_entries), place, |_, second, _| Ok(u64::from(second)))?;
+    match entries.chunks_exact(4).map(|entry| u32_at(entry, 0)).find(|&cell| cell >= n_cells) {
+        Some(cell) => Err(place.fail(Kind::Value { value: u64::from(cell) })),
+        None => Ok((n_nodes as usize, n_entries as usize)),
+    }
+}
+
+/// Checks that nodes are a tree in preorder whose leaves list `n_listed` entries, one after the other; `entries_of`
+/// gives the number of entries of a leaf from its second field.
+pub(crate) fn check_tree(
+    nodes: &[u8],
+    d: usize,
+    n_listed: u64,
+    place: Place,
+    entries_of: impl Fn(usize, u32, u64) -> Result<u64, PackedError>,
+) -> Result<(), PackedError> {
+    let wrong = |value: u64| place.fail(Kind::Value { value });
     // High children still to come; a leaf ends the subtree before the last of them.
     let mut highs: Vec<u32> = Vec::new();
     let (mut listed, mut done) = (0u64, false);
@@ -219,7 +238,7 @@ fn check_locator(section: Section<'_>, d: usize, n_cells: u32) -> Result<(usize,
             if rest != listed {
                 return Err(wrong(rest));
             }
-            listed += u64::from(second);
+            listed += entries_of(i as usize, second, rest)?;
             match highs.pop() {
                 Some(high) if u64::from(high) == i + 1 => {}
                 Some(high) => return Err(wrong(u64::from(high))),
@@ -232,16 +251,10 @@ fn check_locator(section: Section<'_>, d: usize, n_cells: u32) -> Result<(usize,
             highs.push(second);
         }
     }
-    if !done || listed != u64::from(n_entries) {
-        return Err(wrong(listed));
-    }
-    match entries.chunks_exact(4).map(|entry| u32_at(entry, 0)).find(|&cell| cell >= n_cells) {
-        Some(cell) => Err(wrong(u64::from(cell))),
-        None => Ok((n_nodes as usize, n_entries as usize)),
-    }
+    if done && listed == n_listed { Ok(()) } else { Err(wrong(listed)) }
 }
 
-fn planes(section: Section<'_>, d: usize, n_cells: u32) -> Result<PlaneTree, PackedError> {
+pub(crate) fn planes(section: Section<'_>, d: usize, n_cells: u32) -> Result<PlaneTree, PackedError> {
     let mut r = Reader::new(section.bytes, section.place);
     let slack = r.f64()?;
     let n = r.u32()?;

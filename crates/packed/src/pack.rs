@@ -1,17 +1,15 @@
 //! From a table to bytes.
 
 use crate::bytes::Writer;
-use crate::classes::{Classes, Distinct};
-use crate::error::PackError;
-use crate::format::{
-    self, ENTRY, FIXED, MAGIC, MAJOR, OPTIONAL, SINCE_CELL_NAMES, SINCE_DIGEST, SINCE_FRAME, SINCE_KIND,
-    SINCE_SOURCES_DOORS,
-};
+use crate::classes::{Classes, Distinct, Members};
+use crate::error::{PackError, StreamError};
+use crate::format::{self, ENTRY, FIXED, MAGIC, MAJOR, MAX_SMALL_CELLS, OPTIONAL, SizeClass};
 use crate::merge::{Sight, after, merge_order, merged};
+use crate::sections::{frame_sections, minor};
 use crate::store::Store;
+use crate::stream::{PackReport, PackWriter, StreamOptions};
 use crate::write;
-use sightlines_pvs::format::kind_section;
-use sightlines_pvs::{BitMatrix, ObjectId, SectionId, Table};
+use sightlines_pvs::{BitMatrix, CellId, ObjectId, SectionId, Table};
 
 /// Options for packing.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -20,25 +18,13 @@ pub struct PackOptions {
     /// any of them saw and are seen from where any of them was, so more is visible and nothing less. `None`: nothing is
     /// merged, and the table comes back exactly.
     pub max_bytes: Option<u64>,
-}
-
-/// The result of packing.
-#[derive(Debug, Clone, PartialEq, Eq)]
-#[non_exhaustive]
-pub struct PackReport {
-    /// Size of the file in bytes.
-    pub bytes: u64,
-    /// Size of the rows in it: the part that merging can reduce.
-    pub row_bytes: u64,
-    /// Number of distinct rows that are left.
-    pub n_classes: usize,
-    /// Number of merges of different classes of cells.
-    pub n_merges: usize,
+    /// The size class of the file. `None`: large for more than [`MAX_SMALL_CELLS`] cells, else small.
+    pub class: Option<SizeClass>,
 }
 
 /// Packs a table: same table and options, same bytes, on every machine.
 ///
-/// Equal rows and columns are stored once, and blocks of rows go through zstd. O(size); with a budget that needs
+/// In a small file equal rows and columns are stored once, and blocks of rows go through zstd. O(size); with a budget that needs
 /// merging, also O(classes * ones of a row), and some ten times the packing of rows.
 ///
 /// # Errors
@@ -52,6 +38,10 @@ pub fn pack(table: &Table, options: &PackOptions) -> Result<Vec<u8>, PackError> 
 /// # Errors
 /// As [`pack`].
 pub fn pack_report(table: &Table, options: &PackOptions) -> Result<(Vec<u8>, PackReport), PackError> {
+    let auto = if table.n_cells() > MAX_SMALL_CELLS { SizeClass::Large } else { SizeClass::Small };
+    if options.class.unwrap_or(auto) == SizeClass::Large {
+        return pack_large(table, options.max_bytes.unwrap_or(u64::MAX));
+    }
     let frame = Frame::new(table)?;
     let exact = Visibility::new(table, None)?;
     let budget = options.max_bytes.unwrap_or(u64::MAX);
@@ -60,23 +50,87 @@ pub fn pack_report(table: &Table, options: &PackOptions) -> Result<(Vec<u8>, Pac
     }
     let whole = Whole::new(table);
     let order = merge_order(&whole.sight());
-    let merge = |n: usize| Visibility::new(table, Some((&whole, after(&order, n, whole.cells.n_rows()))));
+    let merge = |n: usize| {
+        let merged = Visibility::new(table, Some((&whole, after(&order, n, whole.cells.n_rows()))))?;
+        Ok((frame.len(&merged), merged))
+    };
+    let (n_merges, best) = fewest_merges(budget, frame.len(&exact), order.len(), merge)?;
+    Ok(frame.write(table, &best, n_merges))
+}
+
+/// The fewest merges, of at most `all`, after which a file has at most `budget` bytes, and that file; `merge` gives the
+/// size after a number of merges.
+fn fewest_merges<T>(
+    budget: u64,
+    exact: u64,
+    all: usize,
+    merge: impl Fn(usize) -> Result<(u64, T), PackError>,
+) -> Result<(usize, T), PackError> {
     // The last merges make the smallest table, or nearly: a table of one class has one row.
-    let (mut enough, mut best) = (order.len(), merge(order.len())?);
-    if frame.len(&best) > budget {
-        return Err(PackError::Budget { budget, smallest: frame.len(&best).min(frame.len(&exact)) });
+    let (smallest, mut best) = merge(all)?;
+    if smallest > budget {
+        return Err(PackError::Budget { budget, smallest: smallest.min(exact) });
     }
-    let mut too_few = 0;
+    let (mut enough, mut too_few) = (all, 0);
     while too_few + 1 < enough {
         let middle = usize::midpoint(too_few, enough);
-        let tried = merge(middle)?;
-        if frame.len(&tried) <= budget {
+        let (len, tried) = merge(middle)?;
+        if len <= budget {
             (enough, best) = (middle, tried);
         } else {
             too_few = middle;
         }
     }
-    Ok(frame.write(table, &best, enough))
+    Ok((enough, best))
+}
+
+/// Packs into a large file.
+fn pack_large(table: &Table, budget: u64) -> Result<(Vec<u8>, PackReport), PackError> {
+    let parts = table.parts();
+    let cells = (0..table.n_cells()).map(|i| CellId(i as u32));
+    let write = |row: &dyn Fn(CellId, &mut Vec<CellId>, &mut Vec<ObjectId>)| {
+        let options = StreamOptions { objects_seen: parts.objects_seen.is_some() };
+        let unchecked = |error| match error {
+            StreamError::Pack(error) => error,
+            error => unreachable!("a table can be written to memory: {error}"),
+        };
+        let mut writer = PackWriter::unchecked(Vec::new(), parts, &options).map_err(unchecked)?;
+        let (mut seen, mut objects) = (Vec::new(), Vec::new());
+        for cell in cells.clone() {
+            seen.clear();
+            objects.clear();
+            row(cell, &mut seen, &mut objects);
+            let objects = options.objects_seen.then_some(&objects[..]);
+            writer.push(&seen, objects).map_err(unchecked)?;
+        }
+        writer.finish().map_err(unchecked)
+    };
+    let (bytes, report) = write(&|cell, seen, objects| {
+        seen.extend(table.visible(cell));
+        let row = parts.objects_seen.iter().flat_map(|seen| seen.iter_ones(cell.idx()));
+        objects.extend(row.map(|o| ObjectId(o as u32)));
+    })?;
+    if report.bytes <= budget {
+        return Ok((bytes, report));
+    }
+    let whole = Whole::new(table);
+    let order = merge_order(&whole.sight());
+    let merge = |n: usize| {
+        let (of, n_left) = after(&order, n, whole.cells.n_rows());
+        let rows = merged(&whole.cells, &of, n_left, true);
+        let seen = whole.objects.as_ref().map(|bits| merged(bits, &of, n_left, false));
+        let of: Vec<u32> = whole.classes.of.iter().map(|&class| of[class as usize]).collect();
+        let members = Members::new(&of, n_left);
+        let (bytes, report) = write(&|cell, cells, objects| {
+            let class = of[cell.idx()] as usize;
+            cells.extend(rows.iter_ones(class).flat_map(|other| members.of(other)).map(|&cell| CellId(cell)));
+            cells.sort_unstable();
+            objects.extend(seen.iter().flat_map(|seen| seen.iter_ones(class)).map(|o| ObjectId(o as u32)));
+        })?;
+        Ok((report.bytes, (bytes, report)))
+    };
+    let (n_merges, (bytes, report)) = fewest_merges(budget, report.bytes, order.len(), merge)?;
+    Ok((bytes, PackReport { n_merges, ..report }))
 }
 
 /// The classes of cells with equal visibility, to be merged.
@@ -196,38 +250,17 @@ impl Frame {
         if parts.cells.iter().any(|cell| !cell.polygon.is_empty()) {
             sections.push((format::POLYGONS, write::polygons(&parts.cells)));
         }
-        if let Some(planes) = &parts.planes {
-            sections.push((format::PLANES, write::planes(planes)));
-        }
-        if !parts.mirrors.is_empty() {
-            sections.push((format::MIRRORS, write::mirrors(parts)));
-        }
-        if let Some(kind) = kind_section(parts.dimension, parts.kind, parts.up, &parts.info) {
-            sections.push((format::KIND, kind.to_vec()));
-        }
-        if let Some(frame) = &parts.frame {
-            sections.push((format::FRAME, frame.to_bytes().to_vec()));
-        }
-        if let Some(digest) = &parts.digest {
-            sections.push((format::DIGEST, digest.to_bytes().to_vec()));
-        }
-        if !parts.object_sources.is_empty() {
-            sections.push((format::SOURCES, write::sources(&parts.object_sources)));
-        }
-        if !parts.doors.is_empty() {
-            sections.push((format::DOORS, write::doors(&parts.doors)));
-        }
-        sections.push((format::INFO, write::info(&parts.info)));
+        sections.extend(frame_sections(parts));
         let mut stores = vec![
-            Store::of_records(format::CELLS, &write::cells(parts))?,
-            Store::of_records(format::PORTALS, &write::portals(parts))?,
-            Store::of_records(format::OBJECTS, &write::objects(parts))?,
+            Store::of_records(format::CELLS, write::cells(parts))?,
+            Store::of_records(format::PORTALS, write::portals(parts))?,
+            Store::of_records(format::OBJECTS, write::objects(parts))?,
         ];
         if let Some(stab) = &parts.stab {
-            stores.push(Store::of_records(format::STAB, &write::nodes(stab))?);
+            stores.push(Store::of_records(format::STAB, write::nodes(stab))?);
         }
         if !parts.cell_names.is_empty() {
-            stores.push(Store::of_records(format::CELL_NAMES, &write::cell_names(parts))?);
+            stores.push(Store::of_records(format::CELL_NAMES, write::cell_names(parts))?);
         }
         Ok(Self { sections, stores })
     }
@@ -244,7 +277,8 @@ impl Frame {
 
     fn write(&self, table: &Table, visibility: &Visibility, n_merges: usize) -> (Vec<u8>, PackReport) {
         let [n_rows, n_seen_rows, n_seen_columns] = visibility.n_classes;
-        let [n_cells, n_objects, n_portals, n_nodes, flags] = write::counts(table.parts());
+        let [n_cells, n_objects, n_portals, n_nodes, flags] =
+            write::counts(table.parts(), table.parts().objects_seen.is_some());
         let page = format::page_size(table.n_cells()) as u32;
         let fields = [
             u32::from(table.dimension()),
@@ -275,16 +309,7 @@ impl Frame {
         let mut out = Writer(Vec::with_capacity(total as usize));
         out.0.extend(MAGIC);
         out.0.extend(MAJOR.to_le_bytes());
-        let has = |section: SectionId| ordered.iter().any(|(id, ..)| *id == section);
-        let needed = [
-            (table.has_cell_names(), SINCE_CELL_NAMES),
-            (has(format::KIND), SINCE_KIND),
-            (table.frame().is_some(), SINCE_FRAME),
-            (table.digest().is_some(), SINCE_DIGEST),
-            (has(format::SOURCES) || has(format::DOORS), SINCE_SOURCES_DOORS),
-        ];
-        let minor = needed.into_iter().filter(|(there, _)| *there).map(|(_, since)| since).max().unwrap_or(0);
-        out.0.extend(minor.to_le_bytes());
+        out.0.extend(minor(table.parts(), &self.sections).to_le_bytes());
         out.u32(ordered.len() as u32);
         out.u64(total);
         let mut at = (FIXED + ENTRY * ordered.len() + 4) as u64;

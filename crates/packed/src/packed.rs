@@ -1,32 +1,38 @@
 //! An opened file and its queries.
 
-use crate::bytes::{Place, Reader, u32_at, u64_at, words_of};
+use crate::bytes::{Place, Reader, u32_at, u64_at};
 use crate::cache::{Block, Cache, PackedStats};
-use crate::classes::Members;
-use crate::container::{Index, ResidentPart, StoreIndex};
+use crate::container::ResidentPart;
 use crate::doors::{self, Sources};
 use crate::error::{PackedError, PackedErrorKind as Kind};
-use crate::format::{self, HAS_SEEN, HEAD_LEN, MAX_UNPACKED_BLOCK, NONE};
-use crate::locate::PointLocation;
+use crate::format::{self, HAS_SEEN, HEAD_LEN, NONE, SizeClass};
+use crate::index::{Index, Spot, StoreIndex};
+use crate::locate::{PointLocation, planes};
+use crate::masks;
+use crate::pages::Pages;
+use crate::rows::{DenseRows, Rows};
 use crate::source::Source;
-use sightlines_pvs::bits::ones;
 use sightlines_pvs::format::{kind_from_bytes, kind_from_info};
 use sightlines_pvs::{
-    Axis, CellId, DoorRecord, Frame, FrameError, GeometryDigest, MirrorId, MirrorRecord, SectionId, TableKind,
+    Axis, CellId, DoorRecord, Frame, FrameError, GeometryDigest, MirrorId, MirrorRecord, PlaneTree, SectionId,
+    TableKind,
 };
+use std::ops::Range;
 use std::sync::Arc;
 
 /// A packed table that is read piece by piece within a memory budget.
 ///
 /// The resident part is read when the file is opened; rows, exits and objects are read on demand, in blocks that are
-/// kept until others need their space. Any number of threads may query it at once.
+/// kept until others need their space. Of a large file boxes and locator are read on demand too: see
+/// [`SizeClass`]. Any number of threads may query it at once.
 #[derive(Debug)]
 pub struct Packed<S: Source> {
     pub(crate) source: S,
     pub(crate) resident: ResidentPart,
     pub(crate) index: Index,
     pub(crate) head: Head,
-    pub(crate) places: PointLocation,
+    pub(crate) places: Places,
+    pub(crate) planes: Option<PlaneTree>,
     info: Vec<(String, String)>,
     kind: TableKind,
     frame: Option<Frame>,
@@ -35,14 +41,23 @@ pub struct Packed<S: Source> {
     mirrors: Vec<MirrorRecord>,
     pub(crate) doors: Vec<DoorRecord>,
     pub(crate) sources: Sources,
-    pub(crate) rows: RowStore,
-    pub(crate) seen: Option<RowStore>,
+    pub(crate) rows: Rows,
+    pub(crate) seen: Option<Rows>,
     pub(crate) cells: StoreIndex,
     pub(crate) portals: StoreIndex,
     pub(crate) objects: StoreIndex,
     pub(crate) nodes: Option<StoreIndex>,
     pub(crate) names: Option<StoreIndex>,
     cache: Cache,
+}
+
+/// How points are located.
+#[derive(Debug)]
+pub(crate) enum Places {
+    /// In the resident part, of a small file.
+    Resident(PointLocation),
+    /// In blocks, of a large file.
+    Paged(Pages),
 }
 
 /// The fields of `HEAD`.
@@ -87,110 +102,6 @@ impl Head {
     }
 }
 
-/// A store of rows of bits between classes.
-#[derive(Debug)]
-pub(crate) struct RowStore {
-    id: SectionId,
-    store: StoreIndex,
-    n_columns: usize,
-    /// The class of each cell; `None` if each is its own class.
-    row_of: Option<Vec<u32>>,
-    /// The members of the classes of columns; `None` if each is its own class.
-    columns: Option<Members>,
-    n_items: usize,
-}
-
-impl RowStore {
-    /// `sections` are those of the classes of rows and of columns, `n` the numbers of rows, items, row classes and
-    /// column classes.
-    fn read(
-        resident: &ResidentPart,
-        index: &Index,
-        (id, coding): (SectionId, u32),
-        sections: [SectionId; 2],
-        n: [u32; 4],
-    ) -> Result<Self, PackedError> {
-        let [n_rows, n_items, n_row_classes, n_columns] = n;
-        let store = index.need(id, n_row_classes)?;
-        let offset = index.entries.get(store.first).map_or(0, |entry| entry.offset);
-        let fail = |kind| PackedError::new(Some(id), offset, kind);
-        if coding != format::DENSE {
-            return Err(fail(Kind::Value { value: u64::from(coding) }));
-        }
-        let row_of = classes(resident, sections[0], n_rows, n_row_classes)?;
-        let columns = classes(resident, sections[1], n_items, n_columns)?;
-        let out = Self {
-            id,
-            store,
-            n_columns: n_columns as usize,
-            row_of,
-            columns: columns.map(|of| Members::new(&of, n_columns as usize)),
-            n_items: n_items as usize,
-        };
-        for block in 0..store.n_blocks {
-            let needed = store.n_in_block(block) as u64 * 8 * out.stride() as u64;
-            let found = u64::from(index.entries[store.first + block].raw);
-            if needed != found {
-                return Err(fail(Kind::Size { needed, found }));
-            }
-        }
-        Ok(out)
-    }
-
-    fn stride(&self) -> usize {
-        self.n_columns.div_ceil(64)
-    }
-
-    /// The rows of an unpacked block; bits past the last column are dropped.
-    fn decode(&self, bytes: &[u8]) -> Vec<u64> {
-        let mut words = words_of(bytes);
-        let (stride, used) = (self.stride(), self.n_columns % 64);
-        if used > 0 {
-            words.chunks_exact_mut(stride).for_each(|row| row[stride - 1] &= !(u64::MAX << used));
-        }
-        words
-    }
-
-    /// Puts the items of the classes in a row into `out`, ascending.
-    fn expand<T>(&self, row: &[u64], out: &mut Vec<T>, item: impl Fn(u32) -> T) {
-        let Some(members) = &self.columns else {
-            out.extend(ones(row).map(|i| item(i as u32)));
-            return;
-        };
-        let mut set = vec![0u64; self.n_items.div_ceil(64)];
-        for &i in ones(row).flat_map(|class| members.of(class)) {
-            set[i as usize / 64] |= 1 << (i % 64);
-        }
-        out.extend(ones(&set).map(|i| item(i as u32)));
-    }
-}
-
-/// The classes of `n` things, all below `n_classes`; `None` if each is its own class.
-fn classes(resident: &ResidentPart, id: SectionId, n: u32, n_classes: u32) -> Result<Option<Vec<u32>>, PackedError> {
-    let section = resident.need(id)?;
-    if section.bytes.is_empty() && n == n_classes {
-        return Ok(None);
-    }
-    let place = section.place;
-    let raw = if section.bytes.len() < 4 { return Err(place.fail(Kind::Cut)) } else { u32_at(section.bytes, 0) };
-    // Each takes at least one byte, so a file cannot claim more things than fit a block.
-    if raw > MAX_UNPACKED_BLOCK || raw < n {
-        return Err(place.fail(Kind::Value { value: u64::from(raw) }));
-    }
-    let bytes = zstd::bulk::decompress(&section.bytes[4..], raw as usize);
-    let bytes =
-        bytes.ok().filter(|bytes| bytes.len() == raw as usize).ok_or_else(|| place.fail(Kind::Unpack { raw }))?;
-    let mut r = Reader::new(&bytes, place);
-    let (mut of, mut next) = (Vec::with_capacity(n as usize), 0);
-    for _ in 0..n {
-        let back = r.below(u64::from(next) + 1)?;
-        of.push(next - back);
-        next = next.max(next - back + 1);
-    }
-    r.finish()?;
-    if next == n_classes { Ok(Some(of)) } else { Err(place.fail(Kind::Value { value: u64::from(n_classes) })) }
-}
-
 impl<S: Source> Packed<S> {
     /// Opens a file: reads and checks the resident part. At most `cache_bytes` of unpacked blocks will be kept; with 0
     /// every query reads its blocks anew.
@@ -206,16 +117,20 @@ impl<S: Source> Packed<S> {
         let head = Head::read(&resident)?;
         let index = Index::read(&resident, len)?;
         let Head { n_cells, n_objects, codings, n_classes, .. } = head;
-        let places = PointLocation::read(&resident, usize::from(head.dimension), n_cells)?;
+        let d = usize::from(head.dimension);
+        let places = match resident.class() {
+            SizeClass::Small => Places::Resident(PointLocation::read(&resident, d, n_cells)?),
+            SizeClass::Large => Places::Paged(Pages::read(&resident, &index, d, n_cells)?),
+        };
         let sections = [format::CLASSES; 2];
         let n = [n_cells, n_cells, n_classes[0], n_classes[0]];
-        let rows = RowStore::read(&resident, &index, (format::ROWS, codings[0]), sections, n)?;
+        let rows = Rows::read(&resident, &index, (format::ROWS, codings[0]), sections, n)?;
         let seen = if head.flags & HAS_SEEN == 0 {
             None
         } else {
             let sections = [format::SEEN_ROWS, format::SEEN_COLUMNS];
             let n = [n_cells, n_objects, n_classes[1], n_classes[2]];
-            Some(RowStore::read(&resident, &index, (format::SEEN, codings[1]), sections, n)?)
+            Some(Rows::read(&resident, &index, (format::SEEN, codings[1]), sections, n)?)
         };
         let n_pages = head.n_pages() as u64;
         resident.need(format::COARSE)?.expect(n_pages * n_pages.div_ceil(64) * 8)?;
@@ -242,6 +157,7 @@ impl<S: Source> Packed<S> {
                 .has(format::CELL_NAMES)
                 .then(|| index.need_records(format::CELL_NAMES, n_cells))
                 .transpose()?,
+            planes: resident.find(format::PLANES).map(|section| planes(section, d, n_cells)).transpose()?,
             places,
             cache,
             head,
@@ -264,6 +180,11 @@ impl<S: Source> Packed<S> {
     /// Number of portals; ids are below it.
     pub fn n_portals(&self) -> usize {
         self.head.n_portals as usize
+    }
+
+    /// The size class of the file: what of it is in memory, and what is read on demand.
+    pub fn size_class(&self) -> SizeClass {
+        self.resident.class()
     }
 
     /// 2 for a plane, 3 for space.
@@ -338,25 +259,24 @@ impl<S: Source> Packed<S> {
         &self,
         id: SectionId,
         number: usize,
-        decode: impl FnOnce(Vec<u8>) -> Block,
+        decode: impl FnOnce(Vec<u8>) -> Result<Block, PackedError>,
     ) -> Result<Arc<Block>, PackedError> {
         if let Some(block) = self.cache.get(number) {
             return Ok(block);
         }
-        let block = Arc::new(decode(self.index.unpack(&self.source, id, number)?));
+        let block = Arc::new(decode(self.index.unpack(&self.source, id, number)?)?);
         self.cache.count_read(u64::from(self.index.entries[number].len));
         self.cache.put(number, &block);
         Ok(block)
     }
 
     /// Calls `visit` with the row of a class in a store of rows.
-    fn with_row<T>(&self, rows: &RowStore, cell: CellId, visit: impl FnOnce(&[u64]) -> T) -> Result<T, PackedError> {
+    fn with_row<T>(&self, rows: &DenseRows, cell: CellId, visit: impl FnOnce(&[u64]) -> T) -> Result<T, PackedError> {
         let class = rows.row_of.as_ref().map_or(cell.0, |of| of[cell.idx()]);
-        let (block, row) = ((class / rows.store.per_block) as usize, (class % rows.store.per_block) as usize);
-        let number = rows.store.first + block;
-        let kept = self.block(rows.id, number, |bytes| Block::Words(rows.decode(&bytes)))?;
+        let Spot { number, k, .. } = rows.store.find(class);
+        let kept = self.block(rows.id, number, |bytes| Ok(Block::Words(rows.decode(&bytes))))?;
         match &*kept {
-            Block::Words(words) => Ok(visit(&words[row * rows.stride()..(row + 1) * rows.stride()])),
+            Block::Words(words) => Ok(visit(&words[k * rows.stride()..(k + 1) * rows.stride()])),
             Block::Bytes(_) => unreachable!("blocks of rows are kept as words"),
         }
     }
@@ -364,33 +284,76 @@ impl<S: Source> Packed<S> {
     /// Puts the items in the row of a cell into `out`, which is cleared, ascending.
     pub(crate) fn items<T>(
         &self,
-        rows: &RowStore,
+        rows: &Rows,
         cell: CellId,
         out: &mut Vec<T>,
         item: impl Fn(u32) -> T,
     ) -> Result<(), PackedError> {
         out.clear();
         self.check_cell(cell)?;
-        self.with_row(rows, cell, |row| rows.expand(row, out, item))
+        match rows {
+            Rows::Dense(rows) => self.with_row(rows, cell, |row| rows.expand(row, out, item)),
+            Rows::Masks { id, store, n_items } => self.with_record((*id, store), cell.0, |mut r| {
+                let read = masks::decode(&mut r, *n_items, |i| out.push(item(i)));
+                // Half a row would hide things.
+                read.inspect_err(|_| out.clear())
+            }),
+        }
     }
 
     /// Calls `visit` with a record, which must exist in the store.
     pub(crate) fn with_record<T>(
         &self,
-        (id, store): (SectionId, StoreIndex),
+        (id, store): (SectionId, &StoreIndex),
         record: u32,
         visit: impl FnOnce(Reader<'_>) -> Result<T, PackedError>,
     ) -> Result<T, PackedError> {
-        let (block, k) = ((record / store.per_block) as usize, (record % store.per_block) as usize);
-        let number = store.first + block;
-        let kept = self.block(id, number, Block::Bytes)?;
+        let Spot { number, k, n } = store.find(record);
+        let kept = self.block(id, number, |bytes| Ok(Block::Bytes(bytes)))?;
         let place = Place { section: id, offset: self.index.entries[number].offset };
         let Block::Bytes(bytes) = &*kept else { unreachable!("blocks of records are kept as bytes") };
-        let content = 4 * store.n_in_block(block);
-        let ends = bytes.get(..content).ok_or_else(|| place.fail(Kind::Cut))?;
-        let begin = if k == 0 { 0 } else { u32_at(ends, 4 * (k - 1)) as usize };
-        let record = bytes[content..].get(begin..u32_at(ends, 4 * k) as usize).ok_or_else(|| place.fail(Kind::Cut))?;
-        visit(Reader::new(record, place))
+        visit(Reader::new(record_of(bytes, k, n, place)?, place))
+    }
+
+    /// As [`Packed::with_record`], with all records of a block checked when it is read: then `visit` may rely on that.
+    pub(crate) fn with_checked_record<T>(
+        &self,
+        (id, store): (SectionId, &StoreIndex),
+        record: u32,
+        check: impl Fn(&[u8], Place) -> Result<(), PackedError>,
+        visit: impl FnOnce(&[u8]) -> T,
+    ) -> Result<T, PackedError> {
+        let Spot { number, k, n } = store.find(record);
+        let place = Place { section: id, offset: self.index.entries[number].offset };
+        let decode = |bytes: Vec<u8>| {
+            (0..n).try_for_each(|k| check(record_of(&bytes, k, n, place)?, place))?;
+            Ok(Block::Bytes(bytes))
+        };
+        let kept = self.block(id, number, decode)?;
+        let Block::Bytes(bytes) = &*kept else { unreachable!("blocks of records are kept as bytes") };
+        Ok(visit(record_of(bytes, k, n, place)?))
+    }
+
+    /// Calls `visit` with records in turn, until it returns `false`; each block is read once, and none is kept.
+    pub(crate) fn for_each_record(
+        &self,
+        (id, store): (SectionId, &StoreIndex),
+        records: Range<u32>,
+        mut visit: impl FnMut(u32, Reader<'_>) -> Result<bool, PackedError>,
+    ) -> Result<(), PackedError> {
+        let mut record = records.start;
+        while record < records.end {
+            let Spot { number, k, n } = store.find(record);
+            let place = Place { section: id, offset: self.index.entries[number].offset };
+            let bytes = self.index.unpack(&self.source, id, number)?;
+            for k in k..n {
+                if record == records.end || !visit(record, Reader::new(record_of(&bytes, k, n, place)?, place))? {
+                    return Ok(());
+                }
+                record += 1;
+            }
+        }
+        Ok(())
     }
 
     /// Puts the cells of the pages that the page of `cell` sees into `out`, which is cleared, ascending.
@@ -419,6 +382,14 @@ impl<S: Source> Packed<S> {
         let word = u64_at(self.resident.bytes(), start + 8 * (page * stride + other / 64));
         word >> (other % 64) & 1 == 1
     }
+}
+
+/// Record `k` of the `n` in a block.
+fn record_of(bytes: &[u8], k: usize, n: usize, place: Place) -> Result<&[u8], PackedError> {
+    let content = 4 * n;
+    let ends = bytes.get(..content).ok_or_else(|| place.fail(Kind::Cut))?;
+    let begin = if k == 0 { 0 } else { u32_at(ends, 4 * (k - 1)) as usize };
+    bytes[content..].get(begin..u32_at(ends, 4 * k) as usize).ok_or_else(|| place.fail(Kind::Cut))
 }
 
 fn info(resident: &ResidentPart) -> Result<Vec<(String, String)>, PackedError> {

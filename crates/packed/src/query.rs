@@ -3,7 +3,7 @@
 use crate::bytes::Reader;
 use crate::error::{PackedError, PackedErrorKind as Kind};
 use crate::format::{self, POLYGONS_KNOWN};
-use crate::packed::Packed;
+use crate::packed::{Packed, Places};
 use crate::source::Source;
 use sightlines_pvs::{
     CellId, DimensionError, ObjectId, ObjectRecord, Place, PlaceBuffer, PlaneTree, PortalId, PortalRecord,
@@ -31,9 +31,13 @@ pub struct PackedQuery<'a, S: Source, const D: usize> {
 }
 
 impl<S: Source, const D: usize> PackedQuery<'_, S, D> {
-    /// The cells that may contain a point (scene units), ascending: the same as [`sightlines_pvs::Query::at`]. Reads nothing from the
-    /// source, and allocates nothing once `buffer` is warm.
-    pub fn cells_at<'b>(&self, p: [f64; D], buffer: &'b mut PlaceBuffer) -> Place<&'b [CellId]> {
+    /// The cells that may contain a point (scene units), ascending: the same as [`sightlines_pvs::Query::at`]. Allocates nothing
+    /// once `buffer` is warm. Of a small file, reads nothing from the source; of a large one one block, or a few for a point on
+    /// the border between pages of the locator.
+    ///
+    /// # Errors
+    /// Of a large file, if a block cannot be read; of a small one there are none.
+    pub fn cells_at<'b>(&self, p: [f64; D], buffer: &'b mut PlaceBuffer) -> Result<Place<&'b [CellId]>, PackedError> {
         self.packed.cells_at(std::array::from_fn(|k| p.get(k).copied().unwrap_or(0.0)), buffer)
     }
 }
@@ -42,26 +46,32 @@ impl<S: Source> Packed<S> {
     /// The box around a cell, in scene units, along the [frame](Self::frame) if there is one; z is 0 in a plane.
     ///
     /// # Errors
-    /// If there is no such cell.
+    /// If there is no such cell, or, of a large file, if its block cannot be read.
     pub fn cell_box(&self, cell: CellId) -> Result<([f64; 3], [f64; 3]), PackedError> {
         self.check_cell(cell)?;
-        Ok(self.places.cell_box(&self.resident, cell.idx()))
+        match &self.places {
+            Places::Resident(places) => Ok(places.cell_box(&self.resident, cell.idx())),
+            Places::Paged(pages) => self.paged_box(pages, cell, None),
+        }
     }
 
     /// Puts the corners of a cell into `out`, which is cleared; none if the cell is its box.
     ///
     /// # Errors
-    /// If there is no such cell.
+    /// As [`Packed::cell_box`].
     pub fn cell_polygon(&self, cell: CellId, out: &mut Vec<[f64; 2]>) -> Result<(), PackedError> {
         out.clear();
         self.check_cell(cell)?;
-        out.extend(self.places.polygon(&self.resident, cell.idx()));
+        match &self.places {
+            Places::Resident(places) => out.extend(places.polygon(&self.resident, cell.idx())),
+            Places::Paged(pages) => drop(self.paged_box(pages, cell, Some(out))?),
+        }
         Ok(())
     }
 
     /// The plane tree that locates points in place of the cells' boxes, if there is one.
     pub fn planes(&self) -> Option<&PlaneTree> {
-        self.places.planes.as_ref()
+        self.planes.as_ref()
     }
 
     /// The packed table for points of `D` coordinates, 2 or 3, checked once.
@@ -77,16 +87,33 @@ impl<S: Source> Packed<S> {
     }
 
     /// As [`PackedQuery::cells_at`], for code that serves both dimensions: in a plane the third coordinate does not count.
-    pub fn cells_at<'b>(&self, p: [f64; 3], buffer: &'b mut PlaceBuffer) -> Place<&'b [CellId]> {
+    ///
+    /// # Errors
+    /// As [`PackedQuery::cells_at`].
+    pub fn cells_at<'b>(&self, p: [f64; 3], buffer: &'b mut PlaceBuffer) -> Result<Place<&'b [CellId]>, PackedError> {
         let p = if self.dimension() == 2 { [p[0], p[1], 0.0] } else { p };
         if !self.has_places() || !p.iter().all(|x| x.is_finite()) {
-            return Place::Outside;
+            return Ok(Place::Outside);
         }
         let around = self.frame().map(|frame| frame.around(p, p));
-        buffer.fill(|pending, found| match around {
-            Some((min, max)) => self.places.locate_box(&self.resident, min, max, pending, found),
-            None => self.places.locate(&self.resident, p, pending, found),
-        })
+        let mut result = Ok(());
+        let place = buffer.fill(|pending, found| match (&self.planes, &self.places, around) {
+            (Some(planes), _, None) => planes.for_each_cell(p, pending, |cell| found.push(cell)),
+            (Some(planes), _, Some((min, max))) => {
+                planes.for_each_cell_of_box(min, max, pending, &mut |cell| {
+                    found.push(cell);
+                    true
+                });
+            }
+            (None, Places::Resident(places), None) => places.locate(&self.resident, p, pending, found),
+            (None, Places::Resident(places), Some((min, max))) => {
+                places.locate_box(&self.resident, min, max, pending, found);
+            }
+            (None, Places::Paged(pages), _) => {
+                result = self.locate_in_pages(pages, around.unwrap_or((p, p)), around.is_none(), pending, found);
+            }
+        });
+        result.map(|()| place)
     }
 
     /// Puts the cells that `cell` may see, itself included, into `out`, which is cleared, ascending.
@@ -130,7 +157,7 @@ impl<S: Source> Packed<S> {
     }
 
     fn for_each_object(&self, cell: CellId, mut visit: impl FnMut(ObjectId)) -> Result<(), PackedError> {
-        self.with_record((format::CELLS, self.cells), cell.0, |mut r| {
+        self.with_record((format::CELLS, &self.cells), cell.0, |mut r| {
             r.varint()?;
             self.for_each_exit(&mut r, |_, _, _| Ok(()))?;
             r.ascending(u64::from(self.head.n_objects), |object| visit(ObjectId(object)))
@@ -143,7 +170,7 @@ impl<S: Source> Packed<S> {
     /// If there is no such cell, or its block cannot be read.
     pub fn group(&self, cell: CellId) -> Result<Option<u32>, PackedError> {
         self.check_cell(cell)?;
-        self.with_record((format::CELLS, self.cells), cell.0, |mut r| {
+        self.with_record((format::CELLS, &self.cells), cell.0, |mut r| {
             let group = r.varint()?;
             match group.checked_sub(1).map(u32::try_from) {
                 None => Ok(None),
@@ -159,7 +186,7 @@ impl<S: Source> Packed<S> {
     /// If there is no such cell, its block cannot be read, or the name is not UTF-8.
     pub fn cell_name(&self, cell: CellId) -> Result<Option<String>, PackedError> {
         self.check_cell(cell)?;
-        let Some(store) = self.names else { return Ok(None) };
+        let Some(store) = &self.names else { return Ok(None) };
         self.with_record((format::CELL_NAMES, store), cell.0, |mut r| {
             let name = r.take(r.left())?;
             let name = std::str::from_utf8(name).map_err(|_| r.fail(Kind::Text))?;
@@ -197,7 +224,7 @@ impl<S: Source> Packed<S> {
     pub fn exits(&self, cell: CellId, visit: &mut ExitVisitor<'_>) -> Result<(), PackedError> {
         self.check_cell(cell)?;
         let mut points = Vec::new();
-        self.with_record((format::CELLS, self.cells), cell.0, |mut r| {
+        self.with_record((format::CELLS, &self.cells), cell.0, |mut r| {
             r.varint()?;
             self.for_each_exit(&mut r, |portal, forward, to| {
                 self.read_portal(portal, &mut points)?;
@@ -224,7 +251,7 @@ impl<S: Source> Packed<S> {
     /// Puts the corners into `points`; returns the cells and sides of the portal.
     fn read_portal(&self, portal: PortalId, points: &mut Vec<[f64; 3]>) -> Result<[u32; 4], PackedError> {
         let d = usize::from(self.head.dimension);
-        self.with_record((format::PORTALS, self.portals), portal.0, |mut r| {
+        self.with_record((format::PORTALS, &self.portals), portal.0, |mut r| {
             let mut ids = [0; 4];
             for (k, id) in ids.iter_mut().enumerate() {
                 *id = r.below(if k < 2 { u64::from(self.head.n_cells) } else { 1 << 32 })?;
@@ -247,7 +274,7 @@ impl<S: Source> Packed<S> {
         if object.0 >= n_objects {
             return Err(PackedError::asked(Kind::NoObject { object, n_objects }));
         }
-        self.with_record((format::OBJECTS, self.objects), object.0, |mut r| visit(&mut r))
+        self.with_record((format::OBJECTS, &self.objects), object.0, |mut r| visit(&mut r))
     }
 
     /// The box around an object, in scene units, along the [frame](Self::frame) if there is one; z is 0 in a plane.
@@ -300,7 +327,7 @@ impl<S: Source> Packed<S> {
         out.clear();
         self.check_cell(cell)?;
         let Some(n_nodes) = self.head.n_nodes else { return Ok(true) };
-        self.with_record((format::CELLS, self.cells), cell.0, |mut r| {
+        self.with_record((format::CELLS, &self.cells), cell.0, |mut r| {
             r.varint()?;
             self.for_each_exit(&mut r, |_, _, _| Ok(()))?;
             r.ascending(u64::from(self.head.n_objects), |_| {})?;
@@ -318,7 +345,7 @@ impl<S: Source> Packed<S> {
     pub fn stab_node(&self, node: u32, children: &mut Vec<u32>) -> Result<StabNode, PackedError> {
         children.clear();
         let n_nodes = self.head.n_nodes.unwrap_or(0);
-        let Some(store) = self.nodes.filter(|_| node < n_nodes) else {
+        let Some(store) = self.nodes.as_ref().filter(|_| node < n_nodes) else {
             return Err(PackedError::asked(Kind::NoNode { node, n_nodes }));
         };
         self.with_record((format::STAB, store), node, |mut r| {

@@ -36,7 +36,8 @@ impl Store {
     }
 
     /// Packs records of bytes.
-    pub(crate) fn of_records(id: SectionId, records: &[Vec<u8>]) -> Result<Self, PackError> {
+    pub(crate) fn of_records(id: SectionId, records: impl Iterator<Item = Vec<u8>>) -> Result<Self, PackError> {
+        let records: Vec<Vec<u8>> = records.collect();
         let mean = records.iter().map(Vec::len).sum::<usize>() / records.len().max(1) + 4;
         let per_block = (BLOCK_BYTES / mean).clamp(1, 1024);
         let mut store = Self::new(id, records.len(), per_block)?;

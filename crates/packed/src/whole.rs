@@ -1,8 +1,8 @@
-//! The whole file: conversion back to a table, and the check of its entire content.
+//! The whole file: conversion back to a table.
 
 use crate::error::{PackedError, PackedErrorKind as Kind};
 use crate::format::{self, MAX_TABLE, POLYGONS_KNOWN};
-use crate::packed::Packed;
+use crate::packed::{Packed, Places};
 use crate::source::Source;
 use sightlines_pvs::{
     BitMatrix, CellId, CellRecord, Locator, ObjectId, PortalId, SectionId, StabParts, StabTrees, Table, TableError,
@@ -11,35 +11,55 @@ use sightlines_pvs::{
 
 impl<S: Source> Packed<S> {
     /// The whole table, checked as every table is; equal to the packed one if nothing was merged.
-    /// O(size of the table).
+    /// O(size of the table), if kept blocks have room for a few blocks of each kind.
     ///
     /// # Errors
     /// If a block cannot be read, if the content is not a valid table, or if its rows take more than [`MAX_TABLE`]
     /// bytes.
     pub fn to_table(&self) -> Result<Table, PackedError> {
-        let table_error = |id: SectionId| {
-            let offset = self.resident.find(id).map_or(0, |section| section.place.offset);
-            move |error: TableError| PackedError::new(Some(id), offset, Kind::Table(error))
-        };
         let (n_cells, n_objects) = (self.n_cells(), self.n_objects());
+        let rows = self.matrix(format::ROWS, n_cells, |cell, out| self.items(&self.rows, cell, out, |i| i))?;
+        let mut parts = TableParts { rows, ..self.parts_without_rows()? };
+        if let Some(seen) = &self.seen {
+            parts.objects_seen =
+                Some(self.matrix(format::SEEN, n_objects, |cell, out| self.items(seen, cell, out, |o| o))?);
+        }
+        Table::new(parts).map_err(self.table_error(format::HEAD))
+    }
+
+    /// An error of the table, in a section.
+    pub(crate) fn table_error(&self, id: SectionId) -> impl Fn(TableError) -> PackedError + use<S> {
+        let offset = self.resident.find(id).map_or(0, |section| section.place.offset);
+        move |error: TableError| PackedError::new(Some(id), offset, Kind::Table(error))
+    }
+
+    /// The whole table except for its rows of cells and of objects; not yet checked. O(size), without the rows.
+    ///
+    /// # Errors
+    /// If a block cannot be read, or if the locator or the stab trees are no trees.
+    pub fn parts_without_rows(&self) -> Result<TableParts, PackedError> {
+        let n_cells = self.n_cells();
+        let nodes = match &self.places {
+            Places::Resident(places) => places.locator_nodes(&self.resident),
+            Places::Paged(pages) => self.paged_locator_nodes(pages)?,
+        };
+        let locator = match &self.places {
+            Places::Resident(_) => format::LOCATOR,
+            Places::Paged(_) => format::LOCATOR_TOP,
+        };
         let mut parts = TableParts {
-            rows: self.matrix(format::ROWS, n_cells, |cell, out| self.items(&self.rows, cell, out, |i| i))?,
             info: self.info().to_vec(),
             mirrors: self.mirrors().to_vec(),
             object_sources: self.sources.of_objects.clone(),
             doors: self.doors().to_vec(),
             planes: self.planes().cloned(),
-            locator: Locator::from_nodes(&self.places.locator_nodes(&self.resident))
-                .map_err(|error| table_error(format::LOCATOR)(error.into()))?,
+            locator: Locator::from_nodes(&nodes).map_err(|error| self.table_error(locator)(error.into()))?,
             up: self.up(),
             frame: self.frame().copied(),
             digest: self.digest(),
             ..TableParts::empty(self.dimension(), self.kind())
         };
-        if let Some(seen) = &self.seen {
-            parts.objects_seen =
-                Some(self.matrix(format::SEEN, n_objects, |cell, out| self.items(seen, cell, out, |o| o))?);
-        }
+        drop(nodes);
         for cell in (0..n_cells as u32).map(CellId) {
             let (min, max) = self.cell_box(cell)?;
             let mut polygon = Vec::new();
@@ -61,43 +81,9 @@ impl<S: Source> Packed<S> {
         }
         if let Some(n_nodes) = self.n_stab_nodes() {
             let stab = StabTrees::new(self.stab_parts(n_nodes)?, &parts.portals, n_cells);
-            parts.stab = Some(stab.map_err(|error| table_error(format::STAB)(error.into()))?);
+            parts.stab = Some(stab.map_err(|error| self.table_error(format::STAB)(error.into()))?);
         }
-        Table::new(parts).map_err(table_error(format::HEAD))
-    }
-
-    /// Checks the entire content: every block, that it is a valid table, that the exits of cells are its portals, and
-    /// that the coarse table agrees with the rows. O(size of the table).
-    ///
-    /// # Errors
-    /// As [`Packed::to_table`], or any other defect.
-    pub fn verify(&self) -> Result<(), PackedError> {
-        let table = self.to_table()?;
-        let page = self.head.page as usize;
-        let n_pages = self.head.n_pages();
-        let mut pages = BitMatrix::new(n_pages, n_pages);
-        for cell in (0..table.n_cells() as u32).map(CellId) {
-            table.visible(cell).for_each(|other| pages.set(cell.idx() / page, other.idx() / page, true));
-        }
-        for p in 0..n_pages {
-            if (0..n_pages).any(|q| pages.get(p, q) != self.page_sees(p, q)) {
-                return Err(PackedError::new(Some(format::COARSE), 0, Kind::Coarse { page: p as u32 }));
-            }
-        }
-        let mut exits: Vec<Vec<(PortalId, bool, CellId)>> = vec![Vec::new(); table.n_cells()];
-        for (portal, record) in (0u32..).map(PortalId).zip(table.portals()) {
-            let [a, b] = record.cells;
-            exits[a.idx()].push((portal, true, b));
-            exits[b.idx()].push((portal, false, a));
-        }
-        for (cell, expected) in (0u32..).map(CellId).zip(&exits) {
-            let mut found = Vec::new();
-            self.exits(cell, &mut |portal, forward, to, _| found.push((portal, forward, to)))?;
-            if found != *expected {
-                return Err(PackedError::new(Some(format::CELLS), 0, Kind::Exits { cell }));
-            }
-        }
-        Ok(())
+        Ok(parts)
     }
 
     /// A matrix of cells by `n_columns`, from what `read` gives for each cell.

@@ -11,9 +11,9 @@ use sightlines_pvs::{
 };
 
 /// Numbers of cells, objects, portals and nodes, and the flags of `HEAD`. A checked table counts with 32 bits.
-pub(crate) fn counts(parts: &TableParts) -> [u32; 5] {
+pub(crate) fn counts(parts: &TableParts, has_seen: bool) -> [u32; 5] {
     let known = if parts.object_polygons.is_empty() { 0 } else { POLYGONS_KNOWN };
-    let seen = if parts.objects_seen.is_some() { HAS_SEEN } else { 0 };
+    let seen = if has_seen { HAS_SEEN } else { 0 };
     let n_nodes = parts.stab.as_ref().map_or(NONE, |stab| stab.n_nodes() as u32);
     [parts.cells.len() as u32, parts.objects.len() as u32, parts.portals.len() as u32, n_nodes, known | seen]
 }
@@ -167,20 +167,29 @@ pub(crate) fn coarse(rows: &Distinct, n_cells: usize) -> Vec<u8> {
 }
 
 /// The records of `CELL`.
-pub(crate) fn cells(parts: &TableParts) -> Vec<Vec<u8>> {
-    let mut exits: Vec<Vec<(u64, u64)>> = vec![Vec::new(); parts.cells.len()];
+pub(crate) fn cells(parts: &TableParts) -> impl Iterator<Item = Vec<u8>> + '_ {
+    // The exits of each cell, one after the other; `ends` are filled from the beginnings on.
+    let mut ends = vec![0u32; parts.cells.len() + 1];
+    parts.portals.iter().flat_map(|portal| portal.cells).for_each(|cell| ends[cell.idx() + 1] += 1);
+    (0..parts.cells.len()).for_each(|i| ends[i + 1] += ends[i]);
+    let mut all = vec![(0u64, 0u32); 2 * parts.portals.len()];
+    let mut push = |from: sightlines_pvs::CellId, exit| {
+        all[ends[from.idx()] as usize] = exit;
+        ends[from.idx()] += 1;
+    };
     for (portal, record) in (0u64..).zip(&parts.portals) {
         let [a, b] = record.cells;
-        exits[a.idx()].push((2 * portal, u64::from(b.0)));
-        exits[b.idx()].push((2 * portal + 1, u64::from(a.0)));
+        push(a, (2 * portal, b.0));
+        push(b, (2 * portal + 1, a.0));
     }
-    let record = |i: usize| {
+    let record = move |i: usize| {
+        let exits = &all[i.checked_sub(1).map_or(0, |before| ends[before] as usize)..ends[i] as usize];
         let mut out = Writer::default();
         out.varint(parts.cells[i].group.map_or(0, |group| u64::from(group) + 1));
-        out.varint(exits[i].len() as u64);
-        for &(gate, to) in &exits[i] {
+        out.varint(exits.len() as u64);
+        for &(gate, to) in exits {
             out.varint(gate);
-            out.varint(to);
+            out.varint(u64::from(to));
         }
         out.ascending(parts.cell_objects[i].iter().map(|object| object.0));
         if let Some(stab) = &parts.stab {
@@ -190,13 +199,13 @@ pub(crate) fn cells(parts: &TableParts) -> Vec<Vec<u8>> {
         }
         out.0
     };
-    (0..parts.cells.len()).map(record).collect()
+    (0..parts.cells.len()).map(record)
 }
 
 /// The records of `PORT`.
-pub(crate) fn portals(parts: &TableParts) -> Vec<Vec<u8>> {
+pub(crate) fn portals(parts: &TableParts) -> impl Iterator<Item = Vec<u8>> + '_ {
     let d = usize::from(parts.dimension);
-    let record = |portal: &sightlines_pvs::PortalRecord| {
+    let record = move |portal: &sightlines_pvs::PortalRecord| {
         let mut out = Writer::default();
         let ids = [portal.cells[0].0, portal.cells[1].0, portal.sides[0], portal.sides[1]];
         ids.into_iter().for_each(|x| out.varint(u64::from(x)));
@@ -204,13 +213,13 @@ pub(crate) fn portals(parts: &TableParts) -> Vec<Vec<u8>> {
         portal.points.iter().for_each(|p| out.floats(&p[..d]));
         out.0
     };
-    parts.portals.iter().map(record).collect()
+    parts.portals.iter().map(record)
 }
 
 /// The records of `OBJS`.
-pub(crate) fn objects(parts: &TableParts) -> Vec<Vec<u8>> {
+pub(crate) fn objects(parts: &TableParts) -> impl Iterator<Item = Vec<u8>> + '_ {
     let d = usize::from(parts.dimension);
-    let record = |(o, object): (usize, &sightlines_pvs::ObjectRecord)| {
+    let record = move |(o, object): (usize, &sightlines_pvs::ObjectRecord)| {
         let mut out = Writer::default();
         out.floats(&object.min[..d]);
         out.floats(&object.max[..d]);
@@ -218,16 +227,16 @@ pub(crate) fn objects(parts: &TableParts) -> Vec<Vec<u8>> {
         out.0.extend_from_slice(object.name.as_bytes());
         out.0
     };
-    parts.objects.iter().enumerate().map(record).collect()
+    parts.objects.iter().enumerate().map(record)
 }
 
 /// The records of `CNAM`.
-pub(crate) fn cell_names(parts: &TableParts) -> Vec<Vec<u8>> {
-    parts.cell_names.iter().map(|name| name.as_bytes().to_vec()).collect()
+pub(crate) fn cell_names(parts: &TableParts) -> impl Iterator<Item = Vec<u8>> + '_ {
+    parts.cell_names.iter().map(|name| name.as_bytes().to_vec())
 }
 
 /// The records of `STAB`.
-pub(crate) fn nodes(stab: &StabTrees) -> Vec<Vec<u8>> {
+pub(crate) fn nodes(stab: &StabTrees) -> impl Iterator<Item = Vec<u8>> + '_ {
     let record = |node: u32| {
         let mut out = Writer::default();
         let ((portal, forward), children) = (stab.gate(node), stab.children(node));
@@ -240,5 +249,5 @@ pub(crate) fn nodes(stab: &StabTrees) -> Vec<Vec<u8>> {
         }
         out.0
     };
-    (0..stab.n_nodes() as u32).map(record).collect()
+    (0..stab.n_nodes() as u32).map(record)
 }

@@ -277,6 +277,24 @@ pub enum TableError {
 impl TableParts {
     /// Checks everything that a table guarantees. O(size), except for the locator, O(entries * depth).
     pub(crate) fn check(&self) -> Result<(), TableError> {
+        self.check_with(|parts| {
+            parts.check_rows()?;
+            parts.check_objects()?;
+            parts.objects_seen.as_ref().map_or(Ok(()), |seen| parts.check_seen(seen))
+        })
+    }
+
+    /// Checks everything that a [`Table`](crate::Table) guarantees, except for its `rows` and `objects_seen`, which are not looked at: for
+    /// those who write or read rows one by one. O(size of the rest), except for the locator, O(entries * depth).
+    ///
+    /// # Errors
+    /// [`TableError`] for the first defect.
+    pub fn check_without_rows(&self) -> Result<(), TableError> {
+        self.check_with(Self::check_objects)
+    }
+
+    /// `check_rows` checks rows and objects, at its place among the other checks.
+    fn check_with(&self, check_rows: impl FnOnce(&Self) -> Result<(), TableError>) -> Result<(), TableError> {
         if !matches!(self.dimension, 2 | 3) {
             return Err(TableError::Dimension(self.dimension));
         }
@@ -293,9 +311,7 @@ impl TableParts {
             return Err(TableError::CellNames { n: self.cell_names.len(), n_cells: self.cells.len() });
         }
         self.portals.iter().enumerate().try_for_each(|(i, portal)| self.check_portal(i, portal))?;
-        self.check_rows()?;
-        self.check_objects()?;
-        self.objects_seen.as_ref().map_or(Ok(()), |seen| self.check_seen(seen))?;
+        check_rows(self)?;
         self.mirrors.iter().enumerate().try_for_each(|(i, mirror)| self.check_mirror(i, mirror))?;
         self.check_doors()?;
         self.locator.check(&self.cell_bounds(), self.dimension)?;

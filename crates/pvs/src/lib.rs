@@ -40,7 +40,7 @@ pub use format::{DecodeError, DecodeErrorKind, SectionId};
 pub use frame::{Frame, FrameError};
 pub use id::{CellId, DoorId, MirrorId, ObjectId, PortalId};
 pub use kind::{Axis, SceneMethods, TableKind};
-pub use locator::{Locator, LocatorError, LocatorNode};
+pub use locator::{Locator, LocatorError, LocatorNode, LocatorNodeRef};
 pub use parts::TableParts;
 pub use planes::{PlaneChild, PlaneError, PlaneNode, PlaneTree};
 pub use query::{DimensionError, Inside, Place, PlaceBuffer, Query};

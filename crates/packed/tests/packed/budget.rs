@@ -2,7 +2,7 @@
 
 use crate::common::{recipes, table};
 use proptest::prelude::*;
-use sightlines_packed::{PackError, PackOptions, Packed, pack, pack_report};
+use sightlines_packed::{PackError, PackOptions, Packed, SizeClass, pack, pack_report};
 use sightlines_pvs::{CellId, Table};
 
 /// Pairs of `table` that `other` hides, and pairs that it adds, of cells with cells and with objects.
@@ -20,11 +20,15 @@ fn differences(table: &Table, other: &Table) -> (usize, usize) {
     found
 }
 
-fn merged_pairs(recipe: crate::common::Recipe, share: u64) -> Result<(usize, usize), TestCaseError> {
+fn merged_pairs(
+    recipe: crate::common::Recipe,
+    share: u64,
+    class: Option<SizeClass>,
+) -> Result<(usize, usize), TestCaseError> {
     let table = table(recipe);
-    let (exact, report) = pack_report(&table, &PackOptions::default()).unwrap();
+    let (exact, report) = pack_report(&table, &PackOptions { max_bytes: None, class }).unwrap();
     let budget = report.bytes - report.row_bytes * share / 100;
-    match pack_report(&table, &PackOptions { max_bytes: Some(budget) }) {
+    match pack_report(&table, &PackOptions { max_bytes: Some(budget), class }) {
         Ok((bytes, merged)) => {
             prop_assert!(bytes.len() as u64 <= budget && merged.bytes == bytes.len() as u64);
             let packed = Packed::open(bytes, 1 << 20).unwrap();
@@ -51,7 +55,8 @@ fn merged_pairs(recipe: crate::common::Recipe, share: u64) -> Result<(usize, usi
 proptest! {
     #[test]
     fn a_budget_is_kept_and_nothing_is_hidden(recipe in recipes(), share in 0u64..40) {
-        merged_pairs(recipe, share)?;
+        merged_pairs(recipe, share, None)?;
+        merged_pairs(recipe, share, Some(SizeClass::Large))?;
     }
 }
 
@@ -61,7 +66,7 @@ fn little_is_added_for_little() {
     // With blocks of five cells, only merges with a cost are left.
     let mut added = Vec::new();
     for share in [0, 2, 6, 12, 25] {
-        added.push(merged_pairs((2, 13, 7, 3, 0b0100), share).unwrap());
+        added.push(merged_pairs((2, 13, 7, 3, 0b0100), share, None).unwrap());
     }
     assert_eq!(added[0], (0, 0));
     assert!(added.iter().any(|(n_merges, added)| *n_merges > 0 && *added > 0), "{added:?}");
@@ -71,9 +76,9 @@ fn little_is_added_for_little() {
 #[test]
 fn a_budget_that_cannot_be_kept_says_what_can() {
     let table = table((3, 5, 4, 11, 0xFF));
-    let error = pack(&table, &PackOptions { max_bytes: Some(10) }).unwrap_err();
+    let error = pack(&table, &PackOptions { max_bytes: Some(10), class: None }).unwrap_err();
     let PackError::Budget { budget: 10, smallest } = error else { panic!("{error}") };
-    let bytes = pack(&table, &PackOptions { max_bytes: Some(smallest) }).unwrap();
+    let bytes = pack(&table, &PackOptions { max_bytes: Some(smallest), class: None }).unwrap();
     assert_eq!(bytes.len() as u64, smallest);
     assert!(error.to_string().starts_with("a budget of 10 bytes cannot be kept"));
 }

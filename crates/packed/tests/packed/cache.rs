@@ -46,7 +46,7 @@ fn a_file_that_is_cut_while_open_gives_errors() {
     let mut cells = Vec::new();
     assert!(packed.visible(CellId(0), &mut cells).unwrap_err().to_string().contains("section ROWS: cannot read"));
     let mut buffer = PlaceBuffer::new();
-    let at = packed.in_dimension().unwrap().cells_at([0.5, 0.5], &mut buffer).inside().unwrap();
+    let at = packed.in_dimension().unwrap().cells_at([0.5, 0.5], &mut buffer).unwrap().inside().unwrap();
     packed.coarse(at[0], &mut cells).unwrap();
     assert_eq!(at, table.in_dimension().unwrap().at([0.5, 0.5]).cells());
 }

@@ -18,8 +18,9 @@ pub(crate) fn ask_all(packed: &Packed<Vec<u8>>) -> usize {
         count(packed.group(cell).map(drop));
         count(packed.cell_name(cell).map(drop));
         count(packed.cell_polygon(cell, &mut Vec::new()));
-        let (min, _) = packed.cell_box(cell).expect("boxes are resident");
-        let _ = packed.cells_at(min, &mut PlaceBuffer::new());
+        let found = packed.cell_box(cell);
+        count(packed.cells_at(found.as_ref().map_or([0.0; 3], |found| found.0), &mut PlaceBuffer::new()).map(drop));
+        count(found.map(drop));
     }
     for object in 0..packed.n_objects().min(100) as u32 {
         count(packed.object_box(ObjectId(object)).map(drop));

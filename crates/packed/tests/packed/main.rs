@@ -4,4 +4,6 @@ mod budget;
 mod cache;
 mod common;
 mod damage;
+mod large;
 mod round_trip;
+mod stream;

@@ -16,7 +16,11 @@ pub(crate) fn compare(packed: &Packed<Vec<u8>>, table: &Table) -> usize {
     assert_eq!((packed.kind(), packed.up()), (table.kind(), table.up()));
     assert_eq!((packed.info(), packed.mirrors(), packed.planes()), (table.info(), table.mirrors(), table.planes()));
     for p in points(table.dimension()) {
-        assert_eq!(packed.cells_at(p, &mut buffer).inside().unwrap_or_default(), table.place_at(p).cells(), "{p:?}");
+        assert_eq!(
+            packed.cells_at(p, &mut buffer).unwrap().inside().unwrap_or_default(),
+            table.place_at(p).cells(),
+            "{p:?}"
+        );
     }
     for (i, record) in (0u32..).zip(table.cells()) {
         let cell = CellId(i);
@@ -84,7 +88,7 @@ proptest! {
     fn a_table_comes_back_and_answers_the_same(recipe in recipes()) {
         let table = table(recipe);
         let (bytes, report) = pack_report(&table, &PackOptions::default()).unwrap();
-        prop_assert_eq!(&bytes, &pack(&table, &PackOptions { max_bytes: Some(bytes.len() as u64) }).unwrap());
+        prop_assert_eq!(&bytes, &pack(&table, &PackOptions { max_bytes: Some(bytes.len() as u64), class: None }).unwrap());
         prop_assert_eq!((report.bytes, report.n_merges), (bytes.len() as u64, 0));
         let packed = Packed::open(bytes, 1 << 20).unwrap();
         compare(&packed, &table);
@@ -117,7 +121,7 @@ fn names_come_and_go_alone() {
     // Merged cells keep their names, each its own: ids stay.
     let (_, report) = pack_report(&named, &PackOptions::default()).unwrap();
     let max_bytes = Some(report.bytes - report.row_bytes / 4);
-    let (bytes, report) = pack_report(&named, &PackOptions { max_bytes }).unwrap();
+    let (bytes, report) = pack_report(&named, &PackOptions { max_bytes, class: None }).unwrap();
     assert!(report.n_merges > 0);
     let merged = Packed::open(bytes, 0).unwrap().to_table().unwrap();
     assert_eq!(merged.parts().cell_names, named.parts().cell_names);
@@ -231,7 +235,7 @@ fn frames_are_packed() {
     let mut n_several = 0;
     for i in 0..400 {
         let p = frame.to_scene([f64::from(i) * 0.21 - 1.0, 2.9, 1.0]);
-        let found = packed.cells_at(p, &mut buffer).inside().unwrap_or_default();
+        let found = packed.cells_at(p, &mut buffer).unwrap().inside().unwrap_or_default();
         assert_eq!(found, table.place_at(p).cells(), "{p:?}");
         n_several += usize::from(found.len() > 1);
     }

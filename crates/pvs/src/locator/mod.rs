@@ -31,6 +31,25 @@ pub enum LocatorNode {
     },
 }
 
+/// A node of a [`Locator`], which has its nodes in preorder: the low child of an inner node is the next node.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LocatorNodeRef<'a> {
+    /// As [`LocatorNode::Inner`].
+    Inner {
+        /// 0, 1 or 2 for x, y or z.
+        axis: u8,
+        /// The coordinate, in scene units; finite.
+        split: f64,
+        /// Position of the child with the larger coordinates.
+        high: u32,
+    },
+    /// As [`LocatorNode::Leaf`].
+    Leaf {
+        /// The cells that may contain a point of the leaf's region, ascending.
+        cells: &'a [CellId],
+    },
+}
+
 /// An axis-aligned binary tree over cells. Always a tree: no cycles, no shared or unused nodes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Locator {
@@ -199,6 +218,14 @@ impl Locator {
             Node::Leaf { start, end } => LocatorNode::Leaf { cells: self.list(start, end).to_vec() },
         };
         self.nodes.iter().enumerate().map(node).collect()
+    }
+
+    /// A node by its position in [`Locator::to_nodes`], without a copy of its cells; `None` past the last. O(1).
+    pub fn node(&self, i: usize) -> Option<LocatorNodeRef<'_>> {
+        Some(match *self.nodes.get(i)? {
+            Node::Inner { axis, split, high } => LocatorNodeRef::Inner { axis, split, high },
+            Node::Leaf { start, end } => LocatorNodeRef::Leaf { cells: self.list(start, end) },
+        })
     }
 
     /// Number of nodes.
