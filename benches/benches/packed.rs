@@ -243,7 +243,7 @@ fn budgets(args: &Args, name: &str, table: &Table, rows: &mut Vec<Row>) -> Resul
     for share in BUDGETS {
         let max_bytes = exact.bytes - exact.row_bytes * (100 - share) / 100;
         let start = Instant::now();
-        let (bytes, more) = match pack_report(table, &PackOptions { max_bytes: Some(max_bytes) }) {
+        let (bytes, more) = match pack_report(table, &PackOptions { max_bytes: Some(max_bytes), class: None }) {
             Ok((bytes, report)) => {
                 assert!(bytes.len() as u64 <= max_bytes, "the budget is kept");
                 (report.row_bytes, Some(seen(&Packed::open(bytes, 1 << 24)?.to_table()?, table)))
@@ -329,7 +329,7 @@ fn large(args: &Args) -> Result<String, Box<dyn Error>> {
             let (mut buffer, mut seen) = (PlaceBuffer::new(), Vec::new());
             let start = Instant::now();
             let packed = Packed::open(std::fs::File::open(&path)?, 16 << 20)?;
-            let cells = packed.cells_at(eye, &mut buffer).inside().expect("the middle of a cell is inside");
+            let cells = packed.cells_at(eye, &mut buffer)?.inside().expect("the middle of a cell is inside");
             packed.visible(cells[0], &mut seen)?;
             times.push(start.elapsed().as_secs_f64() * 1e3);
             assert!(cells == table.place_at(eye).cells() && seen.iter().copied().eq(table.visible(cells[0])));

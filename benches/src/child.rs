@@ -210,7 +210,7 @@ fn watch(mut child: Child, limits: &Limits) -> Outcome {
 }
 
 /// A line such as `VmHWM:   1234 kB` of what the system says about a process, in bytes.
-pub(crate) fn memory_of(process: &str, key: &str) -> Option<u64> {
+pub fn memory_of(process: &str, key: &str) -> Option<u64> {
     let status = std::fs::read_to_string(format!("/proc/{process}/status")).ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix(key))?;
     line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)

@@ -27,9 +27,12 @@ impl From<sightlines_pvs::Table> for Table {
     }
 }
 
+/// Bytes of blocks that are kept while a table is unpacked: each is read many times in a row.
+const UNPACK_CACHE: usize = 64 << 20;
+
 fn decode(bytes: &[u8]) -> Result<sightlines_pvs::Table, String> {
     if bytes.starts_with(&sightlines_packed::format::MAGIC) {
-        let packed = Packed::open(bytes.to_vec(), 0).map_err(|failure| failure.to_string())?;
+        let packed = Packed::open(bytes.to_vec(), UNPACK_CACHE).map_err(|failure| failure.to_string())?;
         return packed.to_table().map_err(|failure| failure.to_string());
     }
     sightlines_pvs::Table::from_bytes(bytes).map_err(|failure| failure.to_string())

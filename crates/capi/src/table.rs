@@ -44,11 +44,15 @@ pub const SL_FORM_PLAIN: u32 = 0;
 /// The packed form, as in files that end in `.pvz`: a fraction of the size.
 pub const SL_FORM_PACKED: u32 = 1;
 
+/// Bytes of blocks that are kept while a table is unpacked: each is read many times in a row.
+#[cfg(feature = "packed")]
+const UNPACK_CACHE: usize = 64 << 20;
+
 fn decode(bytes: Vec<u8>) -> Result<Table, Failure> {
     let failed = |error: &dyn std::fmt::Display| Failure::new(SL_ERROR_FORMAT, error.to_string());
     #[cfg(feature = "packed")]
     if bytes.starts_with(&sightlines_packed::format::MAGIC) {
-        let packed = sightlines_packed::Packed::open(bytes, 0).map_err(|error| failed(&error))?;
+        let packed = sightlines_packed::Packed::open(bytes, UNPACK_CACHE).map_err(|error| failed(&error))?;
         return packed.to_table().map_err(|error| failed(&error));
     }
     Table::from_bytes(&bytes).map_err(|error| failed(&error))

@@ -2,9 +2,10 @@
 
 use crate::error::InputError;
 use crate::input;
+use serde::Serialize;
 use sightlines::eye_to_cell::{CellSource, TableCells};
 use sightlines::formats::InputKind;
-use sightlines::packed::{Packed, PackedError};
+use sightlines::packed::{Packed, PackedError, SizeClass};
 use sightlines::pvs::{Axis, CellId, DoorRecord, ObjectId, ObjectSource, Table};
 use sightlines::walkthrough::{CoarseVisibility, PackedCells};
 use std::convert::Infallible;
@@ -43,10 +44,37 @@ pub(crate) fn packed(path: &Path, cache_bytes: usize) -> Result<Packed<File>, In
     Packed::open(file, cache_bytes).map_err(|source| InputError::Packed { path: path.to_owned(), source })
 }
 
+/// The class of a file, on a command line and in answers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Class {
+    Small,
+    Large,
+}
+
+impl Class {
+    pub(crate) fn of(class: SizeClass) -> Self {
+        match class {
+            SizeClass::Small => Self::Small,
+            SizeClass::Large => Self::Large,
+        }
+    }
+
+    pub(crate) fn size_class(self) -> SizeClass {
+        match self {
+            Self::Small => SizeClass::Small,
+            Self::Large => SizeClass::Large,
+        }
+    }
+}
+
 /// A table of either kind. Clones share it.
 pub(crate) trait Cells: CellSource<Error: Send + 'static> + CoarseVisibility + Clone + Send + 'static {
     /// What went wrong, with the file's name.
     fn fail(path: &Path, error: Self::Error) -> InputError;
+
+    /// The same, if a point could not be located.
+    fn lost(path: &Path, error: Self::PlaceError) -> InputError;
 
     /// The axis that points up, if it is known.
     fn up(&self) -> Option<Axis>;
@@ -95,6 +123,10 @@ impl Cells for TableCells<Arc<Table>> {
         match error {}
     }
 
+    fn lost(_: &Path, error: Infallible) -> InputError {
+        match error {}
+    }
+
     fn up(&self) -> Option<Axis> {
         self.table().up()
     }
@@ -135,6 +167,10 @@ impl Cells for TableCells<Arc<Table>> {
 impl Cells for PackedCells<File> {
     fn fail(path: &Path, source: PackedError) -> InputError {
         InputError::Packed { path: path.to_owned(), source }
+    }
+
+    fn lost(path: &Path, error: PackedError) -> InputError {
+        Self::fail(path, error)
     }
 
     fn up(&self) -> Option<Axis> {

@@ -329,6 +329,7 @@ impl Frame {
             row_bytes: visibility.len() as u64,
             n_classes: n_rows as usize,
             n_merges,
+            class: SizeClass::Small,
         };
         (out.0, report)
     }

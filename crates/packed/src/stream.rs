@@ -3,7 +3,7 @@
 use crate::blocks::BlockWriter;
 use crate::bytes::{Writer, bytes_of};
 use crate::error::{PackError, StreamError};
-use crate::format::{self, END, ENTRY, FIXED, MAGIC, MAJOR_LARGE, MASKS, OPTIONAL};
+use crate::format::{self, END, ENTRY, FIXED, MAGIC, MAJOR_LARGE, MASKS, OPTIONAL, SizeClass};
 use crate::masks::{RowDefect, encode};
 use crate::sections::{frame_sections, minor};
 use crate::write;
@@ -23,6 +23,8 @@ pub struct PackReport {
     pub n_classes: usize,
     /// Number of merges of different classes of cells.
     pub n_merges: usize,
+    /// The size class of the file.
+    pub class: SizeClass,
 }
 
 /// Options for writing row by row.
@@ -246,7 +248,7 @@ impl<W: Write> PackWriter<W> {
         out.flush()?;
         let row_bytes = bytes_of_stores[self.rows] + self.seen.as_ref().map_or(0, |seen| bytes_of_stores[seen.store]);
         let n_classes = self.n_cells as usize;
-        Ok((out, PackReport { bytes: total, row_bytes, n_classes, n_merges: 0 }))
+        Ok((out, PackReport { bytes: total, row_bytes, n_classes, n_merges: 0, class: SizeClass::Large }))
     }
 }
 

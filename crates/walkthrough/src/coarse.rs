@@ -3,11 +3,16 @@
 use sightlines_eye_to_cell::TableCells;
 use sightlines_pvs::{CellId, ObjectId, Place, PlaceBuffer, Table};
 use std::borrow::Borrow;
+use std::convert::Infallible;
 use std::sync::Arc;
 
 /// The part of a table that a frame can query without waiting: no disk, and no lock that another thread may hold for
-/// long.
+/// long. The exception is a packed table of the large class, which reads a block when a point is located where none was
+/// lately.
 pub trait CoarseVisibility {
+    /// Why a point cannot be located; [`std::convert::Infallible`] where all that takes is in memory.
+    type PlaceError;
+
     /// Number of cells.
     fn n_cells(&self) -> usize;
 
@@ -15,7 +20,14 @@ pub trait CoarseVisibility {
     fn n_objects(&self) -> usize;
 
     /// The cells at a point (scene units; in a plane z does not count), ascending, in `buffer`.
-    fn cells_at<'b>(&'b self, eye: [f64; 3], buffer: &'b mut PlaceBuffer) -> Place<&'b [CellId]>;
+    ///
+    /// # Errors
+    /// If the part of the table that decides cannot be read.
+    fn cells_at<'b>(
+        &'b self,
+        eye: [f64; 3],
+        buffer: &'b mut PlaceBuffer,
+    ) -> Result<Place<&'b [CellId]>, Self::PlaceError>;
 
     /// Visits a superset of the cells that `cell` may see.
     fn coarse(&self, cell: CellId, show: &mut dyn FnMut(CellId));
@@ -25,6 +37,8 @@ pub trait CoarseVisibility {
 }
 
 impl<T: Borrow<Table>> CoarseVisibility for TableCells<T> {
+    type PlaceError = Infallible;
+
     fn n_cells(&self) -> usize {
         self.table().n_cells()
     }
@@ -33,8 +47,12 @@ impl<T: Borrow<Table>> CoarseVisibility for TableCells<T> {
         self.table().objects().len()
     }
 
-    fn cells_at<'b>(&'b self, eye: [f64; 3], buffer: &'b mut PlaceBuffer) -> Place<&'b [CellId]> {
-        self.table().cells_at(eye, buffer)
+    fn cells_at<'b>(
+        &'b self,
+        eye: [f64; 3],
+        buffer: &'b mut PlaceBuffer,
+    ) -> Result<Place<&'b [CellId]>, Infallible> {
+        Ok(self.table().cells_at(eye, buffer))
     }
 
     fn coarse(&self, cell: CellId, show: &mut dyn FnMut(CellId)) {
@@ -48,6 +66,8 @@ impl<T: Borrow<Table>> CoarseVisibility for TableCells<T> {
 }
 
 impl<R: CoarseVisibility + ?Sized> CoarseVisibility for Arc<R> {
+    type PlaceError = R::PlaceError;
+
     fn n_cells(&self) -> usize {
         (**self).n_cells()
     }
@@ -56,7 +76,11 @@ impl<R: CoarseVisibility + ?Sized> CoarseVisibility for Arc<R> {
         (**self).n_objects()
     }
 
-    fn cells_at<'b>(&'b self, eye: [f64; 3], buffer: &'b mut PlaceBuffer) -> Place<&'b [CellId]> {
+    fn cells_at<'b>(
+        &'b self,
+        eye: [f64; 3],
+        buffer: &'b mut PlaceBuffer,
+    ) -> Result<Place<&'b [CellId]>, R::PlaceError> {
         (**self).cells_at(eye, buffer)
     }
 

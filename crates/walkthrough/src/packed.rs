@@ -99,6 +99,8 @@ impl<S: Source> CellSource for PackedCells<S> {
 }
 
 impl<S: Source> CoarseVisibility for PackedCells<S> {
+    type PlaceError = PackedError;
+
     fn n_cells(&self) -> usize {
         self.0.n_cells()
     }
@@ -107,7 +109,11 @@ impl<S: Source> CoarseVisibility for PackedCells<S> {
         self.0.n_objects()
     }
 
-    fn cells_at<'b>(&'b self, eye: [f64; 3], buffer: &'b mut PlaceBuffer) -> Place<&'b [CellId]> {
+    fn cells_at<'b>(
+        &'b self,
+        eye: [f64; 3],
+        buffer: &'b mut PlaceBuffer,
+    ) -> Result<Place<&'b [CellId]>, PackedError> {
         self.0.cells_at(eye, buffer)
     }
 

@@ -111,9 +111,10 @@ impl<S: CellSource<Error: Send + 'static> + Send + 'static> Prepare for VisibleS
 /// `R` answers at once (point location, and a superset of what a cell sees). `S` is a source that may be slow; only
 /// another thread reads it. Both may be the same table.
 ///
-/// A frame never waits, except without a thread ([`WalkOptions::has_thread`]). If the subgraph of the eye's cell has not arrived yet, the frame gets a superset. Subgraphs of
+/// A frame never waits, except without a thread ([`WalkOptions::has_thread`]), and for a block of a large packed table in
+/// which the eye is located. If the subgraph of the eye's cell has not arrived yet, the frame gets a superset. Subgraphs of
 /// the cells ahead are prepared in advance.
-pub struct Walkthrough<R, S: CellSource<Error: Send + 'static> + Send + 'static> {
+pub struct Walkthrough<R: CoarseVisibility, S: CellSource<Error: Send + 'static> + Send + 'static> {
     resident: R,
     options: WalkOptions,
     subgraphs: Prefetcher<VisibleSubgraphs<S>>,
@@ -130,6 +131,7 @@ pub struct Walkthrough<R, S: CellSource<Error: Send + 'static> + Send + 'static>
     buffer: PlaceBuffer,
     last: Option<Last>,
     counters: WalkCounters,
+    place_error: Option<R::PlaceError>,
 }
 
 /// The query of the last answer.
@@ -160,6 +162,7 @@ impl<R: CoarseVisibility, S: CellSource<Error: Send + 'static> + Send + 'static>
             buffer: PlaceBuffer::new(),
             last: None,
             counters: WalkCounters::default(),
+            place_error: None,
         }
     }
 
@@ -200,12 +203,18 @@ impl<R: CoarseVisibility, S: CellSource<Error: Send + 'static> + Send + 'static>
         self.mirrored.clear();
         self.at.clear();
         let mut answer = match self.resident.cells_at(view.eye(), &mut self.buffer) {
-            Place::Inside(cells) => {
+            Ok(Place::Inside(cells)) => {
                 self.at.extend_from_slice(cells);
                 Answer::Full
             }
-            Place::Outside => Answer::Outside,
+            Ok(Place::Outside) => Answer::Outside,
+            Err(error) => {
+                self.place_error = Some(error);
+                Answer::Late
+            }
         };
+        // Where the eye is outside, or cannot be located, nothing is known.
+        let is_lost = self.at.is_empty();
         for &cell in &self.at {
             match self.subgraphs.get(cell) {
                 Some(subgraph) => {
@@ -217,7 +226,7 @@ impl<R: CoarseVisibility, S: CellSource<Error: Send + 'static> + Send + 'static>
                 }
             }
         }
-        if answer == Answer::Outside {
+        if is_lost {
             self.seen.add_cells((0..n_cells as u32).map(CellId));
             self.seen.add_objects((0..n_objects as u32).map(ObjectId));
         } else if self.options.bounces > 0 {
@@ -270,8 +279,8 @@ impl<R: CoarseVisibility, S: CellSource<Error: Send + 'static> + Send + 'static>
             if !self.path.moves() {
                 break;
             }
-            // Outside there is nothing to prepare.
-            if let Place::Inside(cells) = self.resident.cells_at(place, &mut self.buffer) {
+            // Outside there is nothing to prepare; a place that cannot be read will be told when the eye is there.
+            if let Ok(Place::Inside(cells)) = self.resident.cells_at(place, &mut self.buffer) {
                 self.wishes.extend_from_slice(cells);
             }
         }
@@ -373,6 +382,11 @@ impl<R: CoarseVisibility, S: CellSource<Error: Send + 'static> + Send + 'static>
         self.subgraphs.take_error()
     }
 
+    /// Takes the last error of locating the eye. Until that succeeds, frames there are [`Answer::Late`], and show everything.
+    pub fn take_place_error(&mut self) -> Option<R::PlaceError> {
+        self.place_error.take()
+    }
+
     /// Bytes and number of the subgraphs in memory. [`Walkthrough::replace`] resets these, and those of the next method.
     pub fn kept(&self) -> (usize, usize) {
         (self.subgraphs.n_bytes(), self.subgraphs.n_kept())
@@ -408,7 +422,7 @@ fn coarse(resident: &impl CoarseVisibility, cell: CellId, seen: &mut VisibleSet)
     }
 }
 
-impl<R, S: CellSource<Error: Send + 'static> + Send + 'static> fmt::Debug for Walkthrough<R, S> {
+impl<R: CoarseVisibility, S: CellSource<Error: Send + 'static> + Send + 'static> fmt::Debug for Walkthrough<R, S> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Walkthrough")
             .field("options", &self.options)

@@ -127,12 +127,12 @@ impl PvsTable {
         })
     }
 
-    /// The cells at a point of the scene.
+    /// The cells at a point of the scene; outside where they cannot be read, which hides nothing.
     pub(crate) fn cells_at<'b>(&self, point: [f64; 3], buffer: &'b mut PlaceBuffer) -> Place<&'b [CellId]> {
         match &self.form {
             Form::Plain(table) => table.cells_at(point, buffer),
             #[cfg(feature = "packed")]
-            Form::Packed { cells, .. } => cells.packed().cells_at(point, buffer),
+            Form::Packed { cells, .. } => cells.packed().cells_at(point, buffer).unwrap_or(Place::Outside),
         }
     }
 

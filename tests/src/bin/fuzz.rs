@@ -29,7 +29,7 @@ use sightlines::scenes::world::{BspWorldOptions, bsp_world};
 use sightlines::scenes::{self, TowerOptions, tower};
 use sightlines::stabtree::{ConvexOptions, ConvexSearch, Zones, shoot_axial_chords};
 use sightlines_capi::fuzz::drive;
-use sightlines_packed::{PackOptions, Packed, pack};
+use sightlines_packed::{PackOptions, Packed, SizeClass, pack};
 use sightlines_testkit::mutate::{SplitMix, mutate};
 use sightlines_tests::certificates;
 use sightlines_tests::simplified::SmallMesh;
@@ -262,8 +262,11 @@ fn tables() -> Vec<Vec<u8>> {
 
 fn packed_tables() -> Vec<Vec<u8>> {
     let table = |bytes: Vec<u8>| Table::from_bytes(&bytes).expect("a table");
-    let pack = |table: Table| pack(&table, &PackOptions::default()).expect("a small table");
-    tables().into_iter().map(table).map(pack).collect()
+    let pack = |table: &Table, class| {
+        pack(table, &PackOptions { max_bytes: None, class: Some(class) }).expect("a small table")
+    };
+    let both = |table: Table| [SizeClass::Small, SizeClass::Large].map(|class| pack(&table, class));
+    tables().into_iter().map(table).flat_map(both).collect()
 }
 
 fn prts() -> Vec<Vec<u8>> {
@@ -459,8 +462,12 @@ fn check_packed(bytes: &[u8]) -> bool {
         let Ok(packed) = Packed::open(bytes, 1 << 12) else { return false };
         let (mut cells, mut numbers) = (Vec::new(), Vec::new());
         for cell in (0..packed.n_cells().min(50) as u32).map(CellId) {
-            let (min, _) = packed.cell_box(cell).expect("boxes are resident");
-            let _ = packed.cells_at(min, &mut PlaceBuffer::new());
+            let is_small = packed.size_class() == SizeClass::Small;
+            let (min, _) = packed.cell_box(cell).unwrap_or_else(|_| {
+                assert!(!is_small, "boxes are resident");
+                Default::default()
+            });
+            assert!(packed.cells_at(min, &mut PlaceBuffer::new()).is_ok() || !is_small, "places are resident");
             packed.coarse(cell, &mut cells).expect("and the coarse table");
             let _ = packed.exits(cell, &mut |_, _, to, _| assert!(to.idx() < packed.n_cells()));
             let _ = packed.objects_seen(cell, &mut numbers);
@@ -473,8 +480,10 @@ fn check_packed(bytes: &[u8]) -> bool {
             return false;
         }
         let table = packed.to_table().expect("it was verified");
-        let again = pack(&table, &PackOptions::default()).expect("a small table");
-        assert_eq!(Packed::open(again, 0).and_then(|packed| packed.to_table()).expect("it was packed"), table);
+        for class in [SizeClass::Small, SizeClass::Large] {
+            let again = pack(&table, &PackOptions { max_bytes: None, class: Some(class) }).expect("a small table");
+            assert_eq!(Packed::open(again, 0).and_then(|packed| packed.to_table()).expect("it was packed"), table);
+        }
         true
     })
 }
@@ -482,6 +491,9 @@ fn check_packed(bytes: &[u8]) -> bool {
 /// Makes the checksums of sections and header right again, as far as they can be found.
 fn fix_checksums(bytes: &mut [u8]) {
     let number = |bytes: &[u8], at: usize| Some(u32::from_le_bytes(*bytes.get(at..)?.first_chunk()?) as usize);
+    if bytes.ends_with(&sightlines_packed::format::END) {
+        return fix_checksums_of_large(bytes);
+    }
     let n = number(bytes, 12).unwrap_or(0).min(bytes.len() / 24);
     for at in (0..n).map(|i| 24 + 24 * i) {
         let place = number(bytes, at + 8).zip(number(bytes, at + 16));
@@ -496,6 +508,22 @@ fn fix_checksums(bytes: &mut [u8]) {
         let crc = crc32fast::hash(&bytes[..end]);
         bytes[end..end + 4].copy_from_slice(&crc.to_le_bytes());
     }
+}
+
+/// The same for a large packed table, whose section table is near its end.
+fn fix_checksums_of_large(bytes: &mut [u8]) {
+    let number = |bytes: &[u8], at: usize| Some(u32::from_le_bytes(*bytes.get(at..)?.first_chunk()?) as usize);
+    let Some(tail) = bytes.len().checked_sub(32) else { return };
+    let n = number(bytes, tail + 16).unwrap_or(0);
+    let Some(table) = n.checked_mul(24).and_then(|n| tail.checked_sub(n)).filter(|&table| table >= 24) else { return };
+    for at in (table..tail).step_by(24) {
+        let place = number(bytes, at + 8).zip(number(bytes, at + 16));
+        let Some(section) = place.and_then(|(begin, n)| bytes.get(begin..begin.checked_add(n)?)) else { continue };
+        let crc = crc32fast::hash(section);
+        bytes[at + 20..at + 24].copy_from_slice(&crc.to_le_bytes());
+    }
+    let sealed = [&bytes[..24], &bytes[table..tail + 20]].concat();
+    bytes[tail + 20..tail + 24].copy_from_slice(&crc32fast::hash(&sealed).to_le_bytes());
 }
 
 /// Portals are read or refused, and what is read is seen through: the table is written and read again.

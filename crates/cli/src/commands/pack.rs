@@ -4,6 +4,7 @@ use crate::Answer;
 use crate::error::InputError;
 use crate::file_error::{FileError, from_file_error};
 use crate::output::{self, bytes, count, percent};
+use crate::tables::Class;
 use crate::{input, tables};
 use serde::Serialize;
 use sightlines::packed::PackError;
@@ -41,6 +42,10 @@ pub(crate) struct PackArgs {
     /// less [default: lossless]
     #[arg(long, help_heading = "Output", value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     max_bytes: Option<u64>,
+    /// Layout of the file: small keeps the places of all cells in memory, large reads them on demand [default: large above
+    /// 65,536 cells]
+    #[arg(long, help_heading = "Output", value_enum)]
+    class: Option<Class>,
     /// Print the result as JSON
     #[arg(long, help_heading = "Output")]
     json: bool,
@@ -63,12 +68,14 @@ pub(crate) struct UnpackArgs {
 pub(crate) fn pack(args: &PackArgs) -> Result<Answer, Error> {
     output::check(&[&args.table], &[&args.output])?;
     let table = input::table(&args.table)?;
-    let (packed, report) = pack_report(&table, &PackOptions { max_bytes: args.max_bytes })
-        .map_err(|source| Error::Pack { path: args.table.clone(), source })?;
+    let (packed, report) =
+        pack_report(&table, &PackOptions { max_bytes: args.max_bytes, class: args.class.map(Class::size_class) })
+            .map_err(|source| Error::Pack { path: args.table.clone(), source })?;
     let n_visible = table.parts().rows.count_ones();
     let n_packed_bytes = packed.len() as u64;
     let mut outcome = Outcome {
         out: args.output.display().to_string(),
+        class: Class::of(report.class),
         n_plain_bytes: table.to_bytes().len() as u64,
         n_packed_bytes,
         n_row_bytes: report.row_bytes,
@@ -103,12 +110,13 @@ pub(crate) fn unpack(args: &UnpackArgs) -> Result<Answer, Error> {
 #[derive(Debug, Serialize)]
 struct Outcome {
     out: String,
+    class: Class,
     n_plain_bytes: u64,
     n_packed_bytes: u64,
     /// Bytes of the visibility rows; merging reduces them.
     n_row_bytes: u64,
     n_cells: usize,
-    /// Rows that differ.
+    /// Rows that are stored: those that differ; in a large file one for each cell.
     n_rows: usize,
     /// How many times two different rows were merged.
     n_merges: usize,
@@ -121,8 +129,14 @@ impl fmt::Display for Outcome {
         let [packed, plain] = [self.n_packed_bytes, self.n_plain_bytes];
         let share = percent(packed as f64 / plain.max(1) as f64);
         writeln!(f, "wrote {}, {}, {share} of {}", self.out, bytes(packed), bytes(plain))?;
-        let rows = count(self.n_rows as u64, "different row");
-        writeln!(f, "visibility     {}, {rows} of {}", bytes(self.n_row_bytes), count(self.n_cells as u64, "cell"))?;
+        let (row_bytes, cells) = (bytes(self.n_row_bytes), count(self.n_cells as u64, "cell"));
+        match self.class {
+            Class::Small => {
+                let rows = count(self.n_rows as u64, "different row");
+                writeln!(f, "visibility     {row_bytes}, {rows} of {cells}")?;
+            }
+            Class::Large => writeln!(f, "visibility     {row_bytes}, a row for each of {cells}")?,
+        }
         match self.n_merges {
             0 => writeln!(f, "lost           nothing"),
             n => {

@@ -4,7 +4,7 @@ use super::{Error, Object, as_map, write_sources};
 use crate::error::InputError;
 use crate::facts::{DigestFacts, DoorFacts, FrameFacts, Source, write_doors};
 use crate::output::{bytes, percent};
-use crate::tables;
+use crate::tables::{self, Class};
 use serde::Serialize;
 use sightlines::pvs::ObjectId;
 use std::fmt;
@@ -18,6 +18,7 @@ const CACHE: usize = 1 << 20;
 pub(super) struct PackedInfo {
     file: String,
     kind: &'static str,
+    class: Class,
     dimension: u8,
     n_bytes: u64,
     n_cells: usize,
@@ -58,11 +59,12 @@ struct Part {
 }
 
 /// What the parts are.
-const PARTS: [(&str, &str); 24] = [
+const PARTS: [(&str, &str); 26] = [
     ("HEAD", "numbers"),
     ("BOXS", "boxes of cells"),
     ("POLY", "corners of cells"),
     ("LOCA", "tree to find cells"),
+    ("LOCT", "top of a tree to find cells"),
     ("PLAN", "planes to find cells"),
     ("MIRR", "mirrors"),
     ("FRAM", "axes of its own"),
@@ -83,6 +85,7 @@ const PARTS: [(&str, &str); 24] = [
     ("OBJS", "objects"),
     ("STAB", "stab trees"),
     ("CNAM", "names of cells"),
+    ("PLAC", "pages of a tree to find cells"),
 ];
 
 impl PackedInfo {
@@ -106,6 +109,7 @@ impl PackedInfo {
         Ok(Self {
             file: path.display().to_string(),
             kind: "packed",
+            class: Class::of(packed.size_class()),
             dimension: packed.dimension(),
             n_bytes: std::fs::metadata(path).map_err(open)?.len(),
             n_cells: packed.n_cells(),
@@ -128,7 +132,9 @@ impl PackedInfo {
 
 impl fmt::Display for PackedInfo {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{}: packed visibility table in {}D, {}", self.file, self.dimension, bytes(self.n_bytes))?;
+        let large = if self.class == Class::Large { "large " } else { "" };
+        let n_bytes = bytes(self.n_bytes);
+        writeln!(f, "{}: {large}packed visibility table in {}D, {n_bytes}", self.file, self.dimension)?;
         let names = if self.has_cell_names { ", with names" } else { "" };
         writeln!(
             f,
