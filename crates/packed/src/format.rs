@@ -55,7 +55,7 @@
 //!
 //! Blocks of all stores but dense `ROWS` and `SEEN` begin with the ends of their records (`u32`, counted from
 //! the end of this list). Ascending lists have their length and differences less one, as varints.
-
+//!
 //! # The large class
 //!
 //! Whatever grows with the number of cells is in blocks that are read on demand. The file is written in one pass: first the

@@ -2,11 +2,11 @@
 //!
 //! # Scope
 //!
-//! - **Owns**: the coding of rows ([`Distinct`], blocks through zstd), merging within a budget ([`PackOptions`]), the byte
-//!   [`format`](mod@format), reading on demand ([`Packed`]), the coarse table to fall back on.
+//! - **Owns**: the codings of rows ([`Distinct`], blocks through zstd; lists of what is seen in large files), merging within a
+//!   budget ([`PackOptions`]), writing row by row ([`PackWriter`]), the byte [`format`](mod@format), reading on demand ([`Packed`]), the coarse table to fall back on.
 //! - **Out of scope**: how a table was made, cones and eyes, threads of its own, paths of files.
 //! - **Invariants**: without a budget a table comes back exactly; with one, everything visible stays visible.
-//!   Damaged bytes are errors, never a panic, and never claim memory that neither the
+//!   Large files have the same answers as small ones. Damaged bytes are errors, never a panic, and never claim memory that neither the
 //!   length of the file nor a stated limit justifies. Same table and options, same bytes.
 //!
 //! # Why positional reads and no map
@@ -26,6 +26,7 @@ pub mod classes;
 mod container;
 mod doors;
 mod error;
+mod facts;
 mod find;
 pub mod format;
 mod index;

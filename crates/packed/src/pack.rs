@@ -84,11 +84,14 @@ fn fewest_merges<T>(
     Ok((enough, best))
 }
 
+/// Puts the cells and the objects that a cell sees into empty lists.
+type RowOf<'a> = dyn Fn(CellId, &mut Vec<CellId>, &mut Vec<ObjectId>) + 'a;
+
 /// Packs into a large file.
 fn pack_large(table: &Table, budget: u64) -> Result<(Vec<u8>, PackReport), PackError> {
     let parts = table.parts();
     let cells = (0..table.n_cells()).map(|i| CellId(i as u32));
-    let write = |row: &dyn Fn(CellId, &mut Vec<CellId>, &mut Vec<ObjectId>)| {
+    let write = |row: &RowOf<'_>| {
         let options = StreamOptions { objects_seen: parts.objects_seen.is_some() };
         let unchecked = |error| match error {
             StreamError::Pack(error) => error,

@@ -5,6 +5,7 @@ use crate::cache::{Block, Cache, PackedStats};
 use crate::container::ResidentPart;
 use crate::doors::{self, Sources};
 use crate::error::{PackedError, PackedErrorKind as Kind};
+use crate::facts;
 use crate::format::{self, HAS_SEEN, HEAD_LEN, NONE, SizeClass};
 use crate::index::{Index, Spot, StoreIndex};
 use crate::locate::{PointLocation, planes};
@@ -12,11 +13,7 @@ use crate::masks;
 use crate::pages::Pages;
 use crate::rows::{DenseRows, Rows};
 use crate::source::Source;
-use sightlines_pvs::format::{kind_from_bytes, kind_from_info};
-use sightlines_pvs::{
-    Axis, CellId, DoorRecord, Frame, FrameError, GeometryDigest, MirrorId, MirrorRecord, PlaneTree, SectionId,
-    TableKind,
-};
+use sightlines_pvs::{Axis, CellId, DoorRecord, Frame, GeometryDigest, MirrorRecord, PlaneTree, SectionId, TableKind};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -136,15 +133,15 @@ impl<S: Source> Packed<S> {
         resident.need(format::COARSE)?.expect(n_pages * n_pages.div_ceil(64) * 8)?;
         let cache = Cache::new(index.entries.len(), cache_bytes);
         cache.count_read(resident.end());
-        let info = info(&resident)?;
-        let (kind, up) = kind(&resident, head.dimension, &info)?;
+        let info = facts::info(&resident)?;
+        let (kind, up) = facts::kind(&resident, head.dimension, &info)?;
         Ok(Self {
             info,
             kind,
-            frame: frame(&resident, head.dimension)?,
-            digest: digest(&resident)?,
+            frame: facts::frame(&resident, head.dimension)?,
+            digest: facts::digest(&resident)?,
             up,
-            mirrors: mirrors(&resident, &head)?,
+            mirrors: facts::mirrors(&resident, (head.dimension, n_cells))?,
             doors: doors::read(&resident, [n_objects, head.n_portals])?,
             sources: Sources::read(&resident, n_objects)?,
             rows,
@@ -390,60 +387,4 @@ fn record_of(bytes: &[u8], k: usize, n: usize, place: Place) -> Result<&[u8], Pa
     let ends = bytes.get(..content).ok_or_else(|| place.fail(Kind::Cut))?;
     let begin = if k == 0 { 0 } else { u32_at(ends, 4 * (k - 1)) as usize };
     bytes[content..].get(begin..u32_at(ends, 4 * k) as usize).ok_or_else(|| place.fail(Kind::Cut))
-}
-
-fn info(resident: &ResidentPart) -> Result<Vec<(String, String)>, PackedError> {
-    let section = resident.need(format::INFO)?;
-    let mut r = Reader::new(section.bytes, section.place);
-    let n = r.count(2)?;
-    let mut info = Vec::new();
-    for _ in 0..n {
-        info.push((r.text()?.to_owned(), r.text()?.to_owned()));
-    }
-    r.finish()?;
-    Ok(info)
-}
-
-/// Kind and upward axis; a file of a later minor version may have values that are unknown here.
-fn kind(
-    resident: &ResidentPart,
-    dimension: u8,
-    info: &[(String, String)],
-) -> Result<(TableKind, Option<Axis>), PackedError> {
-    let Some(section) = resident.find(format::KIND) else { return Ok(kind_from_info(dimension, info)) };
-    let bytes = section.bytes.try_into().map_err(|_| section.place.fail(Kind::Cut))?;
-    match kind_from_bytes(bytes) {
-        Ok(known) => Ok(known),
-        Err(_) if resident.minor() > format::MINOR => Ok((TableKind::Unspecified, None)),
-        Err(value) => Err(section.place.fail(Kind::Value { value: u64::from(value) })),
-    }
-}
-
-fn frame(resident: &ResidentPart, dimension: u8) -> Result<Option<Frame>, PackedError> {
-    let Some(section) = resident.find(format::FRAME) else { return Ok(None) };
-    let bytes = section.bytes.try_into().map_err(|_| section.place.fail(Kind::Cut))?;
-    let read = if dimension == 3 { Frame::from_bytes(bytes) } else { Err(FrameError::Plane) };
-    read.map(Some).map_err(|error| section.place.fail(Kind::Table(error.into())))
-}
-
-fn digest(resident: &ResidentPart) -> Result<Option<GeometryDigest>, PackedError> {
-    let Some(section) = resident.find(format::DIGEST) else { return Ok(None) };
-    let bytes = section.bytes.try_into().map_err(|_| section.place.fail(Kind::Cut))?;
-    Ok(Some(GeometryDigest::from_bytes(bytes)))
-}
-
-fn mirrors(resident: &ResidentPart, head: &Head) -> Result<Vec<MirrorRecord>, PackedError> {
-    let Some(section) = resident.find(format::MIRRORS) else { return Ok(Vec::new()) };
-    let d = usize::from(head.dimension);
-    let mut r = Reader::new(section.bytes, section.place);
-    let n = r.count(3)?;
-    let mut mirrors = Vec::new();
-    for _ in 0..n {
-        let (cell, mirror) = (CellId(r.below(u64::from(head.n_cells))?), MirrorId(r.below(1 << 32)?));
-        let n_points = r.count(8 * d)?;
-        let points = (0..n_points).map(|_| r.point(d)).collect::<Result<_, _>>()?;
-        mirrors.push(MirrorRecord { cell, mirror, points });
-    }
-    r.finish()?;
-    Ok(mirrors)
 }
