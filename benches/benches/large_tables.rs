@@ -8,7 +8,8 @@
 use clap::Parser;
 use sightlines::packed::{PackOptions, PackWriter, Packed, SizeClass, StreamOptions, pack};
 use sightlines::pvs::{
-    BitMatrix, CellId, CellRecord, Locator, ObjectId, ObjectRecord, PlaceBuffer, PortalRecord, Table, TableKind, TableParts,
+    BitMatrix, CellId, CellRecord, Locator, ObjectId, ObjectRecord, PlaceBuffer, PortalRecord, Table, TableKind,
+    TableParts,
 };
 use sightlines_benches::child::memory_of;
 use sightlines_benches::program::{Common, exit};
@@ -133,7 +134,8 @@ impl City {
             }
             row.clear();
             let all = blocks.iter().flat_map(|&first| first..first + SIDE * SIDE);
-            let open = |other: u32| other == cell || hash(u64::from(cell) | 1 << 31, u64::from(other) | 1 << 31) % 20 > 0;
+            let open =
+                |other: u32| other == cell || hash(u64::from(cell) | 1 << 31, u64::from(other) | 1 << 31) % 20 > 0;
             row.extend(all.filter(|&other| open(other)).map(CellId));
             objects.clear();
             objects.extend(row.iter().map(|other| ObjectId(other.0 / SIDE)));

@@ -47,11 +47,7 @@ impl<T: Borrow<Table>> CoarseVisibility for TableCells<T> {
         self.table().objects().len()
     }
 
-    fn cells_at<'b>(
-        &'b self,
-        eye: [f64; 3],
-        buffer: &'b mut PlaceBuffer,
-    ) -> Result<Place<&'b [CellId]>, Infallible> {
+    fn cells_at<'b>(&'b self, eye: [f64; 3], buffer: &'b mut PlaceBuffer) -> Result<Place<&'b [CellId]>, Infallible> {
         Ok(self.table().cells_at(eye, buffer))
     }
 

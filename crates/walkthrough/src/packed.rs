@@ -109,11 +109,7 @@ impl<S: Source> CoarseVisibility for PackedCells<S> {
         self.0.n_objects()
     }
 
-    fn cells_at<'b>(
-        &'b self,
-        eye: [f64; 3],
-        buffer: &'b mut PlaceBuffer,
-    ) -> Result<Place<&'b [CellId]>, PackedError> {
+    fn cells_at<'b>(&'b self, eye: [f64; 3], buffer: &'b mut PlaceBuffer) -> Result<Place<&'b [CellId]>, PackedError> {
         self.0.cells_at(eye, buffer)
     }
 

@@ -11,6 +11,7 @@ mod limited;
 mod parts;
 mod row;
 mod see;
+mod stream;
 
 pub use crate::grid::{GridError, grid};
 
@@ -36,6 +37,7 @@ use sightlines_pvs::{BitMatrix, SceneMethods, Table, TableKind, TableParts};
 use sightlines_stabtree::{BoxVisibility, PairMask, SearchOptions, box_visibility};
 use std::fmt;
 use std::time::Instant;
+pub use stream::{PackRegionsError, pack_regions};
 
 /// The cells of the table of a scene.
 #[derive(Debug, Clone, PartialEq, Default)]

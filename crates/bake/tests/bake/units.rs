@@ -1,11 +1,15 @@
 //! Bakes whose results are kept by units of work: stopped and taken up again, or shared by processes, they end with the same bytes.
 
 use crate::limit::building;
-use sightlines_bake::methods::{BufferOptions, OcclusionMethod};
-use sightlines_bake::{BakeError, BakeInput, BakeOptions, CellsFrom, SceneMethod, bake};
+use sightlines_bake::methods::{BufferOptions, OcclusionMethod, OcclusionMethodFactory};
+use sightlines_bake::region::{PackRegionsError, pack_regions};
+use sightlines_bake::{
+    BakeError, BakeInput, BakeOptions, CellsFrom, RegionBakeOptions, SceneMethod, bake, bake_regions,
+};
 use sightlines_formats::quake::Prt;
 use sightlines_formats::{ViewCell, ViewCells};
 use sightlines_geometry::Aabb;
+use sightlines_packed::{PackOptions, SizeClass, pack};
 use sightlines_progress::{Cancelled, Halt, Phase, UnitStore, Units};
 use sightlines_scenes::{CityOptions, TowerOptions, city, city_crossings, tower};
 use std::collections::{BTreeMap, BTreeSet};
@@ -198,18 +202,18 @@ fn cells_by_from_region_methods() {
 
 #[test]
 fn both_methods_one_after_the_other() {
-    let scene = building(false);
     let buffers = BufferOptions { planes: 1, texels: 16, ..BufferOptions::default() };
     let method = SceneMethod::Both;
-    for (cells, expected) in
-        [(CellsFrom::Grid([4, 3, 1]), vec!["cells", "boxes"]), (CellsFrom::KdTree, vec!["pairs", "objects", "cells"])]
-    {
-        let options = BakeOptions { method, cells, buffers, ..BakeOptions::default() };
-        let phases = check((&scene).into(), &options);
-        assert_eq!(phases.iter().map(|(name, _)| *name).collect::<Vec<_>>(), expected);
-    }
-    let options = BakeOptions { method, cells: CellsFrom::Grid([4, 3, 1]), buffers, ..BakeOptions::default() };
+    let scene = building(false);
+    let options = BakeOptions { method, cells: CellsFrom::Grid([3, 2, 1]), buffers, ..BakeOptions::default() };
+    let phases = check((&scene).into(), &options);
+    assert_eq!(phases, [("cells", 6), ("boxes", 6)]);
     check_impostor((&scene).into(), &options, "boxes");
+    let scene =
+        tower(TowerOptions { floors: 1, rooms_x: 2, rooms_y: 1, furniture: 0, ..TowerOptions::default() }).unwrap();
+    let options = BakeOptions { cells: CellsFrom::KdTree, ..options };
+    let phases: Vec<_> = check((&scene).into(), &options).into_iter().map(|(name, _)| name).collect();
+    assert_eq!(phases, ["pairs", "objects", "cells"]);
 }
 
 /// Rooms in rows, with a window in each wall at a place that differs.
@@ -245,4 +249,23 @@ fn clusters_of_a_portal_file() {
     let whole = Memory::default();
     assert_eq!(bytes((&prt).into(), &fast, Some(&whole), 1), bytes((&prt).into(), &fast, None, 1));
     assert_eq!(whole.into_results().keys().map(|key| key.0).collect::<BTreeSet<_>>(), BTreeSet::from(["first"]));
+}
+
+/// Row by row the packed table is written that the whole one gives.
+#[test]
+fn rows_one_by_one_make_the_same_packed_table() {
+    let options = CityOptions { blocks_x: 4, blocks_z: 4, ..CityOptions::default() };
+    let (scene, cells) = (city(options).unwrap(), streets(options));
+    let factory = OcclusionMethodFactory::new(OcclusionMethod::Voxels, &scene, &BufferOptions::default()).unwrap();
+    let make = || factory.instance();
+    let options = RegionBakeOptions { method: Some(&make), sightlines: false, ..RegionBakeOptions::new(&cells) };
+    let table = bake_regions(&scene, &options).unwrap().table;
+    let (bytes, report, _) = pack_regions(&scene, &options, Vec::new()).unwrap();
+    let large = PackOptions { class: Some(SizeClass::Large), ..PackOptions::default() };
+    assert!(bytes == pack(&table, &large).unwrap());
+    let n = table.n_cells() as u64;
+    assert!(report.n_visible_pairs > n && report.n_visible_pairs < n * (n - 1) / 2 * 9 / 10, "nothing is hidden");
+    // Sightlines decide pairs in doubt of all cells at once.
+    let both = RegionBakeOptions { sightlines: true, ..options };
+    assert!(matches!(pack_regions(&scene, &both, Vec::new()), Err(PackRegionsError::NeedsPairs)));
 }

@@ -150,8 +150,9 @@ const SLIVER: u32 = u32::MAX;
 /// Pairs of groups are halved on one thread until there are this many for each thread.
 const TASKS_PER_THREAD: usize = 256;
 
-/// The same for all threads, if the results are kept. A unit is what is lost when a bake is stopped, and what a process takes at once.
-const KEPT_TASKS: usize = 4096;
+/// If results are kept, there are two tasks for each cell, between these bounds. A task is what is lost when a bake is stopped, and the least
+/// that a process takes.
+const KEPT_TASKS: [usize; 2] = [64, 1 << 16];
 
 /// The same for a search that decides few pairs.
 const FEW_TASKS_PER_THREAD: usize = 16;
@@ -292,7 +293,7 @@ impl<'a> SpaceSearch<'a> {
         let mut tasks = vec![[0, 0]];
         let per_thread = if self.doubt.is_some() { FEW_TASKS_PER_THREAD } else { TASKS_PER_THREAD };
         // What is kept must not depend on the number of threads.
-        let n_tasks = if units.are_kept() { KEPT_TASKS } else { per_thread * threads };
+        let n_tasks = if units.are_kept() { (2 * n).clamp(KEPT_TASKS[0], KEPT_TASKS[1]) } else { per_thread * threads };
         while tasks.len() < n_tasks && !budget.is_over() {
             let mut smaller = Vec::new();
             tasks.iter().for_each(|&pair| self.settle(pair, &mut first, &mut |p| smaller.push(p)));
