@@ -112,7 +112,7 @@ impl City {
             let other = self.id(u as u32 * SIDE, v as u32 * SIDE);
             // Streets run along both axes; elsewhere the nearer, the more is seen.
             let far = dx.abs().max(dy.abs());
-            let share = if dx == 0 || dy == 0 { 200 } else { 400 / (far as u64 + 6) };
+            let share = if dx == 0 || dy == 0 { 200 } else { 220 / (far as u64 + 6) };
             if far <= 1 || hash(u64::from(own), u64::from(other)) >> 56 < share {
                 seen.push(other);
             }
@@ -235,7 +235,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     println!(
         "each cell sees {:.0} in {:.0} runs; all but the rows written in {frame:.1} s, rows in {seconds:.1} s, and {:.1} s to make them",
         n_seen as f64 / n,
-        f64::from(n_runs) / n,
+        n_runs as f64 / n,
         start.elapsed().as_secs_f64() - seconds
     );
     println!(

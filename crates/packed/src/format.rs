@@ -143,7 +143,9 @@ pub const BLOCK_BYTES: usize = 16 << 10;
 /// Largest size of a written block of rows of bits, unpacked, in bytes, though a block has at least 16 rows. Rows are
 /// read one by one, but pack better together.
 pub const ROW_BLOCK_BYTES: usize = 64 << 10;
-/// Approximate size of a written block of a large file, unpacked, in bytes.
+/// Approximate size of a written block of rows or of pages of a large file, unpacked, in bytes: what a query reads.
+pub const LARGE_ROW_BLOCK_BYTES: usize = 16 << 10;
+/// Approximate size of a written block of anything else in a large file, unpacked, in bytes.
 pub const LARGE_BLOCK_BYTES: usize = 32 << 10;
 /// Largest size of a page of the locator in bytes, unless one leaf takes more.
 pub const PAGE_BYTES: usize = 16 << 10;

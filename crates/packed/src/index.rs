@@ -6,6 +6,8 @@ use crate::error::{PackedError, PackedErrorKind as Kind};
 use crate::format::{self, FIXED, MAX_UNPACKED_BLOCK, SizeClass};
 use crate::source::Source;
 use sightlines_pvs::SectionId;
+use std::sync::{Mutex, PoisonError};
+use zstd::bulk::Decompressor;
 
 /// A block in the file.
 #[derive(Debug, Clone, Copy)]
@@ -86,10 +88,17 @@ impl StoreIndex {
 }
 
 /// The positions of all blocks.
-#[derive(Debug)]
 pub(crate) struct Index {
     stores: Vec<(SectionId, StoreIndex)>,
     pub(crate) entries: Vec<Entry>,
+    /// Not in use now; each takes longer to make than a block to unpack.
+    unpackers: Mutex<Vec<Decompressor<'static>>>,
+}
+
+impl std::fmt::Debug for Index {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Index").field("stores", &self.stores).field("entries", &self.entries).finish_non_exhaustive()
+    }
 }
 
 impl Index {
@@ -105,8 +114,12 @@ impl Index {
         if offset == end { Ok(index) } else { Err(section.place.fail(Kind::Misplaced)) }
     }
 
+    fn empty() -> Self {
+        Self { stores: Vec::new(), entries: Vec::new(), unpackers: Mutex::new(Vec::new()) }
+    }
+
     fn read_small(r: &mut Reader<'_>, mut offset: u64) -> Result<(Self, u64), PackedError> {
-        let mut index = Self { stores: Vec::new(), entries: Vec::new() };
+        let mut index = Self::empty();
         for _ in 0..r.u32()? {
             let id = index.read_id(r)?;
             let (n_records, per_block) = (r.u32()?, r.u32()?);
@@ -124,7 +137,7 @@ impl Index {
     }
 
     fn read_large(r: &mut Reader<'_>) -> Result<(Self, u64), PackedError> {
-        let mut index = Self { stores: Vec::new(), entries: Vec::new() };
+        let mut index = Self::empty();
         for _ in 0..r.u32()? {
             let id = index.read_id(r)?;
             let store = StoreIndex { n_records: r.u32()?, n_blocks: 0, blocks: Blocks::Listed(Vec::new()) };
@@ -225,7 +238,12 @@ impl Index {
         if len == raw {
             return Ok(packed);
         }
-        let bytes = zstd::bulk::decompress(&packed, raw as usize).ok().filter(|bytes| bytes.len() == raw as usize);
+        let unpackers = || self.unpackers.lock().unwrap_or_else(PoisonError::into_inner);
+        let kept = unpackers().pop();
+        let unpacker = kept.map_or_else(Decompressor::new, Ok);
+        let mut unpacker = unpacker.map_err(|error| place.fail(Kind::Io(error)))?;
+        let bytes = unpacker.decompress(&packed, raw as usize).ok().filter(|bytes| bytes.len() == raw as usize);
+        unpackers().push(unpacker);
         bytes.ok_or_else(|| place.fail(Kind::Unpack { raw }))
     }
 }
