@@ -1,5 +1,6 @@
 //! Writing a file as a whole or not at all.
 
+use crate::debris;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -22,6 +23,9 @@ pub struct WriteError {
 /// target that is not a regular file (a pipe, a terminal, `/dev/null`) has no old content to preserve and is written
 /// directly.
 ///
+/// New files that earlier calls for the same path left beside it, because their process was killed, are removed: those of this machine
+/// whose process no longer runs, and any that is older than a day.
+///
 /// # Errors
 /// [`WriteError`] with the system's reason; the new file is removed again.
 pub fn atomic_write(path: impl AsRef<Path>, bytes: &[u8]) -> Result<(), WriteError> {
@@ -36,6 +40,7 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
         Err(error) if error.kind() == io::ErrorKind::NotFound => (path.to_owned(), None),
         Err(error) => return Err(error),
     };
+    debris::remove(&target);
     let (beside, mut file) = create_beside(&target)?;
     let written = file
         .write_all(bytes)
@@ -55,10 +60,7 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
 fn create_beside(target: &Path) -> io::Result<(PathBuf, File)> {
     let name = target.file_name().ok_or(io::ErrorKind::InvalidInput)?;
     for attempt in 0..100u32 {
-        let mut hidden = std::ffi::OsString::from(".");
-        hidden.push(name);
-        hidden.push(format!(".{}-{attempt}.tmp", std::process::id()));
-        let beside = target.with_file_name(hidden);
+        let beside = target.with_file_name(debris::hidden(name, attempt));
         match OpenOptions::new().write(true).create_new(true).open(&beside) {
             Ok(file) => return Ok((beside, file)),
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
@@ -101,6 +103,37 @@ mod tests {
         fs::create_dir(&taken).unwrap();
         assert!(atomic_write(&taken, b"x").is_err());
         assert_eq!(names(folder.path()), ["taken"]);
+    }
+
+    /// A process that is killed while it writes leaves a file behind; the next one that writes the same target removes it.
+    #[test]
+    fn what_killed_processes_left_is_removed() {
+        let folder = tempfile::tempdir().unwrap();
+        let target = folder.path().join("out.wad");
+        let of = |name: &str, pid: u32, machine: &str| format!(".{name}.{machine}-{pid}-0.tmp");
+        let here = debris::machine();
+        // No process has this number: it is above the largest that Linux gives.
+        let dead = of("out.wad", 1 << 30, &here);
+        let alive = of("out.wad", std::process::id(), &here);
+        let others = [of("out.wad", 1 << 30, "elsewhere-00000000"), of("other.wad", 1 << 30, &here)];
+        let strange = [".out.wad.tmp", ".out.wad.x-0.tmp", ".out.wad.-1-0.tmp"].map(str::to_owned);
+        let kept: Vec<&String> = others.iter().chain(&strange).chain([&alive]).collect();
+        for name in kept.iter().copied().chain([&dead]) {
+            fs::write(folder.path().join(name), b"part").unwrap();
+        }
+        atomic_write(&target, b"whole").unwrap();
+        let left = names(folder.path());
+        assert!(kept.iter().all(|name| left.contains(name)), "{left:?}");
+        assert_eq!(left.contains(&dead), !cfg!(target_os = "linux"), "{left:?}");
+        // Whoever wrote it more than a day ago is no longer at it.
+        let old = std::time::SystemTime::now() - std::time::Duration::from_secs(25 * 3600);
+        for name in &kept {
+            File::options().write(true).open(folder.path().join(name)).unwrap().set_modified(old).unwrap();
+        }
+        atomic_write(&target, b"again").unwrap();
+        let left = names(folder.path());
+        let expected: Vec<bool> = kept.iter().map(|name| **name == others[1] || strange.contains(name)).collect();
+        assert_eq!(kept.iter().map(|name| left.contains(name)).collect::<Vec<_>>(), expected, "{left:?}");
     }
 
     #[cfg(unix)]

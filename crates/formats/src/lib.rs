@@ -15,6 +15,7 @@
 //!   or refused, never guessed; the same value is always written as the same bytes.
 
 mod beside;
+mod debris;
 pub mod doom;
 pub mod dxf;
 pub mod error;
@@ -34,6 +35,7 @@ pub mod wad;
 pub use doom::{DoomError, DoomMap, MapLumps};
 pub use dxf::DxfError;
 pub use error::{ReadError, ReadErrorKind};
+pub use debris::process_mark;
 pub use files::{WriteError, atomic_write};
 pub use geojson::GeoJsonError;
 pub use input::{Input, InputKind, Source, detect_file, read_input};
