@@ -22,6 +22,8 @@ pub use sightlines_cells as cells;
 pub use sightlines_certificates as certificates;
 #[cfg(feature = "exact")]
 pub use sightlines_exact as exact;
+#[cfg(feature = "checkpoint")]
+pub use sightlines_checkpoint as checkpoint;
 #[cfg(feature = "eye-to-cell")]
 pub use sightlines_eye_to_cell as eye_to_cell;
 #[cfg(feature = "formats")]

@@ -1,0 +1,67 @@
+//! What can be wrong with a file of results.
+
+use sightlines_formats::WriteError;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Why a file of results cannot be used.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum StateError {
+    /// It cannot be opened or read.
+    #[error("{}: {source}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// The error of the system.
+        source: io::Error,
+    },
+    /// It cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// It is something else.
+    #[error("{}: this is no file of results of units", .0.display())]
+    NotState(PathBuf),
+    /// Another version of the program wrote it.
+    #[error("{}: written by version {found} of the program, and this is {expected}", path.display())]
+    OtherProgram {
+        /// The file.
+        path: PathBuf,
+        /// The version that wrote it.
+        found: String,
+        /// The version that reads it.
+        expected: String,
+    },
+    /// It is of another input, or of other options.
+    #[error("{}: the results are of another input or of other options", .0.display())]
+    OtherKey(PathBuf),
+    /// A result was changed since it was read first, or cut off.
+    #[error("{}: the record at byte {offset} is damaged", path.display())]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// Where the record begins.
+        offset: u64,
+    },
+    /// The file ends before the end of its records.
+    #[error("{}: it is cut off after byte {offset}", path.display())]
+    CutOff {
+        /// The file.
+        path: PathBuf,
+        /// Where its last whole record ends.
+        offset: u64,
+    },
+    /// It has other units than it should.
+    #[error("{}: it does not have the results of just the units of its shard", .0.display())]
+    OtherUnits(PathBuf),
+}
+
+impl StateError {
+    pub(crate) fn read(path: &Path, source: io::Error) -> Self {
+        Self::Read { path: path.to_owned(), source }
+    }
+
+    pub(crate) fn write(path: &Path, source: io::Error) -> Self {
+        Self::Write(WriteError { path: path.to_owned(), source })
+    }
+}

@@ -1,0 +1,166 @@
+//! The manifest of a job, as JSON.
+
+use crate::key::{Key, ParseKeyError};
+use serde::{Deserialize, Serialize};
+
+/// What the field `format` says.
+const FORMAT: &str = "sightlines-job";
+const VERSION: u32 = 1;
+
+/// A file that a job reads.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct InputFile {
+    /// Its path, as the command names it.
+    pub path: String,
+    /// Its length.
+    pub n_bytes: u64,
+    /// The key of its content.
+    pub key: String,
+}
+
+/// Units of a phase that one process does.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ShardPlan {
+    /// The first unit.
+    pub begin: usize,
+    /// Behind the last one.
+    pub end: usize,
+    /// The predicted cost of all of them.
+    pub cost: f64,
+}
+
+/// A phase, and its shards.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PhasePlan {
+    /// Its name.
+    pub name: String,
+    /// How many units it has.
+    pub n_units: usize,
+    /// Ranges of units, which follow each other.
+    pub shards: Vec<ShardPlan>,
+}
+
+/// What a job is. Shards are numbered from 0 through all phases.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Manifest {
+    format: String,
+    version: u32,
+    /// The version of the program that planned it.
+    pub program: String,
+    /// The key of its results.
+    pub key: String,
+    /// The command that makes the same output without a job: words of the command line behind the name of the program.
+    pub command: Vec<String>,
+    /// The folder that relative paths of the command start from.
+    pub folder: String,
+    /// The files that it reads.
+    pub inputs: Vec<InputFile>,
+    /// How many shards a phase is cut into, at most.
+    pub max_shards: usize,
+    /// The phases that are known.
+    pub phases: Vec<PhasePlan>,
+}
+
+/// What is wrong with a manifest.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ManifestError {
+    /// It is no JSON of this form.
+    #[error("{0}")]
+    Json(#[from] serde_json::Error),
+    /// It is something else.
+    #[error("this is no manifest of a job")]
+    NotManifest,
+    /// A later program wrote it.
+    #[error("version {0} of the manifest is not supported")]
+    Version(u32),
+    /// The key is none.
+    #[error("key: {0}")]
+    Key(#[from] ParseKeyError),
+    /// A name that no phase has.
+    #[error("phase {0}: the name is not of small letters and hyphens, or another phase has it")]
+    Name(usize),
+    /// Shards that are not all units in order.
+    #[error("phase {phase}: shard {shard} does not begin where the one before it ends, or its cost is no number")]
+    Shards {
+        /// The phase.
+        phase: usize,
+        /// The shard, counted from the first of the phase.
+        shard: usize,
+    },
+    /// There is no shard, or they are not all units.
+    #[error("phase {0}: the shards do not end with the last unit")]
+    Units(usize),
+}
+
+impl Manifest {
+    /// A job whose phases are not known yet.
+    pub fn new(program: &str, key: Key, command: Vec<String>, folder: String, max_shards: usize) -> Self {
+        let (format, program, key) = (FORMAT.to_owned(), program.to_owned(), key.to_string());
+        let (inputs, phases) = (Vec::new(), Vec::new());
+        Self { format, version: VERSION, program, key, command, folder, inputs, max_shards, phases }
+    }
+
+    /// The manifest in a text, and its key.
+    pub(crate) fn parse(text: &[u8]) -> Result<(Self, Key), ManifestError> {
+        /// What is read first.
+        #[derive(Deserialize)]
+        struct Form {
+            format: Option<String>,
+            version: Option<u32>,
+        }
+        let form: Form = serde_json::from_slice(text)?;
+        match (form.format.as_deref(), form.version) {
+            (Some(FORMAT), Some(VERSION)) => {}
+            (Some(FORMAT), Some(version)) => return Err(ManifestError::Version(version)),
+            _ => return Err(ManifestError::NotManifest),
+        }
+        let manifest: Self = serde_json::from_slice(text)?;
+        let key = manifest.check()?;
+        Ok((manifest, key))
+    }
+
+    pub(crate) fn to_text(&self) -> String {
+        // Nothing in it can fail: texts and finite numbers.
+        serde_json::to_string_pretty(self).map_or_else(|_| String::new(), |text| text + "\n")
+    }
+
+    /// Checks all that others rely on.
+    pub(crate) fn check(&self) -> Result<Key, ManifestError> {
+        for (k, PhasePlan { name, n_units, shards }) in self.phases.iter().enumerate() {
+            let is_name = !name.is_empty() && name.bytes().all(|byte| byte.is_ascii_lowercase() || byte == b'-');
+            if !is_name || name.len() > 100 || self.phases[..k].iter().any(|other| other.name == *name) {
+                return Err(ManifestError::Name(k));
+            }
+            let mut end = 0;
+            for (shard, plan) in shards.iter().enumerate() {
+                if plan.begin != end || plan.end < end || !plan.cost.is_finite() || plan.cost < 0.0 {
+                    return Err(ManifestError::Shards { phase: k, shard });
+                }
+                end = plan.end;
+            }
+            if shards.is_empty() || end != *n_units {
+                return Err(ManifestError::Units(k));
+            }
+        }
+        Ok(self.key.parse()?)
+    }
+
+    /// How many shards all known phases have.
+    pub fn n_shards(&self) -> usize {
+        self.phases.iter().map(|phase| phase.shards.len()).sum()
+    }
+
+    /// The numbers of the shards of a phase.
+    pub fn shards_of(&self, phase: usize) -> std::ops::Range<usize> {
+        let n = |phase: &PhasePlan| phase.shards.len();
+        let begin: usize = self.phases.iter().take(phase).map(n).sum();
+        begin..begin + self.phases.get(phase).map_or(0, n)
+    }
+
+    /// The phase of a shard, by its place, and what the shard is.
+    pub(crate) fn shard(&self, shard: usize) -> Option<(usize, &ShardPlan)> {
+        let phase = (0..self.phases.len()).find(|&phase| self.shards_of(phase).contains(&shard))?;
+        Some((phase, &self.phases[phase].shards[shard - self.shards_of(phase).start]))
+    }
+}

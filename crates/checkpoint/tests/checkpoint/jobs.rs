@@ -1,0 +1,169 @@
+//! Jobs: shards in any order, twice, at once, and what is missing or broken.
+
+use crate::toy::{PROGRAM, key, toy};
+use proptest::prelude::*;
+use sightlines_checkpoint::{Job, JobError, JobStore, Manifest, Outcome, Role, ShardState};
+use sightlines_progress::{Halt, UnitStore};
+use std::fs;
+use std::path::Path;
+use std::sync::LazyLock;
+use std::time::Duration;
+
+pub(crate) fn plan(folder: &Path, of: &str, max_shards: usize) -> Result<Job, JobError> {
+    Job::create(folder, Manifest::new(PROGRAM, key(of), vec!["bake".to_owned(), of.to_owned()], "/".to_owned(), max_shards))
+}
+
+/// Goes through a bake as a role; its answer, or how far it came.
+pub(crate) fn run(folder: &Path, n: [usize; 2], role: Role) -> Result<Vec<u8>, Outcome> {
+    let store = JobStore::new(Job::open(folder, PROGRAM).unwrap(), role, Duration::ZERO).unwrap();
+    toy(n).bake(Some(&store)).map_err(|halt| {
+        assert_eq!(halt, Halt::Shared);
+        store.outcome().expect("the store ended it")
+    })
+}
+
+proptest! {
+    /// Invariant: shards in any order, some of them twice, and a merge give the bytes of a bake of one process.
+    #[test]
+    fn shards_make_the_same_bytes(n in [0..12_usize, 0..12_usize], max_shards in 1..6_usize, order in any::<u64>()) {
+        let all = tempfile::tempdir().unwrap();
+        let folder = all.path().join("job");
+        plan(&folder, "a", max_shards).unwrap();
+        let expected = toy(n).bake(None).unwrap();
+        let mut n_rounds = 0;
+        let merged = loop {
+            match run(&folder, n, Role::Merge) {
+                Ok(bytes) => break bytes,
+                Err(Outcome::Planned { shards, .. }) => {
+                    let mut todo: Vec<usize> = shards.clone().chain(shards.take(1)).collect();
+                    let by = order.rotate_left(n_rounds * 9);
+                    todo.sort_by_key(|&shard| (by.wrapping_mul(shard as u64 * 2 + 1) >> 7, shard));
+                    for shard in todo {
+                        prop_assert_eq!(run(&folder, n, Role::Shard(shard)), Err(Outcome::Done));
+                    }
+                }
+                Err(other) => prop_assert!(false, "{:?}", other),
+            }
+            n_rounds += 1;
+        };
+        prop_assert_eq!(merged, expected);
+        prop_assert_eq!(n_rounds, 2);
+        let job = Job::open(&folder, PROGRAM).unwrap();
+        let states = (0..job.manifest().n_shards()).map(|shard| job.state(shard).unwrap());
+        prop_assert!(states.into_iter().all(|state| state == ShardState::Done));
+        // Nothing is left but parts.
+        let names = fs::read_dir(folder.join("parts")).unwrap().map(|entry| entry.unwrap().file_name());
+        prop_assert!(names.into_iter().all(|name| name.to_str().unwrap().ends_with(".part")));
+    }
+}
+
+/// A job with all parts of its first phase, of six units in three shards.
+pub(crate) fn first_phase(folder: &Path) -> Job {
+    plan(folder, "a", 3).unwrap();
+    assert_eq!(run(folder, [6, 4], Role::Merge), Err(Outcome::Planned { phase: 0, shards: 0..3 }));
+    for shard in 0..3 {
+        assert_eq!(run(folder, [6, 4], Role::Shard(shard)), Err(Outcome::Done));
+    }
+    Job::open(folder, PROGRAM).unwrap()
+}
+
+/// The same, for those that need many: copied from one that is made once.
+pub(crate) fn copy_of_first_phase(folder: &Path) -> Job {
+    static MADE: LazyLock<tempfile::TempDir> = LazyLock::new(|| {
+        let folder = tempfile::tempdir().unwrap();
+        first_phase(folder.path());
+        folder
+    });
+    fs::create_dir_all(folder.join("parts")).unwrap();
+    for name in ["job.json", "parts/0.part", "parts/1.part", "parts/2.part"] {
+        fs::copy(MADE.path().join(name), folder.join(name)).unwrap();
+    }
+    Job::open(folder, PROGRAM).unwrap()
+}
+
+#[test]
+fn what_is_missing_or_broken_is_named() {
+    let all = tempfile::tempdir().unwrap();
+    let folder = all.path().join("job");
+    let job = first_phase(&folder);
+    let missing = |expected: &[(usize, ShardState)]| {
+        let shards = expected.to_vec();
+        assert_eq!(run(&folder, [6, 4], Role::Merge), Err(Outcome::Missing { phase: 0, shards }));
+        assert!(expected.iter().all(|(shard, state)| job.state(*shard).unwrap() == *state));
+    };
+    let parts: Vec<Vec<u8>> = (0..3).map(|shard| fs::read(job.part_path(shard)).unwrap()).collect();
+    fs::remove_file(job.part_path(1)).unwrap();
+    missing(&[(1, ShardState::Missing)]);
+    // The part of another shard in its place, a part with a bit changed, and one of another job.
+    let name = job.part_path(1).display().to_string();
+    fs::write(job.part_path(1), &parts[0]).unwrap();
+    let text = format!("{name}: it does not have the results of just the units of its shard");
+    missing(&[(1, ShardState::Broken(text))]);
+    let mut changed = parts[1].clone();
+    *changed.last_mut().unwrap() ^= 1;
+    fs::write(job.part_path(1), &changed).unwrap();
+    assert!(matches!(job.state(1).unwrap(), ShardState::Broken(text) if text.contains("it is cut off after byte")));
+    let other = all.path().join("other");
+    plan(&other, "b", 3).unwrap();
+    assert!(matches!(run(&other, [6, 4], Role::Merge), Err(Outcome::Planned { .. })));
+    assert_eq!(run(&other, [6, 4], Role::Shard(1)), Err(Outcome::Done));
+    fs::copy(Job::open(&other, PROGRAM).unwrap().part_path(1), job.part_path(1)).unwrap();
+    let text = format!("{name}: the results are of another input or of other options");
+    missing(&[(1, ShardState::Broken(text))]);
+    // A process that does the shard replaces what is broken.
+    assert_eq!(run(&folder, [6, 4], Role::Shard(1)), Err(Outcome::Done));
+    assert_eq!(fs::read(job.part_path(1)).unwrap(), parts[1]);
+    assert!(matches!(run(&folder, [6, 4], Role::Merge), Err(Outcome::Planned { phase: 1, .. })));
+}
+
+/// A shard goes on from what stopped processes left, and two at once write the same part.
+#[test]
+fn shards_go_on_and_may_be_done_at_once() {
+    let all = tempfile::tempdir().unwrap();
+    let folder = all.path().join("job");
+    let job = first_phase(&folder);
+    let part = fs::read(job.part_path(1)).unwrap();
+    fs::remove_file(job.part_path(1)).unwrap();
+    let store = |job: &Job| JobStore::new(job.clone(), Role::Shard(1), Duration::ZERO).unwrap();
+    let mut stopped = toy([6, 4]);
+    stopped.stop_after = 1;
+    assert_eq!(stopped.bake(Some(&store(&job))), Err(Halt::Store("killed".to_owned())));
+    assert_eq!(job.state(1).unwrap(), ShardState::Partial(1));
+    // What the process with another number left is as good.
+    let journal = fs::read_dir(folder.join("parts")).unwrap().map(|entry| entry.unwrap().path());
+    let journal = journal.into_iter().find(|path| path.extension().is_some_and(|e| e == "journal")).unwrap();
+    fs::rename(&journal, folder.join("parts/1.part.elsewhere-00000000-1.journal")).unwrap();
+    let going_on = toy([6, 4]);
+    let [first, second] = [store(&job), store(&job)];
+    assert_eq!(going_on.bake(Some(&first)), Err(Halt::Shared));
+    let plan = *job.shard(1).unwrap().1;
+    let n_units = plan.end - plan.begin;
+    assert_eq!(n_units, 2);
+    assert_eq!((going_on.n(), fs::read(job.part_path(1)).unwrap()), (n_units - 1, part.clone()));
+    assert_eq!(toy([6, 4]).bake(Some(&second)), Err(Halt::Shared));
+    assert_eq!(fs::read(job.part_path(1)).unwrap(), part);
+    std::thread::scope(|scope| {
+        for _ in 0..4 {
+            scope.spawn(|| assert_eq!(run(&folder, [6, 4], Role::Shard(2)), Err(Outcome::Done)));
+        }
+    });
+    assert_eq!(job.state(2).unwrap(), ShardState::Done);
+}
+
+#[test]
+fn other_inputs_and_programs_are_refused() {
+    let all = tempfile::tempdir().unwrap();
+    let folder = all.path().join("job");
+    let job = first_phase(&folder);
+    assert_eq!(plan(&folder, "a", 3).unwrap(), job);
+    assert!(matches!(plan(&folder, "b", 3), Err(JobError::OtherJob(_))));
+    let error = Job::open(&folder, "2.0").unwrap_err().to_string();
+    assert!(error.ends_with("job.json: planned by version 1.0 of the program, and this is 2.0; plan it anew"), "{error}");
+    // A bake with other units than were planned.
+    let store = JobStore::new(job.clone(), Role::Shard(1), Duration::ZERO).unwrap();
+    let Err(Halt::Store(text)) = toy([7, 4]).bake(Some(&store)) else { panic!("it went on") };
+    assert!(text.starts_with("the job was planned with 6 units of phase pairs, and there are 7"), "{text}");
+    assert!(matches!(JobStore::new(job, Role::Shard(3), Duration::ZERO), Err(JobError::NoShard { shard: 3, n: 3, .. })));
+    let stranger = JobStore::new(Job::open(&folder, PROGRAM).unwrap(), Role::Merge, Duration::ZERO).unwrap();
+    assert!(!stranger.wants("pairs", 0) && stranger.save("pairs", 0, b"").is_err());
+}

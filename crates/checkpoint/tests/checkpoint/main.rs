@@ -1,0 +1,6 @@
+//! Journals and jobs, with bakes that are toys.
+
+mod damage;
+mod jobs;
+mod journals;
+mod toy;
