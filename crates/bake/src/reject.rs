@@ -22,10 +22,11 @@
 //! ([`RejectOptions::rmb`]).
 
 use crate::error::BakeError;
+use crate::reject_units;
 use crate::sectors::see_groups;
 use sightlines_formats::doom::{DoomMap, MapFormat, MapLumps, RmbError, RmbFile, list_maps};
 use sightlines_formats::{DoomError, LumpName, RejectTable, Wad, WadError};
-use sightlines_progress::Observer;
+use sightlines_progress::{Halt, Observer, Phase, Units};
 use sightlines_pvs::BitMatrix;
 use sightlines_stabtree::SearchOptions;
 use std::time::{Duration, Instant};
@@ -45,6 +46,8 @@ pub struct RejectOptions<'a> {
     pub threads: usize,
     /// Called with the number of finished zones and their total, separately for each map.
     pub progress: Option<&'a dyn Observer>,
+    /// Where results of units of work, which are maps, are kept. Changes nothing but who computes what.
+    pub units: Units<'a>,
 }
 
 impl std::fmt::Debug for RejectOptions<'_> {
@@ -87,6 +90,12 @@ pub enum RejectError {
     /// The new file cannot be laid out.
     #[error(transparent)]
     Write(#[from] WadError),
+    /// The store of units ends the work: it keeps what was done, and the rest is for others or later.
+    #[error(transparent)]
+    Halted(#[from] Halt),
+    /// The store of units has something else than the result of a map.
+    #[error("map {0}: what was kept of it is damaged")]
+    Kept(LumpName),
 }
 
 /// What became of the file.
@@ -183,13 +192,18 @@ pub fn reject_wad(wad: &Wad, options: &RejectOptions<'_>) -> Result<RejectOutcom
     let insist = is_named || !chosen.iter().any(|m| is_readable(m));
     let mut maps = Vec::with_capacity(chosen.len());
     let (mut lumps, mut n_bytes) = (Vec::new(), 0u64);
-    for map in chosen {
+    let costs: Vec<f64> = chosen.iter().map(|map| reject_units::cost(wad, map)).collect();
+    options.units.begin(&Phase { name: reject_units::PHASE, costs: &costs })?;
+    for (unit, map) in chosen.into_iter().enumerate() {
         let start = Instant::now();
-        let (n_sectors, status, bytes) = match do_map(wad, map, insist, options) {
-            Err(error) if insist || options.strict || matches!(error, RejectError::Rmb(_)) => return Err(error),
-            Err(error) => (0, MapStatus::Failed(Box::new(error)), None),
-            Ok(done) => done,
+        let do_map = || match do_map(wad, map, insist, options) {
+            Err(error) if insist || options.strict || matches!(error, RejectError::Rmb(_)) => Err(error),
+            Err(error) => Ok((0, MapStatus::Failed(Box::new(error)), None)),
+            Ok(done) => Ok(done),
         };
+        let done = if options.units.are_kept() { reject_units::get(options.units, unit, map, do_map)? } else { Some(do_map()?) };
+        // A map that is for another process.
+        let Some((n_sectors, status, bytes)) = done else { continue };
         n_bytes += bytes.as_ref().map_or(0, |b| b.len() as u64);
         // A file with maps that share their lumps may ask for any number of large tables.
         if i32::try_from(n_bytes).is_err() {
@@ -198,6 +212,7 @@ pub fn reject_wad(wad: &Wad, options: &RejectOptions<'_>) -> Result<RejectOutcom
         lumps.extend(bytes.map(|b| (map, b)));
         maps.push(MapOutcome { name: map.name(), n_sectors, status, time: start.elapsed() });
     }
+    options.units.end(reject_units::PHASE)?;
     let is_done = |m: &MapOutcome| matches!(m.status, MapStatus::Written(_) | MapStatus::KeptHandMade);
     let first_failure = maps.iter().find_map(|m| match &m.status {
         MapStatus::Failed(error) => Some(error),
@@ -236,7 +251,7 @@ fn old_table(n_sectors: u32, bytes: &[u8]) -> Option<RejectTable> {
     if is_padding { RejectTable::from_bytes(n_sectors, table).ok() } else { None }
 }
 
-type Done = (u32, MapStatus, Option<Vec<u8>>);
+pub(crate) type Done = (u32, MapStatus, Option<Vec<u8>>);
 
 /// Does one map; with `insist`, one in a format that is not read is an error.
 fn do_map(wad: &Wad, lumps: &MapLumps, insist: bool, options: &RejectOptions<'_>) -> Result<Done, RejectError> {

@@ -9,6 +9,7 @@ use crate::commands::{
     generate::GenerateArgs,
     info::InfoArgs,
     isovist::IsovistArgs,
+    job::JobArgs,
     levels::LevelsArgs,
     light::LightArgs,
     multifocal::MultifocalArgs,
@@ -31,7 +32,7 @@ use clap::{Parser, Subcommand};
 #[derive(Debug, Parser)]
 #[command(name = "sightlines", version, long_about = None, disable_help_flag = true, disable_version_flag = true)]
 #[command(after_help = "Exit codes: 0 success; 1 the answer is no (query, draw: a point outside every cell; explain: \
-                        hidden; verify: a violation); 2 bad input or usage.")]
+                        hidden; verify: a violation); 2 bad input or usage; 3 a job is not complete; 130 interrupted.")]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,
@@ -62,6 +63,8 @@ pub(crate) enum Command {
     Portals(PortalsArgs),
     /// Write a floor plan as GeoJSON: a scene in space cut at a height, a DXF drawing, or a Doom map
     Plan(PlanCommandArgs),
+    /// Share a build among processes and machines: plan its shards, do one, merge them, or have all of it done
+    Job(JobArgs),
     /// Check a table, or the visibility in a Quake or Doom map, against its scene; exit code 1 for a violation
     Verify(VerifyArgs),
     /// Write what is seen from points of a floor plan: polygons, measures, a picture

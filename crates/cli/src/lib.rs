@@ -20,6 +20,8 @@ mod file_error;
 mod folder;
 mod glb;
 mod input;
+mod interrupt;
+mod kept;
 mod map_portals;
 mod memory;
 mod named;
@@ -58,6 +60,8 @@ enum Answer {
     Yes,
     /// Done, and the answer is no, such as for a point outside every cell; exit code 1.
     No,
+    /// A job is not complete: some of its shards are to be done; exit code 3.
+    Incomplete,
 }
 
 /// The program `sightlines`: reads the arguments of the process, does what they ask for, prints, and returns the exit code.
@@ -89,7 +93,12 @@ fn exit_code(result: Result<Answer, Box<dyn Error>>) -> ExitCode {
     match result {
         Ok(Answer::Yes) => ExitCode::SUCCESS,
         Ok(Answer::No) => ExitCode::FAILURE,
+        Ok(Answer::Incomplete) => ExitCode::from(3),
         Err(error) if is_closed_pipe(&*error) => ExitCode::SUCCESS,
+        Err(error) if interrupt::requested() => {
+            let _ = writeln!(std::io::stderr(), "{error}");
+            ExitCode::from(interrupt::EXIT_CODE)
+        }
         Err(error) => {
             // Nothing is left to do if standard error is closed too.
             let _ = writeln!(std::io::stderr(), "error: {error}");
@@ -104,6 +113,7 @@ fn run(arguments: &Arguments) -> Result<Answer, Box<dyn Error>> {
     Ok(match &arguments.command {
         Command::Build(args) => commands::build::run(args, show_progress, arguments.verbose > 0)?,
         Command::Reject(args) => commands::reject::run(args, show_progress)?,
+        Command::Job(args) => commands::job::run(args, show_progress, arguments.verbose > 0)?,
         Command::Vis(args) => commands::vis::run(args, show_progress, arguments.verbose > 0)?,
         Command::Verify(args) => commands::verify::run(args, show_progress)?,
         Command::Plan(args) => commands::plan::run(args)?,

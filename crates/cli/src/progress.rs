@@ -1,10 +1,12 @@
 //! Progress on standard error: a bar in a terminal, else a line every few seconds.
 
+use crate::interrupt;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use sightlines::checkpoint::Meter;
 use sightlines::progress::{Observer, Progress};
 use std::io::{IsTerminal, Write};
 use std::ops::ControlFlow;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// The environment variable with the seconds between two lines of progress where there is no terminal; 0 is as often as there is news.
@@ -14,12 +16,14 @@ pub(crate) const SECONDS: &str = "SIGHTLINES_PROGRESS_SECONDS";
 const USUAL: Duration = Duration::from_secs(5);
 
 /// A bar with the finished share of a search, which an earlier run may have begun, and the time left. An observer that cancels
-/// nothing.
+/// what is under way once the program is interrupted.
 #[derive(Debug)]
 pub(crate) struct Bar {
     bar: ProgressBar,
     what: &'static str,
     shown: Mutex<Shown>,
+    /// Measures the work of phases whose units are kept.
+    meter: Option<Arc<Meter>>,
 }
 
 /// What was shown last.
@@ -73,7 +77,14 @@ impl Bar {
         }
         bar.set_prefix(what);
         bar.set_length(Self::STEPS);
-        Self { bar, what, shown: Mutex::new(Shown { pace: None, lines }) }
+        Self { bar, what, shown: Mutex::new(Shown { pace: None, lines }), meter: None }
+    }
+
+    /// The same, which shows how much of a phase is done as a store measures it: by the costs of its units, and without those that an earlier run
+    /// did.
+    pub(crate) fn with_meter(mut self, meter: Arc<Meter>) -> Self {
+        self.meter = Some(meter);
+        self
     }
 
     /// `done` of `all` are done; from any thread.
@@ -93,11 +104,14 @@ impl Bar {
     }
 
     fn show(&self, progress: Progress) {
-        let (Progress { share, phase, .. }, now) = (progress, Instant::now());
+        let now = Instant::now();
+        let work = self.meter.as_ref().and_then(|meter| meter.work());
+        let progress = work.map_or(progress, |work| progress.with_share(work.done).with_kept(work.before));
+        let Progress { share, phase, .. } = progress;
         let mut shown = self.shown.lock().unwrap_or_else(PoisonError::into_inner);
         let pace = Pace::after(shown.pace, progress, now);
         shown.pace = Some(pace);
-        let left = pace.left(share, pace.took(now)).map(|left| format!("about {} left", rough(left)));
+        let left = pace.left(progress, pace.took(now)).map(|left| format!("about {} left", rough(left)));
         if shown.lines.as_mut().is_some_and(|lines| lines.is_due(progress, now)) {
             self.say(&line(self.what, share, phase, left.as_deref()));
         }
@@ -117,7 +131,7 @@ fn line(what: &str, share: f64, phase: &str, left: Option<&str>) -> String {
 impl Observer for Bar {
     fn report(&self, progress: Progress) -> ControlFlow<()> {
         self.show(progress);
-        ControlFlow::Continue(())
+        if interrupt::requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }
 
@@ -147,9 +161,9 @@ impl Pace {
         now.saturating_duration_since(self.since)
     }
 
-    /// The time left if the rest proceeds at the pace of this run; `None` until there is something to estimate it from.
-    pub(crate) fn left(self, share: f64, elapsed: Duration) -> Option<Duration> {
-        let done = share - self.before;
+    /// The time left if the rest proceeds at the pace of this run; `None` until there is something to estimate it from. What came from a store took no time.
+    pub(crate) fn left(self, Progress { share, kept, .. }: Progress, elapsed: Duration) -> Option<Duration> {
+        let done = share - self.before.max(kept);
         let left = elapsed.as_secs_f64() * (1.0 - share) / done;
         if done > 0.0 { Duration::try_from_secs_f64(left.max(0.0)).ok() } else { None }
     }
@@ -170,10 +184,13 @@ mod tests {
 
     #[test]
     fn the_time_left_is_estimated_from_this_run() {
-        let left = |before: f64, share: f64, seconds: u64| {
+        let left_with = |before: f64, kept: f64, share: f64, seconds: u64| {
             let pace = Pace { phase: "", since: Instant::now(), before };
-            pace.left(share, Duration::from_secs(seconds)).map(|left| left.as_secs_f64())
+            let progress = Progress::new("", 0, 1).with_share(share).with_kept(kept);
+            pace.left(progress, Duration::from_secs(seconds)).map(|left| left.as_secs_f64())
         };
+        let left = |before: f64, share: f64, seconds: u64| left_with(before, 0.0, share, seconds);
+        assert_eq!([left_with(0.0, 0.5, 0.75, 10), left_with(0.5, 0.25, 0.75, 10)], [Some(10.0); 2]);
         assert_eq!(left(0.0, 0.25, 10), Some(30.0));
         // What an earlier run did took no time of this one.
         assert_eq!(left(0.5, 0.75, 10), Some(10.0));

@@ -173,7 +173,7 @@ impl UnitStore for JobStore {
         let mut state = self.lock();
         let place = state.n_begun;
         state.n_begun += 1;
-        let Some(plan) = state.job.manifest.phases.get(place) else {
+        if state.job.manifest.phases.len() <= place {
             if self.own.is_some() {
                 return Err(Halt::Store(format!("the job has no phase {} yet", phase.name)));
             }
@@ -181,8 +181,14 @@ impl UnitStore for JobStore {
             let plan = PhasePlan { name: phase.name.to_owned(), n_units: phase.costs.len(), shards };
             state.job.add_phase(plan).map_err(|error| Halt::Store(error.to_string()))?;
             let shards = state.job.manifest.shards_of(place);
-            return Err(state.end_with(Outcome::Planned { phase: place, shards }));
-        };
+            if !phase.costs.is_empty() {
+                return Err(state.end_with(Outcome::Planned { phase: place, shards }));
+            }
+            // Nobody has anything to do for it.
+            let saved = shards.into_iter().try_for_each(|shard| state.job.save_part(shard, phase.name, &[]));
+            saved.map_err(|error| Halt::Store(error.to_string()))?;
+        }
+        let plan = &state.job.manifest.phases[place];
         if plan.name != phase.name || plan.n_units != phase.costs.len() {
             let (name, n, found) = (&plan.name, plan.n_units, phase.costs.len());
             return Err(Halt::Store(format!(

@@ -8,6 +8,7 @@ pub(crate) mod export;
 pub(crate) mod generate;
 pub(crate) mod info;
 pub(crate) mod isovist;
+pub(crate) mod job;
 pub(crate) mod levels;
 pub(crate) mod light;
 pub(crate) mod multifocal;

@@ -1,13 +1,15 @@
 //! `reject`: the REJECT lumps of a WAD.
 
 use crate::Answer;
+use crate::error::InputError;
 use crate::file_error::{FileError, from_file_error};
+use crate::kept::{Identity, Interrupted, Keeping, Kept, KeptError, ResumeArgs};
 use crate::output::{self, count, percent, seconds};
-use crate::progress::Bar;
 use serde::Serialize;
 use sightlines::bake::{MapOutcome, MapStatus, RejectError, RejectOptions, RejectSummary, reject_wad};
 use sightlines::formats::Wad;
 use sightlines::formats::doom::RmbFile;
+use sightlines::progress::Units;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -21,6 +23,12 @@ pub(crate) enum Error {
     /// The REJECT lumps of a WAD cannot be built.
     #[error("{}: {source}", path.display())]
     Reject { path: PathBuf, source: Box<RejectError> },
+    /// Results cannot be kept, or taken up.
+    #[error(transparent)]
+    Kept(#[from] KeptError),
+    /// The program was interrupted.
+    #[error("{0}")]
+    Interrupted(Interrupted),
 }
 
 from_file_error!(Error);
@@ -45,43 +53,73 @@ pub(crate) struct RejectArgs {
     strict: bool,
     /// Number of threads; 0 uses every core
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::numbers::threads)]
-    threads: usize,
+    pub(crate) threads: usize,
     /// The WAD to write; may be the input
     #[arg(short, long, help_heading = "Output", value_name = "OUT.wad")]
-    output: PathBuf,
+    pub(crate) output: PathBuf,
+    #[command(flatten)]
+    pub(crate) resume: ResumeArgs,
     /// Print the result as JSON
     #[arg(long, help_heading = "Output")]
     json: bool,
 }
 
 pub(crate) fn run(args: &RejectArgs, show_progress: bool) -> Result<Answer, Error> {
+    let outcome = make(args, Keeping::File(&args.resume), show_progress)?;
+    output::print(args.json, &outcome)?;
+    Ok(Answer::Yes)
+}
+
+/// Reads, builds and writes. Prints nothing but progress and warnings.
+pub(crate) fn make(args: &RejectArgs, keeping: Keeping<'_>, show_progress: bool) -> Result<Outcome, Error> {
     // It may be the WAD that is read.
     output::check(&[], &[&args.output])?;
     let wad = Wad::read(&args.input)?;
     let rmb = args.rmb.as_ref().map(RmbFile::read).transpose()?;
-    let bar = Bar::new("visibility of sectors", show_progress);
-    let options = RejectOptions {
-        maps: args.map.clone(),
-        force: args.force,
-        strict: args.strict,
-        rmb: rmb.as_ref(),
-        threads: args.threads,
-        progress: Some(&bar),
-    };
-    let outcome = reject_wad(&wad, &options);
-    drop(bar);
-    let outcome = outcome.map_err(|source| {
-        let path = match (&source, &args.rmb) {
-            (RejectError::Rmb(_), Some(options)) => options,
-            _ => &args.input,
+    let files: Vec<&Path> = std::iter::once(&args.input).chain(&args.rmb).map(PathBuf::as_path).collect();
+    let kept = Kept::open(keeping, &args.output, &files, || args.identity())?;
+    let made = || -> Result<Outcome, Error> {
+        let store = kept.store();
+        let bar = kept.bar("visibility of sectors", show_progress);
+        let options = RejectOptions {
+            maps: args.map.clone(),
+            force: args.force,
+            strict: args.strict,
+            rmb: rmb.as_ref(),
+            threads: args.threads,
+            progress: Some(&bar),
+            units: Units(store.as_ref().map(|store| store as _)),
         };
-        Error::Reject { path: path.clone(), source: Box::new(source) }
-    })?;
-    output::save(&args.output, &outcome.bytes)?;
-    warn(&args.input, &outcome.maps);
-    let maps = outcome.maps.iter().map(Map::from).collect();
-    output::print(args.json, &Outcome { out: args.output.display().to_string(), maps })?;
-    Ok(Answer::Yes)
+        let outcome = reject_wad(&wad, &options);
+        drop(bar);
+        let outcome = outcome.map_err(|source| {
+            let path = match (&source, &args.rmb) {
+                (RejectError::Rmb(_), Some(options)) => options,
+                _ => &args.input,
+            };
+            Error::Reject { path: path.clone(), source: Box::new(source) }
+        })?;
+        output::save(&args.output, &outcome.bytes)?;
+        warn(&args.input, &outcome.maps);
+        let maps = outcome.maps.iter().map(Map::from).collect();
+        Ok(Outcome { out: args.output.display().to_string(), maps })
+    };
+    let made = made();
+    match kept.finish(made.is_ok()) {
+        Some(interrupted) => Err(Error::Interrupted(interrupted)),
+        None => made,
+    }
+}
+
+impl RejectArgs {
+    /// What decides the results of units.
+    fn identity(&self) -> Result<Identity, InputError> {
+        let mut identity = Identity::new("reject");
+        identity.file(&self.input)?;
+        self.rmb.iter().try_for_each(|rmb| identity.file(rmb))?;
+        identity.debug("options", &(&self.map, self.force, self.strict));
+        Ok(identity)
+    }
 }
 
 /// Names the maps that could not be done, and those that had lines without length.
@@ -100,7 +138,7 @@ fn warn(path: &Path, maps: &[MapOutcome]) {
 
 /// What became of a WAD.
 #[derive(Debug, Serialize)]
-struct Outcome {
+pub(crate) struct Outcome {
     out: String,
     maps: Vec<Map>,
 }

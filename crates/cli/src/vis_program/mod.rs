@@ -10,6 +10,7 @@ mod hearing;
 mod priority;
 
 use crate::Answer;
+use crate::kept::Keeping;
 use crate::commands::vis::{Beginning, Manner, Sound, StateUse, VisArgs, compute};
 use crate::map_portals::MADE;
 use crate::output::{bytes, count};
@@ -83,6 +84,7 @@ fn see(args: &VisProgramArgs, map: &Path, console: &Console) -> Result<(), Error
         show_progress: !(args.quiet || args.nopercent || args.noprogress),
         states: if args.nostate { StateUse::Off } else { StateUse::ResumeIfItFits },
         keep_state: args.noautoclean,
+        keeping: Keeping::Nowhere,
         begin: &mut begin,
     };
     let outcome = compute(&vis, manner)?;

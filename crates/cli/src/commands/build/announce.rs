@@ -102,7 +102,7 @@ impl<'a> Announcer<'a> {
 impl Said {
     /// The estimate that is due with a report, if one is. It comes once for the cells, and once for what they see.
     fn estimate(&mut self, progress: Progress, since_start: Duration, took: Duration) -> Option<String> {
-        let Progress { done, total, phase, share, work } = progress;
+        let Progress { done, total, phase, share, work, .. } = progress;
         // The pairs that are left to sightlines after all cells are no sample of the rest; mostly the estimate is out by then.
         let (is_said, what) = match work {
             Work::Cutting => (&mut self.is_said_of_cells, "to cut cells"),
@@ -112,7 +112,7 @@ impl Said {
         if *is_said || share < SAMPLE || took < LEAST || done < FEWEST {
             return None;
         }
-        let all = since_start.checked_add(self.pace?.left(share, took)?)?;
+        let all = since_start.checked_add(self.pace?.left(progress, took)?)?;
         *is_said = true;
         Some(format!("about {} {what}, by the first {done} of {total} {phase}", rough(all)))
     }

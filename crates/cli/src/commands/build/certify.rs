@@ -2,8 +2,8 @@
 
 use super::Error;
 use crate::error::OutputError;
+use crate::kept::Kept;
 use crate::output::{self, bytes, count, seconds};
-use crate::progress::Bar;
 use crate::unproven::Unproven;
 use serde::Serialize;
 use sightlines::bake::Baked;
@@ -51,6 +51,7 @@ impl CertifyArgs {
         out: &Path,
         baked: &Baked,
         threads: usize,
+        kept: &Kept<'_>,
         show_progress: bool,
     ) -> Result<Option<Certified>, Error> {
         let Some(file) = self.file(out) else { return Ok(None) };
@@ -59,7 +60,7 @@ impl CertifyArgs {
             let found = ProofFindings::without_proofs(&baked.table);
             return Ok(Some(Certified { file: None, unproven: Unproven::new(&baked.table, &found) }));
         }
-        let bar = Bar::new("proofs", show_progress);
+        let bar = kept.bar("proofs", show_progress);
         let made = baked.certify(&CertifyOptions { threads, progress: Some(&bar), ..CertifyOptions::default() });
         drop(bar);
         let made = made.map_err(|source| Error::Certify { path: path.to_owned(), source })?;

@@ -3,6 +3,7 @@
 use crate::buffers::MethodFailed;
 use crate::error::of_map;
 use crate::file_error::{FileError, from_file_error};
+use crate::kept::{Interrupted, KeptError};
 use sightlines::bake::BakeError;
 use sightlines::bake::CertifyError;
 use sightlines::bake::PrtBakeError;
@@ -41,6 +42,12 @@ pub(crate) enum Error {
     /// A door with a box of another dimension than the table.
     #[error("{}: the box of the door {name:?} has {found} numbers: here it needs {needed}", path.display())]
     DoorDimension { path: PathBuf, name: String, found: usize, needed: usize },
+    /// Results cannot be kept, or taken up.
+    #[error(transparent)]
+    Kept(#[from] KeptError),
+    /// The program was interrupted.
+    #[error("{0}")]
+    Interrupted(Interrupted),
     /// A table cannot have stab trees.
     #[error("{}: {source}", path.display())]
     Stab { path: PathBuf, source: StabBakeError },

@@ -25,7 +25,9 @@ pub(crate) use source::bake_visibly;
 
 use crate::Answer;
 use crate::doors::DoorBox;
+use crate::error::InputError;
 use crate::input::{self, refuse};
+use crate::kept::{Identity, Keeping, Kept, ResumeArgs};
 use crate::map_portals::MADE;
 use crate::numbers::duration;
 use crate::output;
@@ -35,8 +37,10 @@ use crate::surfaces::{SurfaceArgs, Surfaces};
 use options::BakeArgs;
 use serde::Serialize;
 use sightlines::bake::auto::choose_for;
+use sightlines::bake::methods::BufferOptions;
 use sightlines::bake::{BakeOptions, Bakeable, Baked, Report, SceneMethod};
 use sightlines::formats::Input;
+use sightlines::progress::Units;
 use source::{Source, bake_announced};
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -59,21 +63,21 @@ pub(crate) struct BuildArgs {
     #[command(flatten)]
     plans: PlanArgs,
     #[command(flatten)]
-    bake: BakeArgs,
+    pub(crate) bake: BakeArgs,
     #[command(flatten, next_help_heading = "Method")]
     region: region::RegionArgs,
     /// Scenes in space: decide for about this long, such as 90s, 10m or 2h; a plain number is in seconds. What is not decided by then
     /// counts as visible, so the table is right, and looser. Reading the file, cutting cells and preparing methods count, and are done in full, however
     /// long they take; so is what comes after, such as writing, which does not count. With a limit that is reached, the table depends on the machine and differs from run to run
-    #[arg(long, help_heading = "Method", value_name = "DURATION", value_parser = duration)]
-    time_limit: Option<Duration>,
+    #[arg(long, help_heading = "Method", value_name = "DURATION", value_parser = duration, conflicts_with = "resume")]
+    pub(crate) time_limit: Option<Duration>,
     /// A door that is a box: what fills it when it is shut. It is open in the table; a game, or `query --closed NAME`, shuts it, which closes
     /// the portals that lie wholly within the closed box. In a plan NAME=X0,Y0,X1,Y1. Names may repeat; scenes may have doors of their own
     #[arg(long = "door", help_heading = "Input", value_name = "NAME=X0,Y0,Z0,X1,Y1,Z1", allow_hyphen_values = true)]
     doors: Vec<DoorBox>,
     /// The table to write
     #[arg(short, long, help_heading = "Output", value_name = "OUT.pvs")]
-    output: PathBuf,
+    pub(crate) output: PathBuf,
     /// Store stab trees in the table: for each cell, the sequences of portals that sight lines pass. A tree is
     /// truncated after N nodes, which never hides anything; without N 65536 for plans, 16384 for scenes in space, 4096
     /// for Quake maps and portal files. May take much longer than the table and make it several times as large; the
@@ -83,12 +87,28 @@ pub(crate) struct BuildArgs {
     stab_trees: Option<Option<u32>>,
     #[command(flatten, next_help_heading = "Output")]
     certify: certify::CertifyArgs,
+    #[command(flatten)]
+    pub(crate) resume: ResumeArgs,
     /// Print the result as JSON
     #[arg(long, help_heading = "Output")]
     json: bool,
 }
 
 pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Result<Answer, Error> {
+    // What is not decided in time is decided anew when there is more of it.
+    let keeping = if args.time_limit.is_some() { Keeping::Nowhere } else { Keeping::File(&args.resume) };
+    let built = make(args, keeping, show_progress, verbose)?;
+    output::print(args.json, &built)?;
+    Ok(Answer::Yes)
+}
+
+/// Reads, bakes and writes. Prints nothing but progress and warnings.
+pub(crate) fn make(
+    args: &BuildArgs,
+    keeping: Keeping<'_>,
+    show_progress: bool,
+    verbose: bool,
+) -> Result<Built, Error> {
     let BuildArgs { input: path, output: out, .. } = args;
     let clock = limit::Clock::new(args.time_limit);
     if out.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) {
@@ -123,28 +143,54 @@ pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Resul
     }
     args.refuse_for_regions(&source, &options)?;
 
-    let plan = announce::Plan::new(&source.content, &options, auto.as_ref(), args.time_limit);
-    let baked = bake_announced(path, (&source.content).into(), &options, plan, show_progress);
-    let baked = baked.map_err(|error| source.failed(path, error))?;
-    clock.warn(path, &baked.report);
-    let (baked, stab) = stab::add(path, baked, args.stab_trees, options.threads, show_progress)?;
-    let (baked, given_doors) = doors::add(path, baked, &args.doors);
-    let baked = plans::state(baked, &reading);
-    let bytes = baked.table.to_bytes();
-    // Proofs that contradict the table leave an older one untouched.
-    let proofs = args.certify.write(path, out, &baked, options.threads, show_progress)?;
-    output::save(out, &bytes)?;
-    let outcome = Outcome::new(out, &source, &options, &baked, bytes.len(), verbose);
-    let surfaces = match &source.content {
-        Bakeable::Scene(file) => Some(Surfaces::new(file).with_backs(&baked.table, &file.scene)),
-        _ => None,
+    let files: Vec<&Path> = [Some(path.as_path()), source.portals()].into_iter().flatten().collect();
+    let kept = Kept::open(keeping, out, &files, || args.identity(&source, &options))?;
+    let made = || -> Result<Built, Error> {
+        let store = kept.store();
+        let units = Units(store.as_ref().map(|store| store as _));
+        let options = BakeOptions { units, ..options.clone() };
+        let plan = announce::Plan::new(&source.content, &options, auto.as_ref(), args.time_limit);
+        let baked = bake_announced(path, (&source.content).into(), &options, plan, Some(&kept), show_progress);
+        let baked = baked.map_err(|error| source.failed(path, error))?;
+        clock.warn(path, &baked.report);
+        let (baked, stab) = stab::add(path, baked, args.stab_trees, options.threads, &kept, show_progress)?;
+        let (baked, given_doors) = doors::add(path, baked, &args.doors);
+        let baked = plans::state(baked, &reading);
+        let bytes = baked.table.to_bytes();
+        // Proofs that contradict the table leave an older one untouched.
+        let proofs = args.certify.write(path, out, &baked, options.threads, &kept, show_progress)?;
+        output::save(out, &bytes)?;
+        let outcome = Outcome::new(out, &source, &options, &baked, bytes.len(), verbose);
+        let surfaces = match &source.content {
+            Bakeable::Scene(file) => Some(Surfaces::new(file).with_backs(&baked.table, &file.scene)),
+            _ => None,
+        };
+        Ok(Built { auto, outcome, viewers, placed, surfaces, given_doors, stab, proofs, verbose })
     };
-    let built = Built { auto, outcome, viewers, placed, surfaces, given_doors, stab, proofs, verbose };
-    output::print(args.json, &built)?;
-    Ok(Answer::Yes)
+    let made = made();
+    match kept.finish(made.is_ok()) {
+        Some(interrupted) => Err(Error::Interrupted(interrupted)),
+        None => made,
+    }
 }
 
 impl BuildArgs {
+    /// What decides the results of units: the files, how they are read, and how they are baked; not the number of threads.
+    fn identity(&self, source: &Source, options: &BakeOptions<'_>) -> Result<Identity, InputError> {
+        let mut identity = Identity::new("build");
+        source.identify(&self.input, &mut identity)?;
+        identity.debug("reading", &(&self.map, &self.surfaces, &self.plans));
+        // What changes nothing but the time is left out, and the address of a function with `buffers.warn`.
+        let BakeOptions { subdivide, cut, chords, gap, frame, digest, portals, method, cells, split, fast, .. } = options;
+        let BakeOptions { buffers, threads: _, progress: _, budget: _, units: _, .. } = options;
+        identity.debug("cells", &(subdivide, cut, gap, frame, digest, cells));
+        identity.debug("method", &(chords, portals, method, split, fast));
+        let BufferOptions { measure, planes, texels, occluders, carry, sheets, line_space, backend, warn: _ } = buffers;
+        identity.debug("buffers", &(measure, planes, texels, occluders, carry, sheets, line_space, backend));
+        identity.debug("more", &(self.stab_trees, self.certify.is_given()));
+        Ok(identity)
+    }
+
     /// Refuses options that mean nothing for an input.
     fn refuse_meaningless(&self, input: &Input) -> Result<(), Error> {
         if !matches!(input, Input::Bsp(_)) {
@@ -228,7 +274,7 @@ impl fmt::Display for Outcome {
 
 /// What was built, and the stab trees and proofs with it.
 #[derive(Debug, Serialize)]
-struct Built {
+pub(crate) struct Built {
     /// What `--method auto` chose.
     #[serde(skip_serializing_if = "Option::is_none")]
     auto: Option<auto::Chosen>,

@@ -44,10 +44,10 @@ pub(crate) struct BakeArgs {
     keep_solid: bool,
     /// Quake maps and portal files: compute only a coarse bound; fast, and reports much that is hidden as visible
     #[arg(long, help_heading = "Method")]
-    pub(super) fast: bool,
+    pub(crate) fast: bool,
     /// Number of threads; 0 uses every core
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::numbers::threads)]
-    pub(super) threads: usize,
+    pub(crate) threads: usize,
 }
 
 fn size(text: &str) -> Result<f64, String> {

@@ -4,7 +4,9 @@ use super::announce::{Announcer, Plan};
 use super::{BakeArgs, Error, plan, quake, space};
 use crate::buffers::MethodFailed;
 use crate::clusters::warn_of_repeats;
+use crate::error::InputError;
 use crate::input;
+use crate::kept::{Identity, Kept};
 use crate::map_portals::{portal_file, portals_for};
 use crate::output;
 use crate::progress::Bar;
@@ -53,6 +55,25 @@ impl Source {
         Ok(Self { content, portals, is_made })
     }
 
+    /// Adds all that decides what is baked from it to what tells the results of one command from those of another.
+    pub(super) fn identify(&self, path: &Path, identity: &mut Identity) -> Result<(), InputError> {
+        identity.file(path)?;
+        if let Some(portals) = self.portals.as_deref().filter(|portals| *portals != path) {
+            identity.file(portals)?;
+        }
+        // What such a file names is part of the content too.
+        let extension = path.extension().map(|extension| extension.to_ascii_lowercase());
+        if extension.is_some_and(|extension| extension == "gltf" || extension == "obj") {
+            identity.debug("content", &self.content);
+        }
+        Ok(())
+    }
+
+    /// The files that it comes from.
+    pub(super) fn portals(&self) -> Option<&Path> {
+        self.portals.as_deref()
+    }
+
     /// The error, with the name of the file that it is about.
     pub(super) fn failed(&self, path: &Path, source: BakeError) -> Error {
         let map = match &self.content {
@@ -75,7 +96,7 @@ pub(crate) fn bake_visibly(
     options: &BakeOptions<'_>,
     show_progress: bool,
 ) -> Result<Baked, BakeError> {
-    bake_announced(path, input, options, Plan::default(), show_progress)
+    bake_announced(path, input, options, Plan::default(), None, show_progress)
 }
 
 /// The same; says before what is going to be done.
@@ -84,13 +105,14 @@ pub(super) fn bake_announced(
     input: BakeInput<'_>,
     options: &BakeOptions<'_>,
     plan: Plan,
+    kept: Option<&Kept<'_>>,
     show_progress: bool,
 ) -> Result<Baked, BakeError> {
     let what = match input {
         BakeInput::Portals(_) | BakeInput::Map(..) => "visibility of clusters",
         BakeInput::Plan(_) | BakeInput::Scene(..) => "visibility",
     };
-    let bar = Bar::new(what, show_progress);
+    let bar = kept.map_or_else(|| Bar::new(what, show_progress), |kept| kept.bar(what, show_progress));
     let announcer = Announcer::new(&bar, &plan, show_progress);
     let baked = bake(input, &BakeOptions { progress: Some(&announcer), ..options.clone() })?;
     drop(bar);

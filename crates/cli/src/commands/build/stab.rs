@@ -2,8 +2,8 @@
 
 use super::Error;
 use crate::facts::StabFacts;
+use crate::kept::Kept;
 use crate::output::{percent, seconds};
-use crate::progress::Bar;
 use serde::Serialize;
 use sightlines::bake::{Baked, StabOptions, StabReport};
 use sightlines::pvs::Table;
@@ -16,10 +16,11 @@ pub(super) fn add(
     baked: Baked,
     wanted: Option<Option<u32>>,
     threads: usize,
+    kept: &Kept<'_>,
     show_progress: bool,
 ) -> Result<(Baked, Option<Added>), Error> {
     let Some(max_nodes) = wanted else { return Ok((baked, None)) };
-    let bar = Bar::new("stab trees", show_progress);
+    let bar = kept.bar("stab trees", show_progress);
     let max_nodes = max_nodes.map(|n| n as usize);
     let with = baked.with_stab_trees(&StabOptions { max_nodes, threads, progress: Some(&bar) });
     drop(bar);

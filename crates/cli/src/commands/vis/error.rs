@@ -1,6 +1,7 @@
 //! Why `vis` fails.
 
 use crate::file_error::{FileError, from_file_error};
+use crate::kept::{Interrupted, KeptError};
 use sightlines::bake::PrtBakeError;
 use sightlines::bake::quake::StateError;
 use std::fmt;
@@ -19,6 +20,12 @@ pub(crate) enum Error {
     /// A portal file, or the map that it is of, cannot be baked.
     #[error("{}: {source}", path.display())]
     BakePrt { path: PathBuf, source: PrtBakeError },
+    /// Results cannot be kept, or taken up.
+    #[error(transparent)]
+    Kept(#[from] KeptError),
+    /// The program was interrupted.
+    #[error("{0}")]
+    Interrupted(Interrupted),
     /// A proof about two clusters contradicts what the table lists.
     #[error("{}: clusters {} and {} are listed as {}, but {found}; nothing was written", path.display(), pair[0], pair[1],
             if *is_listed { "visible" } else { "hidden" })]

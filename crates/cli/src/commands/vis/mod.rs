@@ -15,6 +15,8 @@ use crate::Answer;
 use crate::clusters::warn_of_repeats;
 use crate::error::{InputError, OutputError};
 use crate::input;
+use crate::interrupt;
+use crate::kept::{Identity, Interrupted, Keeping, Kept};
 use crate::map_portals::{MapPortals, portal_file, portals_for};
 use crate::output;
 use crate::progress::Bar;
@@ -25,9 +27,11 @@ use sightlines::bake::{PrtBakeError, PrtOptions, vis_map};
 use sightlines::formats::InputKind;
 use sightlines::formats::quake::visibility::check_portals;
 use sightlines::formats::quake::{Bsp, Prt, VisibilityError, graph_of_prt, read_bsp};
-use sightlines::progress::Units;
+use sightlines::progress::{Observer, Progress, Units};
 use sightlines::stabtree::{ConvexOptions, ConvexSearch};
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::{Duration, Instant};
 
 /// Arguments of `vis`.
@@ -47,7 +51,7 @@ pub(crate) struct VisArgs {
     pub(crate) threads: usize,
     /// Resume an interrupted run with the same portals and options
     #[arg(long, help_heading = "Resuming")]
-    resume: bool,
+    pub(crate) resume: bool,
     /// File for the state of the run [default: beside the output, with the extension .vis-state]
     #[arg(long, help_heading = "Resuming", value_name = "FILE")]
     state: Option<PathBuf>,
@@ -62,7 +66,7 @@ pub(crate) struct VisArgs {
     pub(crate) silence: Vec<Sound>,
     /// The map to write [default: the input]
     #[arg(short, long, help_heading = "Output", value_name = "OUT.bsp")]
-    output: Option<PathBuf>,
+    pub(crate) output: Option<PathBuf>,
     /// Print the result as JSON
     #[arg(long, help_heading = "Output")]
     json: bool,
@@ -88,11 +92,13 @@ impl VisArgs {
 }
 
 /// How to go about it, beside what the arguments say.
-pub(crate) struct Manner<'a> {
+pub(crate) struct Manner<'a, 'k> {
     pub(crate) show_progress: bool,
     pub(crate) states: StateUse,
     /// Whether the state is kept after the end.
     pub(crate) keep_state: bool,
+    /// Where results of units are kept, of a search without states.
+    pub(crate) keeping: Keeping<'k>,
     /// Called before the search.
     pub(crate) begin: &'a mut dyn FnMut(&Beginning<'_>) -> Result<(), OutputError>,
 }
@@ -108,14 +114,21 @@ pub(crate) struct Beginning<'a> {
 
 pub(crate) fn run(args: &VisArgs, show_progress: bool, verbose: bool) -> Result<Answer, Error> {
     let states = if args.resume { StateUse::Resume } else { StateUse::Anew };
-    let mut outcome = compute(args, Manner { show_progress, states, keep_state: false, begin: &mut |_| Ok(()) })?;
+    let manner = Manner { show_progress, states, keep_state: false, keeping: Keeping::Nowhere, begin: &mut |_| Ok(()) };
+    let mut outcome = compute(args, manner)?;
     outcome.verbose = verbose;
     output::print(args.json, &outcome)?;
     Ok(Answer::Yes)
 }
 
+/// Writes the map with results from the store of a job. Prints nothing but progress and warnings.
+pub(crate) fn make(args: &VisArgs, keeping: Keeping<'_>, show_progress: bool) -> Result<Outcome, Error> {
+    let states = StateUse::Off;
+    compute(args, Manner { show_progress, states, keep_state: false, keeping, begin: &mut |_| Ok(()) })
+}
+
 /// Writes the map. Prints nothing but progress and warnings.
-pub(crate) fn compute(args: &VisArgs, manner: Manner<'_>) -> Result<Outcome, Error> {
+pub(crate) fn compute(args: &VisArgs, manner: Manner<'_, '_>) -> Result<Outcome, Error> {
     let start = Instant::now();
     if args.prt.is_none() && args.map.is_file() && input::kind_of(&args.map)? == Some(InputKind::Prt) {
         return Err(Error::PortalsForMap { path: args.map.clone(), command: "sightlines vis" });
@@ -138,6 +151,7 @@ pub(crate) fn compute(args: &VisArgs, manner: Manner<'_>) -> Result<Outcome, Err
     warn_of_repeats(&prt_path, &prt);
 
     let key = StateKey::new(&text, args.fast);
+    let kept = Kept::open(manner.keeping, out, &[], || args.identity(&text, &prt_path))?;
     drop(text);
     let every = Duration::from_secs(args.save_every);
     let (mut saved, from) = Saved::open(state_path, every, key, &graph_of_prt(&prt), manner.states)?;
@@ -145,15 +159,31 @@ pub(crate) fn compute(args: &VisArgs, manner: Manner<'_>) -> Result<Outcome, Err
         saved.keep();
     }
     let resumed = from.is_some();
+    let saves = manner.states != StateUse::Off;
     (manner.begin)(&Beginning { bsp: &bsp, prt: &prt, prt_path: &prt_path, resumed })?;
-    let bar = Bar::new("visibility of clusters", manner.show_progress);
-    let mut save = |search: &ConvexSearch| saved.save(search);
+    let bar = kept.bar("visibility of clusters", manner.show_progress);
+    // The state is written before an interrupted search ends.
+    let is_saved = AtomicBool::new(false);
+    let mut save = |search: &ConvexSearch| {
+        let ends = interrupt::requested();
+        saved.save(search, ends);
+        is_saved.store(ends, Relaxed);
+    };
+    let observer = |progress: Progress| match bar.report(progress) {
+        ControlFlow::Break(()) if is_saved.load(Relaxed) || !saves => ControlFlow::Break(()),
+        _ => ControlFlow::Continue(()),
+    };
     let sounds = sounds::all_but(&args.silence);
     let search = ConvexOptions { fast: args.fast, threads: args.threads };
-    let options =
-        PrtOptions { search, from, progress: Some(&bar), after_step: Some(&mut save), units: Units::default(), sounds };
+    let store = kept.store();
+    let units = Units(store.as_ref().map(|store| store as _));
+    let options = PrtOptions { search, from, progress: Some(&observer), after_step: Some(&mut save), units, sounds };
     let map = vis_map(&bsp, &prt, options);
-    drop(bar);
+    drop((bar, store));
+    if let Some(Interrupted { state }) = kept.finish(map.is_ok()) {
+        let state = state.or_else(|| saved.path_if_written());
+        return Err(Error::Interrupted(Interrupted { state }));
+    }
     let map = map.map_err(|source| explained(source, args, &prt_path, &saved))?;
     // Before anything is written: a table that is proven wrong should not be.
     let certified = args.certify.map(|n| {
@@ -168,6 +198,20 @@ pub(crate) fn compute(args: &VisArgs, manner: Manner<'_>) -> Result<Outcome, Err
     outcome.certified = certified;
     outcome.seconds = start.elapsed().as_secs_f64();
     Ok(outcome)
+}
+
+impl VisArgs {
+    /// What decides the results of units.
+    fn identity(&self, portals: &[u8], prt: &Path) -> Result<Identity, InputError> {
+        let mut identity = Identity::new("vis");
+        identity.file(&self.map)?;
+        if prt != self.map {
+            identity.file(prt)?;
+        }
+        identity.debug("portals", &portals);
+        identity.debug("options", &self.fast);
+        Ok(identity)
+    }
 }
 
 /// Puts the name of the file before what is wrong with it.

@@ -34,6 +34,8 @@ pub(super) struct Saved {
     every: Option<Duration>,
     /// Whether the last state of all is saved, and kept.
     keep: bool,
+    /// Whether this run has written the file, and could the last time.
+    is_written: bool,
     last: Instant,
     /// The stage that was under way then.
     stage: Option<u32>,
@@ -54,7 +56,7 @@ impl Saved {
         graph: &CellGraph<Convex>,
         usage: StateUse,
     ) -> Result<(Self, Option<ConvexState>), Error> {
-        let mut saved = Self { path, key, every: Some(every), keep: false, last: Instant::now(), stage: None };
+        let mut saved = Self { path, key, every: Some(every), keep: false, is_written: false, last: Instant::now(), stage: None };
         if usage == StateUse::Off {
             saved.every = None;
             return Ok((saved, None));
@@ -116,17 +118,24 @@ impl Saved {
         &self.path
     }
 
-    /// Writes the state if it is time to, or if a stage has ended.
-    pub(super) fn save(&mut self, search: &ConvexSearch) {
+    /// The file, if this run has written it.
+    pub(super) fn path_if_written(&self) -> Option<PathBuf> {
+        self.is_written.then(|| self.path.clone())
+    }
+
+    /// Writes the state if it is time to, if a stage has ended, or if the search ends early.
+    pub(super) fn save(&mut self, search: &ConvexSearch, ends: bool) {
         let (Some(every), state) = (self.every, search.state()) else { return };
         let since = self.last.elapsed();
         let has_ended = *self.stage.get_or_insert(state.stage) != state.stage;
         let is_kept = self.keep && search.is_done();
-        if since < every && !(has_ended && since >= LEAST) && !is_kept {
+        if since < every && !(has_ended && since >= LEAST) && !is_kept && !ends {
             return;
         }
         // A state that cannot be written is lost only if the run is stopped, so the run continues.
-        if let Err(error) = atomic_write(&self.path, &state::encode(&self.key, state)) {
+        let written = atomic_write(&self.path, &state::encode(&self.key, state));
+        self.is_written = written.is_ok();
+        if let Err(error) = written {
             tracing::warn!("{}; a run that is stopped cannot be resumed", plain(&error.to_string()));
         }
         (self.last, self.stage) = (Instant::now(), Some(state.stage));

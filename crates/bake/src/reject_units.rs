@@ -1,0 +1,116 @@
+//! Maps as units of work: what they cost, and their tables as results that are kept.
+
+use crate::reject::{Done, MapStatus, RejectError, RejectSummary};
+use sightlines_formats::Wad;
+use sightlines_formats::doom::{MapLump, MapLumps};
+use sightlines_progress::Units;
+
+pub(crate) const PHASE: &str = "maps";
+
+/// In proportion to the time that a map takes, roughly: with twice as many lines there are twice as many viewers, and each has more in its way.
+pub(crate) fn cost(wad: &Wad, map: &MapLumps) -> f64 {
+    let size = |lump: usize| wad.lump_bytes(lump).len() as f64;
+    // A line takes 14 bytes, and in a map that is a text some 300, with its sides and ends.
+    let n_lines = match map.lump(MapLump::Linedefs) {
+        Some(lines) => size(lines) / 14.0,
+        None => map.range().map(size).sum::<f64>() / 300.0,
+    };
+    1.0 + n_lines * n_lines
+}
+
+/// What comes first in a result.
+const KEPT: u8 = 0;
+const SKIPPED: u8 = 1;
+const FAILED: u8 = 2;
+const WRITTEN: u8 = 3;
+
+/// What was done with a map, from the store or now; `None` for one that is for another process.
+pub(crate) fn get(
+    units: Units<'_>,
+    unit: usize,
+    map: &MapLumps,
+    do_map: impl Fn() -> Result<Done, RejectError>,
+) -> Result<Option<Done>, RejectError> {
+    let Some(bytes) = units.get(PHASE, unit, || do_map().map(|done| encode(&done)))? else { return Ok(None) };
+    match bytes.first() {
+        // Why it failed is found out again: a map that cannot be done mostly fails at once.
+        Some(&FAILED) => do_map().map(Some),
+        _ => decode(&bytes).map(Some).ok_or_else(|| RejectError::Kept(map.name())),
+    }
+}
+
+fn encode((n_sectors, status, table): &Done) -> Vec<u8> {
+    let tag = match status {
+        MapStatus::KeptHandMade => KEPT,
+        MapStatus::SkippedUnsupported => SKIPPED,
+        MapStatus::Failed(_) => FAILED,
+        MapStatus::Written(_) => WRITTEN,
+    };
+    let mut bytes = vec![tag];
+    bytes.extend(n_sectors.to_le_bytes());
+    if let MapStatus::Written(did) = status {
+        let counts = [did.n_disputed_cells, did.n_lines_without_length, did.n_rounded_crossings, did.n_dropped_pieces];
+        let counts = [did.n_rejected, did.n_effects].into_iter().chain(counts.map(|n| n as u64));
+        counts.for_each(|n| bytes.extend(n.to_le_bytes()));
+        bytes.extend(table.iter().flatten());
+    }
+    bytes
+}
+
+fn decode(bytes: &[u8]) -> Option<Done> {
+    let (tag, rest) = bytes.split_first()?;
+    let (n_sectors, mut rest) = rest.split_first_chunk()?;
+    let n_sectors = u32::from_le_bytes(*n_sectors);
+    match *tag {
+        KEPT => Some((n_sectors, MapStatus::KeptHandMade, None)),
+        SKIPPED => Some((n_sectors, MapStatus::SkippedUnsupported, None)),
+        WRITTEN => {
+            let mut next = || {
+                let (number, later) = rest.split_first_chunk()?;
+                rest = later;
+                Some(u64::from_le_bytes(*number))
+            };
+            let [n_rejected, n_effects] = [next()?, next()?];
+            let mut count = || usize::try_from(next()?).ok();
+            let summary = RejectSummary {
+                n_rejected,
+                n_effects,
+                n_disputed_cells: count()?,
+                n_lines_without_length: count()?,
+                n_rounded_crossings: count()?,
+                n_dropped_pieces: count()?,
+            };
+            Some((n_sectors, MapStatus::Written(summary), Some(rest.to_vec())))
+        }
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn results_are_read_as_they_were_written() {
+        let summary = RejectSummary {
+            n_rejected: 1,
+            n_effects: 2,
+            n_disputed_cells: 3,
+            n_lines_without_length: 4,
+            n_rounded_crossings: 5,
+            n_dropped_pieces: 6,
+        };
+        for done in [
+            (7, MapStatus::KeptHandMade, None),
+            (0, MapStatus::SkippedUnsupported, None),
+            (3, MapStatus::Written(summary), Some(vec![1, 2])),
+            (0, MapStatus::Written(RejectSummary::default()), Some(Vec::new())),
+        ] {
+            let bytes = encode(&done);
+            assert_eq!(decode(&bytes), Some(done));
+            // Whatever is cut off, nothing panics.
+            (0..bytes.len()).for_each(|n| drop(decode(&bytes[..n])));
+        }
+        assert_eq!((decode(&[9, 0, 0, 0, 0]), decode(&[])), (None, None));
+    }
+}

@@ -1,0 +1,69 @@
+//! Who does shards.
+
+mod command;
+mod kubernetes;
+mod local;
+mod pool;
+mod slurm;
+
+pub(super) use command::Command;
+pub(super) use kubernetes::write_kubernetes;
+pub(super) use local::Local;
+pub(super) use slurm::Slurm;
+
+use super::Error;
+use crate::progress::Bar;
+use sightlines::checkpoint::Job;
+use sightlines::progress::{Observer, Progress};
+use std::path::Path;
+
+/// Shards of a phase that are to be done.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Round<'a> {
+    pub(super) job: &'a Job,
+    pub(super) phase: usize,
+    pub(super) shards: &'a [usize],
+}
+
+/// Who does shards.
+pub(super) trait Engine {
+    /// Has the shards of a round done, for the `attempt`th time, from 1 on. Returns once nobody is at them any more; those without a part have failed.
+    ///
+    /// # Errors
+    /// [`Error`] if nothing can be started at all.
+    fn run(&self, round: &Round<'_>, attempt: u32) -> Result<(), Error>;
+}
+
+/// Shows how much of a round is done, by cost.
+pub(super) struct Shown<'a> {
+    bar: Bar,
+    round: &'a Round<'a>,
+}
+
+impl<'a> Shown<'a> {
+    pub(super) fn new(round: &'a Round<'a>, show: bool) -> Self {
+        Self { bar: Bar::new("shards", show), round }
+    }
+
+    /// Shows which shards have a part. Returns how many have.
+    pub(super) fn update(&self) -> usize {
+        let Round { job, shards, .. } = self.round;
+        let (mut n_done, mut done, mut all) = (0, 0.0, 0.0);
+        for &shard in *shards {
+            let cost = job.shard(shard).map_or(0.0, |(_, plan)| plan.cost);
+            let is_done = job.part_path(shard).is_file();
+            all += cost;
+            done += if is_done { cost } else { 0.0 };
+            n_done += usize::from(is_done);
+        }
+        let progress = Progress::new("", n_done as u64, shards.len() as u64);
+        // Whether to end is asked elsewhere.
+        let _ = self.bar.report(if all > 0.0 { progress.with_share(done / all) } else { progress });
+        n_done
+    }
+}
+
+/// A path between quotes, for a shell.
+fn quoted(path: &Path) -> String {
+    format!("'{}'", path.display().to_string().replace('\'', "'\\''"))
+}

@@ -1,0 +1,82 @@
+//! `job merge`: the output, from all parts.
+
+use super::outcome::{Merged, Missing};
+use super::task::{Made, Task};
+use super::{Error, absolute, open};
+use crate::kept::{Identity, JobSlot, Keeping};
+use crate::output;
+use crate::{Answer, interrupt};
+use sightlines::checkpoint::{Job, JobStore, Outcome, Role};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// Arguments of `job merge`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct MergeArgs {
+    /// The folder of the job
+    #[arg(value_name = "JOB")]
+    job: PathBuf,
+    /// The file to write [default: the output of the command that was planned]
+    #[arg(short, long, value_name = "OUT")]
+    output: Option<PathBuf>,
+    /// Number of threads [default: as planned]
+    #[arg(long, value_name = "N", value_parser = crate::numbers::threads)]
+    threads: Option<usize>,
+    /// Print the result as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// How far a merge came.
+pub(super) enum Progress {
+    /// The output is written.
+    Written(Box<Made>, PathBuf),
+    /// The next phase is known, and its shards are to be done.
+    Planned(Job, usize),
+    /// Shards of a phase are not done.
+    Missing(Job, Missing),
+}
+
+/// Puts the parts of the job in a folder together, as far as there are any. Goes to the folder where the job was planned.
+pub(super) fn merge(
+    folder: &Path,
+    output: Option<&Path>,
+    threads: Option<usize>,
+    show_progress: bool,
+    verbose: bool,
+) -> Result<Progress, Error> {
+    let job = open(folder)?;
+    let task = Task::of(&job)?.with_threads(threads).with_output(output);
+    let slot = JobSlot::default();
+    let open = |identity: &Identity| {
+        slot.open(identity, || Ok(JobStore::new(job.clone(), Role::Merge, Duration::ZERO)?))
+    };
+    let made = task.make(Keeping::Job(&open), show_progress, verbose);
+    match slot.store().and_then(|store| Some((store.outcome()?, store.job()))) {
+        Some((Outcome::Planned { phase, .. }, job)) => Ok(Progress::Planned(job, phase)),
+        Some((Outcome::Missing { phase, shards }, job)) => {
+            let missing = Missing::new(&job, phase, shards);
+            Ok(Progress::Missing(job, missing))
+        }
+        _ if interrupt::requested() && made.is_err() => Err(Error::Interrupted),
+        _ => Ok(Progress::Written(Box::new(made?), task.output().to_owned())),
+    }
+}
+
+pub(crate) fn run(args: &MergeArgs, show_progress: bool, verbose: bool) -> Result<Answer, Error> {
+    let (folder, out) = (absolute(&args.job)?, args.output.as_deref().map(absolute).transpose()?);
+    let found = merge(&folder, out.as_deref(), args.threads, show_progress, verbose)?;
+    report(&args.job, found, args.json)
+}
+
+/// Prints how far a merge came.
+pub(super) fn report(job: &Path, found: Progress, json: bool) -> Result<Answer, Error> {
+    let name = job.display().to_string();
+    let (merged, answer) = match found {
+        Progress::Written(made, out) => (Merged::written(name, &out, *made), Answer::Yes),
+        Progress::Planned(job, phase) => (Merged::planned(name, &job, phase), Answer::Incomplete),
+        Progress::Missing(_, missing) => (Merged::missing(name, missing), Answer::Incomplete),
+    };
+    output::print(json, &merged)?;
+    Ok(answer)
+}

@@ -1,0 +1,64 @@
+//! `job`: a build that processes share, on one machine or on many.
+
+mod engine;
+mod error;
+mod merge;
+mod outcome;
+mod plan;
+mod shard;
+mod status;
+mod submit;
+mod task;
+
+pub(crate) use error::Error;
+
+use crate::Answer;
+use clap::Subcommand;
+use sightlines::checkpoint::Job;
+use std::path::{Path, PathBuf};
+
+/// Arguments of `job`.
+#[derive(Debug, clap::Args)]
+#[command(
+    after_help = "Exit codes: 0 done; 2 bad input or usage; 3 shards are to be done, first or again; 130 interrupted.\n\
+                        The folder of a job has to be one that all machines see under the same name."
+)]
+pub(crate) struct JobArgs {
+    #[command(subcommand)]
+    what: JobCommand,
+}
+
+/// What to do with a job.
+#[derive(Debug, Subcommand)]
+enum JobCommand {
+    /// Cut a build into shards of about the same cost: put `job plan -o JOB` before the command
+    Plan(plan::PlanArgs),
+    /// Do one shard, and write its part
+    Shard(shard::ShardArgs),
+    /// Put all parts together: writes what the command writes without a job, or plans the shards that come next
+    Merge(merge::MergeArgs),
+    /// Have all shards done and merged: by processes on this machine, by Slurm, or by a command of yours
+    Submit(submit::SubmitArgs),
+    /// Print what is done, missing and broken
+    Status(status::StatusArgs),
+}
+
+pub(crate) fn run(args: &JobArgs, show_progress: bool, verbose: bool) -> Result<Answer, Error> {
+    match &args.what {
+        JobCommand::Plan(args) => plan::run(args, show_progress),
+        JobCommand::Shard(args) => shard::run(args, show_progress),
+        JobCommand::Merge(args) => merge::run(args, show_progress, verbose),
+        JobCommand::Submit(args) => submit::run(args, show_progress, verbose),
+        JobCommand::Status(args) => status::run(args),
+    }
+}
+
+/// Opens a job that this version of the program has planned.
+fn open(folder: &Path) -> Result<Job, Error> {
+    Ok(Job::open(folder, crate::kept::PROGRAM)?)
+}
+
+/// The path of a folder that does not depend on where the program runs.
+fn absolute(path: &Path) -> Result<PathBuf, Error> {
+    std::path::absolute(path).map_err(|source| Error::Folder { path: path.to_owned(), source })
+}

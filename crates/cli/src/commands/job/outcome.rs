@@ -1,0 +1,285 @@
+//! What is printed about a job.
+
+use super::task::Made;
+use crate::output::{count, percent, seconds};
+use crate::progress::rough;
+use serde::Serialize;
+use sightlines::checkpoint::{Job, PhasePlan, ShardState};
+use std::fmt;
+use std::path::Path;
+use std::time::Duration;
+
+/// A phase of a job, and its shards.
+#[derive(Debug, Clone, Serialize)]
+pub(super) struct PhaseFacts {
+    phase: String,
+    n_units: usize,
+    /// Its shards are numbered from here.
+    first_shard: usize,
+    n_shards: usize,
+    /// The share of the phase's cost that its most costly shard has.
+    largest_share: f64,
+}
+
+impl PhaseFacts {
+    pub(super) fn new(job: &Job, phase: usize) -> Self {
+        let PhasePlan { name, n_units, shards } = &job.manifest().phases[phase];
+        let all: f64 = shards.iter().map(|shard| shard.cost).sum();
+        let largest = shards.iter().map(|shard| shard.cost).fold(0.0, f64::max);
+        Self {
+            phase: name.clone(),
+            n_units: *n_units,
+            first_shard: job.manifest().shards_of(phase).start,
+            n_shards: shards.len(),
+            largest_share: if all > 0.0 { largest / all } else { 0.0 },
+        }
+    }
+}
+
+impl fmt::Display for PhaseFacts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { phase, n_units, first_shard, n_shards, largest_share } = self;
+        let shards = ranges(&(*first_shard..first_shard + n_shards).collect::<Vec<_>>());
+        let units = count(*n_units as u64, "unit");
+        write!(f, "{shards}, of {units} of phase {phase}; the largest has {} of the cost", percent(*largest_share))
+    }
+}
+
+/// What was planned.
+#[derive(Debug, Serialize)]
+pub(super) struct Planned {
+    job: String,
+    /// None if the work has nothing that can be shared.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    phase: Option<PhaseFacts>,
+    /// What was written, if there was nothing to share.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    out: Option<String>,
+}
+
+impl Planned {
+    pub(super) fn new(name: String, job: &Job, phase: Option<usize>, out: Option<&Path>) -> Self {
+        let phase = phase.map(|phase| PhaseFacts::new(job, phase));
+        Self { job: name, phase, out: out.map(|out| out.display().to_string()) }
+    }
+}
+
+impl fmt::Display for Planned {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (&self.phase, &self.out) {
+            (Some(phase), _) => writeln!(f, "planned {}: {phase}", self.job),
+            (None, Some(out)) => writeln!(f, "wrote {out}: there was nothing to share"),
+            (None, None) => Ok(()),
+        }
+    }
+}
+
+/// What one shard gave.
+#[derive(Debug, Serialize)]
+pub(super) struct ShardDone {
+    pub(super) job: String,
+    pub(super) shard: usize,
+    pub(super) phase: String,
+    pub(super) begin: usize,
+    pub(super) end: usize,
+    pub(super) was_done: bool,
+    pub(super) seconds: f64,
+}
+
+impl fmt::Display for ShardDone {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { job, shard, phase, begin, end, was_done, seconds: time } = self;
+        let units = count((end - begin) as u64, "unit");
+        let how = match was_done {
+            true => "done already".to_owned(),
+            false => format!("in {}", seconds(Duration::try_from_secs_f64(*time).unwrap_or_default())),
+        };
+        writeln!(f, "shard {shard} of {job}: {units} of phase {phase}, {how}")
+    }
+}
+
+/// Shards of a phase that are not done.
+#[derive(Debug, Clone, Serialize)]
+pub(super) struct Missing {
+    phase: String,
+    /// Shards without a part, some perhaps begun.
+    missing: Vec<usize>,
+    /// Shards whose part cannot be used.
+    broken: Vec<Broken>,
+}
+
+/// A shard whose part cannot be used.
+#[derive(Debug, Clone, Serialize)]
+pub(super) struct Broken {
+    shard: usize,
+    reason: String,
+}
+
+impl Missing {
+    pub(super) fn new(job: &Job, phase: usize, shards: Vec<(usize, ShardState)>) -> Self {
+        let (mut missing, mut broken) = (Vec::new(), Vec::new());
+        for (shard, state) in shards {
+            match state {
+                ShardState::Broken(reason) => broken.push(Broken { shard, reason }),
+                ShardState::Missing | ShardState::Partial(_) => missing.push(shard),
+                ShardState::Done => {}
+            }
+        }
+        Self { phase: job.manifest().phases[phase].name.clone(), missing, broken }
+    }
+
+    /// All of them.
+    pub(super) fn shards(&self) -> Vec<usize> {
+        let mut all: Vec<usize> = self.missing.iter().copied().chain(self.broken.iter().map(|b| b.shard)).collect();
+        all.sort_unstable();
+        all
+    }
+}
+
+impl fmt::Display for Missing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if !self.missing.is_empty() {
+            writeln!(f, "missing        {}", ranges(&self.missing))?;
+        }
+        self.broken.iter().try_for_each(|Broken { shard, reason }| writeln!(f, "broken         shard {shard}: {reason}"))
+    }
+}
+
+/// How far a merge came.
+#[derive(Debug, Serialize)]
+pub(super) struct Merged {
+    job: String,
+    /// `written`, `planned` (another phase is to be done) or `missing` (shards are to be done).
+    status: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    out: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    next: Option<PhaseFacts>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    undone: Option<Missing>,
+    /// What the command itself prints.
+    #[serde(skip)]
+    made: Option<Made>,
+}
+
+impl Merged {
+    pub(super) fn written(job: String, out: &Path, made: Made) -> Self {
+        let out = Some(out.display().to_string());
+        Self { job, status: "written", out, next: None, undone: None, made: Some(made) }
+    }
+
+    pub(super) fn planned(name: String, job: &Job, phase: usize) -> Self {
+        let next = Some(PhaseFacts::new(job, phase));
+        Self { job: name, status: "planned", out: None, next, undone: None, made: None }
+    }
+
+    pub(super) fn missing(job: String, undone: Missing) -> Self {
+        Self { job, status: "missing", out: None, next: None, undone: Some(undone), made: None }
+    }
+}
+
+impl fmt::Display for Merged {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.made.iter().try_for_each(|made| write!(f, "{made}"))?;
+        self.next.iter().try_for_each(|phase| writeln!(f, "to be done next: {phase}"))?;
+        self.undone.iter().try_for_each(|missing| write!(f, "{missing}"))
+    }
+}
+
+/// What there is of a phase.
+#[derive(Debug, Serialize)]
+pub(super) struct PhaseStatus {
+    #[serde(flatten)]
+    pub(super) facts: PhaseFacts,
+    pub(super) n_done: usize,
+    /// The share of the phase's cost that is done.
+    pub(super) done_share: f64,
+    /// Shards without a part that were begun.
+    pub(super) begun: Vec<usize>,
+    #[serde(flatten)]
+    pub(super) undone: Undone,
+    /// The time left, if the rest takes as long as what was done since the phase was planned; null if unknown.
+    pub(super) seconds_left: Option<f64>,
+}
+
+/// The same as [`Missing`], without the name of the phase.
+#[derive(Debug, Serialize)]
+pub(super) struct Undone {
+    pub(super) missing: Vec<usize>,
+    pub(super) broken: Vec<Broken>,
+}
+
+impl From<Missing> for Undone {
+    fn from(Missing { missing, broken, .. }: Missing) -> Self {
+        Self { missing, broken }
+    }
+}
+
+/// What there is of a job.
+#[derive(Debug, Serialize)]
+pub(super) struct Status {
+    pub(super) job: String,
+    pub(super) command: Vec<String>,
+    pub(super) phases: Vec<PhaseStatus>,
+}
+
+impl fmt::Display for Status {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "job            {}: {}", self.job, self.command.join(" "))?;
+        for phase in &self.phases {
+            let PhaseStatus { facts, n_done, done_share, begun, undone, seconds_left } = phase;
+            writeln!(f, "phase {:<9} {n_done} of {} done, {} of the cost", facts.phase, count(facts.n_shards as u64, "shard"), percent(*done_share))?;
+            if let Some(left) = seconds_left.and_then(|left| Duration::try_from_secs_f64(left).ok()) {
+                writeln!(f, "               about {} left, at the pace since it was planned", rough(left))?;
+            }
+            if !undone.missing.is_empty() {
+                writeln!(f, "missing        {}", ranges(&undone.missing))?;
+            }
+            if !begun.is_empty() {
+                writeln!(f, "begun          {}", ranges(begun))?;
+            }
+            for Broken { shard, reason } in &undone.broken {
+                writeln!(f, "broken         shard {shard}: {reason}")?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What `job submit --dry-run` has written.
+#[derive(Debug, Serialize)]
+pub(super) struct Submitted {
+    pub(super) job: String,
+    pub(super) files: Vec<String>,
+}
+
+impl fmt::Display for Submitted {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.files.iter().try_for_each(|file| writeln!(f, "wrote {file}"))
+    }
+}
+
+/// Numbers of shards in words: `shards 0 to 3, 7`.
+pub(super) fn ranges(shards: &[usize]) -> String {
+    let mut runs: Vec<[usize; 2]> = Vec::new();
+    for &shard in shards {
+        match runs.last_mut() {
+            Some([_, last]) if *last + 1 == shard => *last = shard,
+            _ => runs.push([shard, shard]),
+        }
+    }
+    let run = |&[first, last]: &[usize; 2]| if first == last { format!("{first}") } else { format!("{first} to {last}") };
+    let noun = if shards.len() == 1 { "shard" } else { "shards" };
+    format!("{noun} {}", runs.iter().map(run).collect::<Vec<_>>().join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_are_in_words() {
+        let texts = [&[3][..], &[0, 1, 2], &[0, 2, 3, 9]].map(ranges);
+        assert_eq!(texts, ["shard 3", "shards 0 to 2", "shards 0, 2 to 3, 9"]);
+    }
+}

@@ -1,0 +1,69 @@
+//! `job plan`: which shards a build has.
+
+use super::outcome::Planned;
+use super::task::Task;
+use super::{Error, absolute};
+use crate::Answer;
+use crate::kept::{Identity, JobSlot, Keeping, PROGRAM};
+use crate::output;
+use sightlines::checkpoint::{Job, JobStore, Manifest, Outcome, Role};
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// Shards of a phase, unless the number is given: 8 for each of eight workers, so that nobody waits long for the last one.
+const SHARDS: usize = 64;
+
+/// Arguments of `job plan`.
+#[derive(Debug, clap::Args)]
+#[command(override_usage = "sightlines job plan [OPTIONS] -o JOB build|vis|reject IN [OPTIONS OF THE COMMAND]...")]
+pub(crate) struct PlanArgs {
+    /// The folder of the job, which is made
+    #[arg(short, long, value_name = "JOB")]
+    output: PathBuf,
+    /// Shards that each phase of the work is cut into, at most; 8 to 32 for each worker let all end at about the same time
+    #[arg(long, value_name = "N", default_value_t = SHARDS, value_parser = shards)]
+    shards: usize,
+    /// Print the result as JSON
+    #[arg(long)]
+    json: bool,
+    /// The command, as it is without a job: what it writes, `job merge` writes
+    #[arg(value_name = "COMMAND", trailing_var_arg = true, allow_hyphen_values = true, required = true)]
+    command: Vec<String>,
+}
+
+fn shards(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(n @ 1..=100_000) => Ok(n),
+        _ => Err("not a number from 1 to 100000".to_owned()),
+    }
+}
+
+pub(crate) fn run(args: &PlanArgs, show_progress: bool) -> Result<Answer, Error> {
+    let task = Task::parse(&args.command)?;
+    let here = absolute(std::path::Path::new("."))?;
+    let folder = absolute(&args.output)?;
+    let slot = JobSlot::default();
+    let open = |identity: &Identity| {
+        slot.open(identity, || {
+            let here = here.display().to_string();
+            let mut manifest = Manifest::new(PROGRAM, identity.key(), args.command.clone(), here, args.shards);
+            manifest.inputs.clone_from(&identity.inputs);
+            let job = Job::create(&folder, manifest)?;
+            Ok(JobStore::new(job, Role::Merge, Duration::ZERO)?)
+        })
+    };
+    let made = task.make(Keeping::Job(&open), show_progress, false);
+    let job = args.output.display().to_string();
+    let planned = match (slot.store().and_then(JobStore::outcome), slot.store()) {
+        (Some(Outcome::Planned { phase, .. } | Outcome::Missing { phase, .. }), Some(store)) => {
+            Planned::new(job, &store.job(), Some(phase), None)
+        }
+        (_, Some(store)) => {
+            made?;
+            Planned::new(job, &store.job(), None, Some(task.output()))
+        }
+        (_, None) => return made.map(|_| Answer::Yes),
+    };
+    output::print(args.json, &planned)?;
+    Ok(Answer::Yes)
+}

@@ -1,0 +1,174 @@
+//! `job submit`: has all shards done, round by round, and merges them.
+
+use super::engine::{Command, Engine, Local, Round, Slurm, write_kubernetes};
+use super::merge::{Progress, merge, report};
+use super::outcome::{Missing, Submitted};
+use super::{Error, absolute, open};
+use crate::Answer;
+use crate::interrupt;
+use crate::named::one_of;
+use crate::output;
+use sightlines::checkpoint::{Job, ShardState};
+use std::path::{Path, PathBuf};
+
+/// Who does shards.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Local,
+    Slurm,
+    Command,
+}
+
+impl Kind {
+    const ALL: [Self; 3] = [Self::Local, Self::Slurm, Self::Command];
+
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Local => "local",
+            Self::Slurm => "slurm",
+            Self::Command => "command",
+        }
+    }
+
+    const fn about(self) -> &'static str {
+        match self {
+            Self::Local => "Processes on this machine",
+            Self::Slurm => "An array job of Slurm for the shards, and a job that merges behind it",
+            Self::Command => "A command of yours for each shard",
+        }
+    }
+}
+
+/// Arguments of `job submit`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct SubmitArgs {
+    /// The folder of the job
+    #[arg(value_name = "JOB")]
+    job: PathBuf,
+    /// Who does the shards
+    #[arg(long, value_name = "WHO", default_value = "local", value_parser = one_of(&Kind::ALL, Kind::name, Kind::about))]
+    engine: Kind,
+    /// local, command: shards that are done at once [default: as many as there are cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
+    workers: Option<u32>,
+    /// command: what a shell runs for a shard; {shard} stands for its number, {job} for the folder of the job, {program} for this program. It
+    /// ends when the shard is done: 'ssh node2 {program} job shard {job} {shard}'
+    #[arg(long, value_name = "TEMPLATE", required_if_eq("engine", "command"))]
+    command: Option<String>,
+    /// slurm: an option for sbatch, such as --sbatch=--partition=long; may be given several times
+    #[arg(long, value_name = "OPTION", allow_hyphen_values = true)]
+    sbatch: Vec<String>,
+    /// How often a shard that failed is tried again
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(0..=100))]
+    retries: u32,
+    /// Write scripts for Slurm and a manifest for Kubernetes into the folder of the job, and start nothing
+    #[arg(long)]
+    dry_run: bool,
+    /// The file to write [default: the output of the command that was planned]
+    #[arg(short, long, value_name = "OUT")]
+    output: Option<PathBuf>,
+    /// Print the result as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn run(args: &SubmitArgs, show_progress: bool, verbose: bool) -> Result<Answer, Error> {
+    let (folder, out) = (absolute(&args.job)?, args.output.as_deref().map(absolute).transpose()?);
+    let program = std::env::current_exe().map_err(|source| Error::Folder { path: folder.clone(), source })?;
+    let job = open(&folder)?;
+    let slurm = Slurm { program: &program, options: &args.sbatch, output: out.as_deref(), show_progress };
+    if args.dry_run {
+        let Some(phase) = job.manifest().phases.len().checked_sub(1) else {
+            return Err(Error::Command(format!("{}: the job has no shards", args.job.display())));
+        };
+        let shards: Vec<usize> = job.manifest().shards_of(phase).collect();
+        let mut files = slurm.write(&Round { job: &job, phase, shards: &shards }, 0)?;
+        files.push(write_kubernetes(&job, phase)?);
+        let files = files.iter().map(|file| file.display().to_string()).collect();
+        output::print(args.json, &Submitted { job: args.job.display().to_string(), files })?;
+        return Ok(Answer::Yes);
+    }
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let workers = args.workers.map_or(cores, |n| n as usize);
+    let engine: Box<dyn Engine + '_> = match (args.engine, &args.command) {
+        (Kind::Slurm, _) => Box::new(slurm),
+        (Kind::Command, Some(template)) => {
+            Box::new(Command { program: &program, template, workers, show_progress })
+        }
+        _ => Box::new(Local { program: &program, workers, show_progress }),
+    };
+    let mut tries = Tries { phase: None, n: 0 };
+    let found = loop {
+        let job = open(&folder)?;
+        // Parts of earlier tries count.
+        if let Some(round) = undone(&job)? {
+            if tries.count(round.0) > args.retries + 1 {
+                let missing = Missing::new(&job, round.0, states(&job, &round.1)?);
+                break Progress::Missing(job, missing);
+            }
+            engine.run(&Round { job: &job, phase: round.0, shards: &round.1 }, tries.n)?;
+        }
+        if interrupt::requested() {
+            return Err(Error::Interrupted);
+        }
+        if undone(&open(&folder)?)?.is_some() {
+            continue;
+        }
+        match merge(&folder, out.as_deref(), None, show_progress, verbose)? {
+            Progress::Planned(..) => {}
+            // Broken parts, which look like parts: they are removed so that they are done again.
+            Progress::Missing(job, missing) => {
+                remove(&job, &missing);
+                if tries.n > args.retries {
+                    break Progress::Missing(job, missing);
+                }
+            }
+            written => break written,
+        }
+    };
+    report(&args.job, found, args.json)
+}
+
+/// How often the shards of a phase were tried.
+struct Tries {
+    phase: Option<usize>,
+    n: u32,
+}
+
+impl Tries {
+    /// Counts a try, and returns how many there were of this phase.
+    fn count(&mut self, phase: usize) -> u32 {
+        if self.phase.replace(phase) != Some(phase) {
+            self.n = 0;
+        }
+        self.n += 1;
+        self.n
+    }
+}
+
+/// The first phase with shards that have no sound part, and these shards.
+fn undone(job: &Job) -> Result<Option<(usize, Vec<usize>)>, Error> {
+    for phase in 0..job.manifest().phases.len() {
+        let mut shards = Vec::new();
+        for shard in job.manifest().shards_of(phase) {
+            if job.state(shard)? != ShardState::Done {
+                shards.push(shard);
+            }
+        }
+        if !shards.is_empty() {
+            return Ok(Some((phase, shards)));
+        }
+    }
+    Ok(None)
+}
+
+fn states(job: &Job, shards: &[usize]) -> Result<Vec<(usize, ShardState)>, Error> {
+    shards.iter().map(|&shard| Ok((shard, job.state(shard)?))).collect()
+}
+
+fn remove(job: &Job, missing: &Missing) {
+    for path in missing.shards().iter().map(|&shard| job.part_path(shard)) {
+        // If it cannot be removed, it is found to be broken again.
+        let _: Result<(), _> = std::fs::remove_file::<&Path>(&path);
+    }
+}

@@ -1,0 +1,129 @@
+//! The command that a job shares.
+
+use super::Error;
+use crate::args::{Arguments, Command};
+use crate::commands::{build, reject, vis};
+use crate::kept::{Keeping, KeptError};
+use clap::Parser;
+use sightlines::checkpoint::Job;
+use std::fmt;
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+/// The command that a job shares, with its arguments.
+#[derive(Debug)]
+pub(super) enum Task {
+    Build(Box<build::BuildArgs>),
+    Reject(reject::RejectArgs),
+    Vis(vis::VisArgs),
+}
+
+/// What a task has written.
+#[derive(Debug)]
+pub(super) enum Made {
+    Build(Box<build::Built>),
+    Reject(reject::Outcome),
+    Vis(vis::Outcome),
+}
+
+impl fmt::Display for Made {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Build(outcome) => outcome.fmt(f),
+            Self::Reject(outcome) => outcome.fmt(f),
+            Self::Vis(outcome) => outcome.fmt(f),
+        }
+    }
+}
+
+impl Task {
+    /// The command in words of a command line behind the name of the program. Refuses what cannot be shared.
+    pub(super) fn parse(words: &[String]) -> Result<Self, Error> {
+        let line = std::iter::once("sightlines").chain(words.iter().map(String::as_str));
+        let parsed = Arguments::try_parse_from(line).map_err(|error| Error::Command(plain(&error)))?;
+        let refuse = |option: &str| Err(Error::Command(format!("{option} means nothing for a job")));
+        match parsed.command {
+            Command::Build(args) if args.time_limit.is_some() => refuse("--time-limit"),
+            Command::Build(args) if args.resume.is_given() => refuse("--resume or --state"),
+            Command::Reject(args) if args.resume.is_given() => refuse("--resume or --state"),
+            Command::Vis(args) if args.resume => refuse("--resume"),
+            Command::Build(args) => Ok(Self::Build(Box::new(args))),
+            Command::Reject(args) => Ok(Self::Reject(args)),
+            Command::Vis(args) => Ok(Self::Vis(args)),
+            _ => Err(Error::Command(format!(
+                "{}: only build, vis and reject can be shared",
+                words.first().map_or("", String::as_str)
+            ))),
+        }
+    }
+
+    /// The command of a job. From here on the program runs in the folder where the job was planned.
+    ///
+    /// Refuses files that have changed since.
+    pub(super) fn of(job: &Job) -> Result<Self, Error> {
+        let manifest = job.manifest();
+        let folder = PathBuf::from(&manifest.folder);
+        std::env::set_current_dir(&folder).map_err(|source| Error::Folder { path: folder, source })?;
+        for input in &manifest.inputs {
+            let path = Path::new(&input.path);
+            let n_bytes = File::open(path).and_then(|file| file.metadata()).map(|found| found.len());
+            let n_bytes = n_bytes.map_err(|source| Error::Folder { path: path.to_owned(), source })?;
+            let mut hasher = sightlines::checkpoint::KeyHasher::new("");
+            let is_same = n_bytes == input.n_bytes
+                && hasher.file("", path).is_ok_and(|(_, key)| key.to_string() == input.key);
+            if !is_same {
+                let job = job.folder().to_owned();
+                return Err(KeptError::OtherInput { path: path.to_owned(), job }.into());
+            }
+        }
+        Self::parse(&manifest.command)
+    }
+
+    /// The same with another number of threads.
+    pub(super) fn with_threads(mut self, threads: Option<usize>) -> Self {
+        let own = match &mut self {
+            Self::Build(args) => &mut args.bake.threads,
+            Self::Reject(args) => &mut args.threads,
+            Self::Vis(args) => &mut args.threads,
+        };
+        *own = threads.unwrap_or(*own);
+        self
+    }
+
+    /// The same with another output.
+    pub(super) fn with_output(mut self, output: Option<&Path>) -> Self {
+        if let Some(output) = output {
+            match &mut self {
+                Self::Build(args) => args.output = output.to_owned(),
+                Self::Reject(args) => args.output = output.to_owned(),
+                Self::Vis(args) => args.output = Some(output.to_owned()),
+            }
+        }
+        self
+    }
+
+    /// What it writes.
+    pub(super) fn output(&self) -> &Path {
+        match self {
+            Self::Build(args) => &args.output,
+            Self::Reject(args) => &args.output,
+            Self::Vis(args) => args.output.as_ref().unwrap_or(&args.map),
+        }
+    }
+
+    /// Does it, with units in a store.
+    pub(super) fn make(&self, keeping: Keeping<'_>, show_progress: bool, verbose: bool) -> Result<Made, Error> {
+        Ok(match self {
+            Self::Build(args) => Made::Build(Box::new(build::make(args, keeping, show_progress, verbose)?)),
+            Self::Reject(args) => Made::Reject(reject::make(args, keeping, show_progress)?),
+            Self::Vis(args) => Made::Vis(vis::make(args, keeping, show_progress)?),
+        })
+    }
+}
+
+/// An error of arguments without colours, `error:` and usage.
+fn plain(error: &clap::Error) -> String {
+    let text = error.to_string();
+    let text = text.strip_prefix("error: ").unwrap_or(&text);
+    format!("the command of the job: {}", text.lines().next().unwrap_or_default())
+}
