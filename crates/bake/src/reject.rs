@@ -201,7 +201,11 @@ pub fn reject_wad(wad: &Wad, options: &RejectOptions<'_>) -> Result<RejectOutcom
             Err(error) => Ok((0, MapStatus::Failed(Box::new(error)), None)),
             Ok(done) => Ok(done),
         };
-        let done = if options.units.are_kept() { reject_units::get(options.units, unit, map, do_map)? } else { Some(do_map()?) };
+        let done = if options.units.are_kept() {
+            reject_units::get(options.units, unit, map, do_map)?
+        } else {
+            Some(do_map()?)
+        };
         // A map that is for another process.
         let Some((n_sectors, status, bytes)) = done else { continue };
         n_bytes += bytes.as_ref().map_or(0, |b| b.len() as u64);

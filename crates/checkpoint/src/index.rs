@@ -24,7 +24,9 @@ impl Results {
     /// # Errors
     /// [`StateError`] for a file of another owner, or of none.
     pub(crate) fn of(path: &Path, file: File, owner: &Owner) -> Result<Option<Self>, StateError> {
-        let Some(Scan { owner: found, records, end, is_finished, is_torn }) = scan(path, &file)? else { return Ok(None) };
+        let Some(Scan { owner: found, records, end, is_finished, is_torn }) = scan(path, &file)? else {
+            return Ok(None);
+        };
         if found.program != owner.program {
             let (found, expected) = (found.program, owner.program.clone());
             return Err(StateError::OtherProgram { path: path.to_owned(), found, expected });

@@ -154,6 +154,8 @@ mod tests {
             values.iter().for_each(|value| hasher.debug("options", *value));
             hasher.finish()
         };
-        assert!(of(&[&0.1]) != of(&[&(0.1_f64.next_up())]) && of(&[&[1], &[2]]) != of(&[&[1, 2]]) && of(&[&1]) == of(&[&1]));
+        assert!(
+            of(&[&0.1]) != of(&[&(0.1_f64.next_up())]) && of(&[&[1], &[2]]) != of(&[&[1, 2]]) && of(&[&1]) == of(&[&1])
+        );
     }
 }

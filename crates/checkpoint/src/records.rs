@@ -84,7 +84,8 @@ pub(crate) fn scan(path: &Path, file: &File) -> Result<Option<Scan>, StateError>
     if n_bytes == 0 {
         return Ok(None);
     }
-    let (owner, mut end) = read_header(&mut reader).map_err(failed)?.ok_or_else(|| StateError::NotState(path.to_owned()))?;
+    let (owner, mut end) =
+        read_header(&mut reader).map_err(failed)?.ok_or_else(|| StateError::NotState(path.to_owned()))?;
     let (mut records, mut is_finished) = (Vec::new(), false);
     while let Some((phase, unit, n)) = read_record(&mut reader, n_bytes.saturating_sub(end)).map_err(failed)? {
         if phase.is_empty() {

@@ -32,7 +32,10 @@ pub(crate) fn watch() -> Watch {
                 std::process::exit(i32::from(EXIT_CODE));
             }
             // Nothing is left to do if standard error is closed.
-            let _ = writeln!(std::io::stderr(), "interrupted: ending as soon as it can go on later; once more ends at once");
+            let _ = writeln!(
+                std::io::stderr(),
+                "interrupted: ending as soon as it can go on later; once more ends at once"
+            );
         });
         if let Err(error) = set {
             tracing::debug!("Ctrl-C ends the program at once: {error}");

@@ -32,10 +32,10 @@ pub mod scene;
 pub mod view_cells;
 pub mod wad;
 
+pub use debris::process_mark;
 pub use doom::{DoomError, DoomMap, MapLumps};
 pub use dxf::DxfError;
 pub use error::{ReadError, ReadErrorKind};
-pub use debris::process_mark;
 pub use files::{WriteError, atomic_write};
 pub use geojson::GeoJsonError;
 pub use input::{Input, InputKind, Source, detect_file, read_input};

@@ -20,10 +20,10 @@ pub use sightlines_bsp as bsp;
 pub use sightlines_cells as cells;
 #[cfg(feature = "certificates")]
 pub use sightlines_certificates as certificates;
-#[cfg(feature = "exact")]
-pub use sightlines_exact as exact;
 #[cfg(feature = "checkpoint")]
 pub use sightlines_checkpoint as checkpoint;
+#[cfg(feature = "exact")]
+pub use sightlines_exact as exact;
 #[cfg(feature = "eye-to-cell")]
 pub use sightlines_eye_to_cell as eye_to_cell;
 #[cfg(feature = "formats")]

@@ -130,7 +130,8 @@ impl Job {
     pub fn open(folder: &Path, program: &str) -> Result<Self, JobError> {
         let path = folder.join(MANIFEST);
         let text = fs::read(&path).map_err(|source| JobError::Read { path: path.clone(), source })?;
-        let (manifest, key) = Manifest::parse(&text).map_err(|source| JobError::Manifest { path: path.clone(), source })?;
+        let (manifest, key) =
+            Manifest::parse(&text).map_err(|source| JobError::Manifest { path: path.clone(), source })?;
         if manifest.program != program {
             let (found, expected) = (manifest.program, program.to_owned());
             return Err(JobError::OtherProgram { path, found, expected });

@@ -86,7 +86,11 @@ fn manifests_are_refused_by_place() {
         ("\"sightlines-job\"", "\"other\"", "this is no manifest of a job"),
         ("\"version\": 1", "\"version\": 9", "version 9 of the manifest is not supported"),
         ("\"pairs\"", "\"Pairs\"", "phase 0: the name is not of small letters and hyphens, or another phase has it"),
-        ("\"begin\": 0", "\"begin\": 1", "phase 0: shard 0 does not begin where the one before it ends, or its cost is no number"),
+        (
+            "\"begin\": 0",
+            "\"begin\": 1",
+            "phase 0: shard 0 does not begin where the one before it ends, or its cost is no number",
+        ),
         ("\"n_units\": 6", "\"n_units\": 7", "phase 0: the shards do not end with the last unit"),
         ("\"key\": \"", "\"key\": \"0", "key: not 32 hexadecimal digits"),
     ] {

@@ -10,7 +10,10 @@ use std::sync::LazyLock;
 use std::time::Duration;
 
 pub(crate) fn plan(folder: &Path, of: &str, max_shards: usize) -> Result<Job, JobError> {
-    Job::create(folder, Manifest::new(PROGRAM, key(of), vec!["bake".to_owned(), of.to_owned()], "/".to_owned(), max_shards))
+    Job::create(
+        folder,
+        Manifest::new(PROGRAM, key(of), vec!["bake".to_owned(), of.to_owned()], "/".to_owned(), max_shards),
+    )
 }
 
 /// Goes through a bake as a role; its answer, or how far it came.
@@ -159,12 +162,18 @@ fn other_inputs_and_programs_are_refused() {
     assert_eq!(plan(&folder, "a", 3).unwrap(), job);
     assert!(matches!(plan(&folder, "b", 3), Err(JobError::OtherJob(_))));
     let error = Job::open(&folder, "2.0").unwrap_err().to_string();
-    assert!(error.ends_with("job.json: planned by version 1.0 of the program, and this is 2.0; plan it anew"), "{error}");
+    assert!(
+        error.ends_with("job.json: planned by version 1.0 of the program, and this is 2.0; plan it anew"),
+        "{error}"
+    );
     // A bake with other units than were planned.
     let store = JobStore::new(job.clone(), Role::Shard(1), Duration::ZERO).unwrap();
     let Err(Halt::Store(text)) = toy([7, 4]).bake(Some(&store)) else { panic!("it went on") };
     assert!(text.starts_with("the job was planned with 6 units of phase pairs, and there are 7"), "{text}");
-    assert!(matches!(JobStore::new(job, Role::Shard(3), Duration::ZERO), Err(JobError::NoShard { shard: 3, n: 3, .. })));
+    assert!(matches!(
+        JobStore::new(job, Role::Shard(3), Duration::ZERO),
+        Err(JobError::NoShard { shard: 3, n: 3, .. })
+    ));
     let stranger = JobStore::new(Job::open(&folder, PROGRAM).unwrap(), Role::Merge, Duration::ZERO).unwrap();
     assert!(!stranger.wants("pairs", 0) && stranger.save("pairs", 0, b"").is_err());
 }

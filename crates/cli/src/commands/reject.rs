@@ -54,11 +54,11 @@ pub(crate) struct RejectArgs {
     /// Number of threads; 0 uses every core
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::numbers::threads)]
     pub(crate) threads: usize,
+    #[command(flatten)]
+    pub(crate) resume: ResumeArgs,
     /// The WAD to write; may be the input
     #[arg(short, long, help_heading = "Output", value_name = "OUT.wad")]
     pub(crate) output: PathBuf,
-    #[command(flatten)]
-    pub(crate) resume: ResumeArgs,
     /// Print the result as JSON
     #[arg(long, help_heading = "Output")]
     json: bool,

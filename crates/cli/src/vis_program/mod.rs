@@ -10,8 +10,8 @@ mod hearing;
 mod priority;
 
 use crate::Answer;
-use crate::kept::Keeping;
 use crate::commands::vis::{Beginning, Manner, Sound, StateUse, VisArgs, compute};
+use crate::kept::Keeping;
 use crate::map_portals::MADE;
 use crate::output::{bytes, count};
 use arguments::VisProgramArgs;

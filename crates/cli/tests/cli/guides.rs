@@ -220,6 +220,14 @@ fn the_guide_for_quake_works() {
 }
 
 #[test]
+fn the_guide_for_clusters_works() {
+    let folder = Folder::new();
+    assert_eq!(follow(&folder, "when-one-machine-is-not-enough.md"), 10);
+    assert!(folder.read("tower.pvs") == folder.read("whole.pvs"));
+    assert!(!folder.path("tower.pvs.state").exists());
+}
+
+#[test]
 fn the_guide_for_doom_works() {
     assert!(follow(&Folder::with_wad(), "doom.md") >= 5);
 }

@@ -75,6 +75,8 @@ pub(crate) struct BuildArgs {
     /// the portals that lie wholly within the closed box. In a plan NAME=X0,Y0,X1,Y1. Names may repeat; scenes may have doors of their own
     #[arg(long = "door", help_heading = "Input", value_name = "NAME=X0,Y0,Z0,X1,Y1,Z1", allow_hyphen_values = true)]
     doors: Vec<DoorBox>,
+    #[command(flatten)]
+    pub(crate) resume: ResumeArgs,
     /// The table to write
     #[arg(short, long, help_heading = "Output", value_name = "OUT.pvs")]
     pub(crate) output: PathBuf,
@@ -87,8 +89,6 @@ pub(crate) struct BuildArgs {
     stab_trees: Option<Option<u32>>,
     #[command(flatten, next_help_heading = "Output")]
     certify: certify::CertifyArgs,
-    #[command(flatten)]
-    pub(crate) resume: ResumeArgs,
     /// Print the result as JSON
     #[arg(long, help_heading = "Output")]
     json: bool,
@@ -103,12 +103,7 @@ pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Resul
 }
 
 /// Reads, bakes and writes. Prints nothing but progress and warnings.
-pub(crate) fn make(
-    args: &BuildArgs,
-    keeping: Keeping<'_>,
-    show_progress: bool,
-    verbose: bool,
-) -> Result<Built, Error> {
+pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, verbose: bool) -> Result<Built, Error> {
     let BuildArgs { input: path, output: out, .. } = args;
     let clock = limit::Clock::new(args.time_limit);
     if out.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) {
@@ -181,7 +176,8 @@ impl BuildArgs {
         source.identify(&self.input, &mut identity)?;
         identity.debug("reading", &(&self.map, &self.surfaces, &self.plans));
         // What changes nothing but the time is left out, and the address of a function with `buffers.warn`.
-        let BakeOptions { subdivide, cut, chords, gap, frame, digest, portals, method, cells, split, fast, .. } = options;
+        let BakeOptions { subdivide, cut, chords, gap, frame, digest, portals, method, cells, split, fast, .. } =
+            options;
         let BakeOptions { buffers, threads: _, progress: _, budget: _, units: _, .. } = options;
         identity.debug("cells", &(subdivide, cut, gap, frame, digest, cells));
         identity.debug("method", &(chords, portals, method, split, fast));

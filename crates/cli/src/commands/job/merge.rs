@@ -17,13 +17,13 @@ pub(crate) struct MergeArgs {
     #[arg(value_name = "JOB")]
     job: PathBuf,
     /// The file to write [default: the output of the command that was planned]
-    #[arg(short, long, value_name = "OUT")]
+    #[arg(short, long, help_heading = "Output", value_name = "OUT")]
     output: Option<PathBuf>,
     /// Number of threads [default: as planned]
-    #[arg(long, value_name = "N", value_parser = crate::numbers::threads)]
+    #[arg(long, help_heading = "Method", value_name = "N", value_parser = crate::numbers::threads)]
     threads: Option<usize>,
     /// Print the result as JSON
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     json: bool,
 }
 
@@ -31,6 +31,8 @@ pub(crate) struct MergeArgs {
 pub(super) enum Progress {
     /// The output is written.
     Written(Box<Made>, PathBuf),
+    /// The output is written by another process.
+    Elsewhere(PathBuf),
     /// The next phase is known, and its shards are to be done.
     Planned(Job, usize),
     /// Shards of a phase are not done.
@@ -48,9 +50,8 @@ pub(super) fn merge(
     let job = open(folder)?;
     let task = Task::of(&job)?.with_threads(threads).with_output(output);
     let slot = JobSlot::default();
-    let open = |identity: &Identity| {
-        slot.open(identity, || Ok(JobStore::new(job.clone(), Role::Merge, Duration::ZERO)?))
-    };
+    let open =
+        |identity: &Identity| slot.open(identity, || Ok(JobStore::new(job.clone(), Role::Merge, Duration::ZERO)?));
     let made = task.make(Keeping::Job(&open), show_progress, verbose);
     match slot.store().and_then(|store| Some((store.outcome()?, store.job()))) {
         Some((Outcome::Planned { phase, .. }, job)) => Ok(Progress::Planned(job, phase)),
@@ -73,7 +74,8 @@ pub(crate) fn run(args: &MergeArgs, show_progress: bool, verbose: bool) -> Resul
 pub(super) fn report(job: &Path, found: Progress, json: bool) -> Result<Answer, Error> {
     let name = job.display().to_string();
     let (merged, answer) = match found {
-        Progress::Written(made, out) => (Merged::written(name, &out, *made), Answer::Yes),
+        Progress::Written(made, out) => (Merged::written(name, &out, Some(*made)), Answer::Yes),
+        Progress::Elsewhere(out) => (Merged::written(name, &out, None), Answer::Yes),
         Progress::Planned(job, phase) => (Merged::planned(name, &job, phase), Answer::Incomplete),
         Progress::Missing(_, missing) => (Merged::missing(name, missing), Answer::Incomplete),
     };

@@ -141,7 +141,9 @@ impl fmt::Display for Missing {
         if !self.missing.is_empty() {
             writeln!(f, "missing        {}", ranges(&self.missing))?;
         }
-        self.broken.iter().try_for_each(|Broken { shard, reason }| writeln!(f, "broken         shard {shard}: {reason}"))
+        self.broken
+            .iter()
+            .try_for_each(|Broken { shard, reason }| writeln!(f, "broken         shard {shard}: {reason}"))
     }
 }
 
@@ -163,9 +165,9 @@ pub(super) struct Merged {
 }
 
 impl Merged {
-    pub(super) fn written(job: String, out: &Path, made: Made) -> Self {
+    pub(super) fn written(job: String, out: &Path, made: Option<Made>) -> Self {
         let out = Some(out.display().to_string());
-        Self { job, status: "written", out, next: None, undone: None, made: Some(made) }
+        Self { job, status: "written", out, next: None, undone: None, made }
     }
 
     pub(super) fn planned(name: String, job: &Job, phase: usize) -> Self {
@@ -180,7 +182,11 @@ impl Merged {
 
 impl fmt::Display for Merged {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.made.iter().try_for_each(|made| write!(f, "{made}"))?;
+        match (&self.made, &self.out) {
+            (Some(made), _) => write!(f, "{made}")?,
+            (None, Some(out)) => writeln!(f, "wrote {out}")?,
+            (None, None) => {}
+        }
         self.next.iter().try_for_each(|phase| writeln!(f, "to be done next: {phase}"))?;
         self.undone.iter().try_for_each(|missing| write!(f, "{missing}"))
     }
@@ -228,7 +234,13 @@ impl fmt::Display for Status {
         writeln!(f, "job            {}: {}", self.job, self.command.join(" "))?;
         for phase in &self.phases {
             let PhaseStatus { facts, n_done, done_share, begun, undone, seconds_left } = phase;
-            writeln!(f, "phase {:<9} {n_done} of {} done, {} of the cost", facts.phase, count(facts.n_shards as u64, "shard"), percent(*done_share))?;
+            writeln!(
+                f,
+                "phase {:<9} {n_done} of {} done, {} of the cost",
+                facts.phase,
+                count(facts.n_shards as u64, "shard"),
+                percent(*done_share)
+            )?;
             if let Some(left) = seconds_left.and_then(|left| Duration::try_from_secs_f64(left).ok()) {
                 writeln!(f, "               about {} left, at the pace since it was planned", rough(left))?;
             }
@@ -268,7 +280,8 @@ pub(super) fn ranges(shards: &[usize]) -> String {
             _ => runs.push([shard, shard]),
         }
     }
-    let run = |&[first, last]: &[usize; 2]| if first == last { format!("{first}") } else { format!("{first} to {last}") };
+    let run =
+        |&[first, last]: &[usize; 2]| if first == last { format!("{first}") } else { format!("{first} to {last}") };
     let noun = if shards.len() == 1 { "shard" } else { "shards" };
     format!("{noun} {}", runs.iter().map(run).collect::<Vec<_>>().join(", "))
 }

@@ -18,13 +18,13 @@ const SHARDS: usize = 64;
 #[command(override_usage = "sightlines job plan [OPTIONS] -o JOB build|vis|reject IN [OPTIONS OF THE COMMAND]...")]
 pub(crate) struct PlanArgs {
     /// The folder of the job, which is made
-    #[arg(short, long, value_name = "JOB")]
+    #[arg(short, long, help_heading = "Output", value_name = "JOB")]
     output: PathBuf,
     /// Shards that each phase of the work is cut into, at most; 8 to 32 for each worker let all end at about the same time
-    #[arg(long, value_name = "N", default_value_t = SHARDS, value_parser = shards)]
+    #[arg(long, help_heading = "Method", value_name = "N", default_value_t = SHARDS, value_parser = shards)]
     shards: usize,
     /// Print the result as JSON
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     json: bool,
     /// The command, as it is without a job: what it writes, `job merge` writes
     #[arg(value_name = "COMMAND", trailing_var_arg = true, allow_hyphen_values = true, required = true)]

@@ -20,13 +20,13 @@ pub(crate) struct ShardArgs {
     #[arg(value_name = "N")]
     shard: usize,
     /// Number of threads; 0 uses every core
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = crate::numbers::threads)]
+    #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 1, value_parser = crate::numbers::threads)]
     threads: usize,
     /// Seconds after which results are kept for a later run of the same shard
-    #[arg(long, value_name = "SECONDS", default_value_t = 10)]
+    #[arg(long, help_heading = "Resuming", value_name = "SECONDS", default_value_t = 10)]
     save_after: u64,
     /// Print the result as JSON
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     json: bool,
 }
 

@@ -14,7 +14,7 @@ pub(crate) struct StatusArgs {
     #[arg(value_name = "JOB")]
     job: PathBuf,
     /// Print the result as JSON
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     json: bool,
 }
 

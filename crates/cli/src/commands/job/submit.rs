@@ -3,6 +3,7 @@
 use super::engine::{Command, Engine, Local, Round, Slurm, write_kubernetes};
 use super::merge::{Progress, merge, report};
 use super::outcome::{Missing, Submitted};
+use super::task::Task;
 use super::{Error, absolute, open};
 use crate::Answer;
 use crate::interrupt;
@@ -46,29 +47,29 @@ pub(crate) struct SubmitArgs {
     #[arg(value_name = "JOB")]
     job: PathBuf,
     /// Who does the shards
-    #[arg(long, value_name = "WHO", default_value = "local", value_parser = one_of(&Kind::ALL, Kind::name, Kind::about))]
+    #[arg(long, help_heading = "Method", value_name = "WHO", default_value = "local", value_parser = one_of(&Kind::ALL, Kind::name, Kind::about))]
     engine: Kind,
     /// local, command: shards that are done at once [default: as many as there are cores]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
+    #[arg(long, help_heading = "Method", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
     workers: Option<u32>,
     /// command: what a shell runs for a shard; {shard} stands for its number, {job} for the folder of the job, {program} for this program. It
     /// ends when the shard is done: 'ssh node2 {program} job shard {job} {shard}'
-    #[arg(long, value_name = "TEMPLATE", required_if_eq("engine", "command"))]
+    #[arg(long, help_heading = "Method", value_name = "TEMPLATE", required_if_eq("engine", "command"))]
     command: Option<String>,
     /// slurm: an option for sbatch, such as --sbatch=--partition=long; may be given several times
-    #[arg(long, value_name = "OPTION", allow_hyphen_values = true)]
+    #[arg(long, help_heading = "Method", value_name = "OPTION", allow_hyphen_values = true)]
     sbatch: Vec<String>,
     /// How often a shard that failed is tried again
-    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(0..=100))]
+    #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(0..=100))]
     retries: u32,
     /// Write scripts for Slurm and a manifest for Kubernetes into the folder of the job, and start nothing
-    #[arg(long)]
+    #[arg(long, help_heading = "Method")]
     dry_run: bool,
     /// The file to write [default: the output of the command that was planned]
-    #[arg(short, long, value_name = "OUT")]
+    #[arg(short, long, help_heading = "Output", value_name = "OUT")]
     output: Option<PathBuf>,
     /// Print the result as JSON
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     json: bool,
 }
 
@@ -92,9 +93,7 @@ pub(crate) fn run(args: &SubmitArgs, show_progress: bool, verbose: bool) -> Resu
     let workers = args.workers.map_or(cores, |n| n as usize);
     let engine: Box<dyn Engine + '_> = match (args.engine, &args.command) {
         (Kind::Slurm, _) => Box::new(slurm),
-        (Kind::Command, Some(template)) => {
-            Box::new(Command { program: &program, template, workers, show_progress })
-        }
+        (Kind::Command, Some(template)) => Box::new(Command { program: &program, template, workers, show_progress }),
         _ => Box::new(Local { program: &program, workers, show_progress }),
     };
     let mut tries = Tries { phase: None, n: 0 };
@@ -106,7 +105,12 @@ pub(crate) fn run(args: &SubmitArgs, show_progress: bool, verbose: bool) -> Resu
                 let missing = Missing::new(&job, round.0, states(&job, &round.1)?);
                 break Progress::Missing(job, missing);
             }
-            engine.run(&Round { job: &job, phase: round.0, shards: &round.1 }, tries.n)?;
+            if engine.run(&Round { job: &job, phase: round.0, shards: &round.1 }, tries.n)? {
+                break Progress::Elsewhere(match &out {
+                    Some(out) => out.clone(),
+                    None => Path::new(&job.manifest().folder).join(Task::parse(&job.manifest().command)?.output()),
+                });
+            }
         }
         if interrupt::requested() {
             return Err(Error::Interrupted);

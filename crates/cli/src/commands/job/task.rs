@@ -69,8 +69,8 @@ impl Task {
             let n_bytes = File::open(path).and_then(|file| file.metadata()).map(|found| found.len());
             let n_bytes = n_bytes.map_err(|source| Error::Folder { path: path.to_owned(), source })?;
             let mut hasher = sightlines::checkpoint::KeyHasher::new("");
-            let is_same = n_bytes == input.n_bytes
-                && hasher.file("", path).is_ok_and(|(_, key)| key.to_string() == input.key);
+            let is_same =
+                n_bytes == input.n_bytes && hasher.file("", path).is_ok_and(|(_, key)| key.to_string() == input.key);
             if !is_same {
                 let job = job.folder().to_owned();
                 return Err(KeptError::OtherInput { path: path.to_owned(), job }.into());

@@ -56,7 +56,8 @@ impl Saved {
         graph: &CellGraph<Convex>,
         usage: StateUse,
     ) -> Result<(Self, Option<ConvexState>), Error> {
-        let mut saved = Self { path, key, every: Some(every), keep: false, is_written: false, last: Instant::now(), stage: None };
+        let mut saved =
+            Self { path, key, every: Some(every), keep: false, is_written: false, last: Instant::now(), stage: None };
         if usage == StateUse::Off {
             saved.every = None;
             return Ok((saved, None));

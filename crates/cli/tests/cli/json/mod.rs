@@ -210,7 +210,11 @@ fn every_command_with_json_is_on_the_page() {
     let help = folder.run(&["--help"]).expect(0).out;
     let list = help.split_once("Commands:").expect("a list of commands").1;
     let of_json = |command: &&str| {
-        let args = if *command == "generate" { &["generate", "tower", "--help"][..] } else { &[*command, "--help"] };
+        let args = match *command {
+            "generate" => &["generate", "tower", "--help"][..],
+            "job" => &["job", "plan", "--help"],
+            command => &[command, "--help"],
+        };
         folder.run(args).expect(0).out.contains("--json")
     };
     let listed = list.lines().skip(1).take_while(|line| !line.is_empty()).filter_map(first);

@@ -14,7 +14,7 @@ pub(in crate::commands::job) struct Command<'a> {
 }
 
 impl Engine for Command<'_> {
-    fn run(&self, round: &Round<'_>, _: u32) -> Result<(), Error> {
+    fn run(&self, round: &Round<'_>, _: u32) -> Result<bool, Error> {
         let job = quoted(round.job.folder());
         let template = self.template.replace("{job}", &job).replace("{program}", &quoted(self.program));
         pool::run(round, self.workers, self.show_progress, |shard| {

@@ -13,10 +13,14 @@ pub(in crate::commands::job) struct Local<'a> {
 }
 
 impl Engine for Local<'_> {
-    fn run(&self, round: &Round<'_>, _: u32) -> Result<(), Error> {
+    fn run(&self, round: &Round<'_>, _: u32) -> Result<bool, Error> {
         pool::run(round, self.workers, self.show_progress, |shard| {
             let mut command = Command::new(self.program);
-            command.args(["job", "shard"]).arg(round.job.folder()).arg(shard.to_string()).args(["--threads", "1", "-q"]);
+            command.args(["job", "shard"]).arg(round.job.folder()).arg(shard.to_string()).args([
+                "--threads",
+                "1",
+                "-q",
+            ]);
             command.stdin(Stdio::null()).stdout(Stdio::null());
             command
         })

@@ -28,10 +28,11 @@ pub(super) struct Round<'a> {
 /// Who does shards.
 pub(super) trait Engine {
     /// Has the shards of a round done, for the `attempt`th time, from 1 on. Returns once nobody is at them any more; those without a part have failed.
+    /// True if the output was written too.
     ///
     /// # Errors
     /// [`Error`] if nothing can be started at all.
-    fn run(&self, round: &Round<'_>, attempt: u32) -> Result<(), Error>;
+    fn run(&self, round: &Round<'_>, attempt: u32) -> Result<bool, Error>;
 }
 
 /// Shows how much of a round is done, by cost.

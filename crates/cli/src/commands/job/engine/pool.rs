@@ -18,7 +18,7 @@ pub(super) fn run(
     n: usize,
     show_progress: bool,
     start: impl Fn(usize) -> Command,
-) -> Result<(), Error> {
+) -> Result<bool, Error> {
     let _watch = interrupt::watch();
     let shown = Shown::new(round, show_progress);
     let mut todo = round.shards.iter().copied();
@@ -59,7 +59,7 @@ pub(super) fn run(
         running = still;
     }
     shown.update();
-    Ok(())
+    Ok(false)
 }
 
 /// Ends processes. What they have computed for long is in their journals.

@@ -100,7 +100,7 @@ impl Slurm<'_> {
 }
 
 impl Engine for Slurm<'_> {
-    fn run(&self, round: &Round<'_>, attempt: u32) -> Result<(), Error> {
+    fn run(&self, round: &Round<'_>, attempt: u32) -> Result<bool, Error> {
         let _watch = interrupt::watch();
         self.write(round, attempt)?;
         let files = Files::of(round, attempt);
@@ -121,7 +121,7 @@ impl Engine for Slurm<'_> {
             n_gone = if is_gone(&[&shards, &merge])? { n_gone + 1 } else { 0 };
         }
         shown.update();
-        Ok(())
+        Ok(fs::read_to_string(&files.end).is_ok_and(|code| code.trim() == "0"))
     }
 }
 

@@ -1,0 +1,216 @@
+//! Jobs on Slurm: its daemons on the loopback device, in a folder and on ports of their own, and what becomes of a job when they are killed.
+
+use crate::common::Folder;
+use crate::jobs::{COMMANDS, inputs};
+use std::net::TcpListener;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// The daemons, which end with the test.
+struct Cluster {
+    folder: PathBuf,
+    munged: Child,
+    controller: Child,
+    nodes: Vec<Child>,
+}
+
+/// Where Debian puts daemons is not on every path.
+fn path() -> String {
+    format!("{}:/usr/sbin:/sbin", std::env::var("PATH").unwrap_or_default())
+}
+
+fn is_there(program: &str) -> bool {
+    path().split(':').any(|folder| Path::new(folder).join(program).is_file())
+}
+
+fn output(command: &mut Command) -> String {
+    command.output().map_or_else(|_| String::new(), |done| String::from_utf8_lossy(&done.stdout).trim().to_owned())
+}
+
+/// Waits until something holds.
+fn wait_for(what: &str, mut holds: impl FnMut() -> bool) {
+    let start = Instant::now();
+    while !holds() {
+        assert!(start.elapsed() < Duration::from_secs(60), "{what}: not within a minute");
+        std::thread::sleep(Duration::from_millis(50));
+    }
+}
+
+impl Cluster {
+    /// Two nodes of two processors each, on this machine. None, loudly, where Slurm is not installed.
+    fn start(test: &str, folder: &Path) -> Option<Self> {
+        if let Some(program) = ["munged", "slurmctld", "slurmd", "sbatch"].iter().find(|program| !is_there(program)) {
+            eprintln!("SKIPPED {test}: {program} is not installed");
+            return None;
+        }
+        std::fs::create_dir(folder).unwrap();
+        let at = |name: &str| folder.join(name);
+        let listeners: Vec<TcpListener> = (0..3).map(|_| TcpListener::bind("127.0.0.1:0").unwrap()).collect();
+        let ports: Vec<u16> = listeners.iter().map(|listener| listener.local_addr().unwrap().port()).collect();
+        drop(listeners);
+        let (host, user) = (output(&mut Command::new("hostname")), output(Command::new("id").arg("-un")));
+        let here = folder.display();
+        let mut conf = format!(
+            "ClusterName=sightlines\nSlurmctldHost={host}(127.0.0.1)\nSlurmUser={user}\nSlurmdUser={user}\n\
+             AuthType=auth/munge\nAuthInfo=socket={here}/socket\nStateSaveLocation={here}/state\nSlurmdSpoolDir={here}/%n\n\
+             SlurmctldPidFile={here}/ctld.pid\nSlurmdPidFile={here}/%n.pid\nSlurmctldPort={}\n\
+             ProctrackType=proctrack/linuxproc\nTaskPlugin=task/none\nSelectType=select/cons_tres\n\
+             SelectTypeParameters=CR_Core\nReturnToService=2\nJobRequeue=1\nSlurmctldTimeout=30\nSlurmdTimeout=10\n\
+             JobAcctGatherType=jobacct_gather/none\nAccountingStorageType=accounting_storage/none\n\
+             CommunicationParameters=NoCtldInAddrAny,NoInAddrAny\nSchedulerParameters=sched_interval=1,batch_sched_delay=1\n\
+             PartitionName=bake Nodes=w0,w1 Default=YES MaxTime=INFINITE State=UP\n",
+            ports[0]
+        );
+        for (k, port) in ports[1..].iter().enumerate() {
+            conf +=
+                &format!("NodeName=w{k} NodeHostname={host} NodeAddr=127.0.0.1 Port={port} CPUs=2 RealMemory=500\n");
+            std::fs::create_dir(at(&format!("w{k}"))).unwrap();
+        }
+        std::fs::create_dir(at("state")).unwrap();
+        std::fs::write(at("slurm.conf"), conf).unwrap();
+        std::fs::write(
+            at("key"),
+            format!("{:064}{}", std::process::id(), "a key that nobody else has to know ".repeat(8)),
+        )
+        .unwrap();
+        let chmod =
+            |mode: &str, path: &Path| assert!(Command::new("chmod").arg(mode).arg(path).status().unwrap().success());
+        chmod("400", &at("key"));
+        chmod("755", folder);
+        let mut munged = Command::new("munged");
+        munged.args(["--foreground", "--force"]);
+        for (option, file) in [
+            ("key-file", "key"),
+            ("socket", "socket"),
+            ("pid-file", "munged.pid"),
+            ("log-file", "munged.log"),
+            ("seed-file", "seed"),
+        ] {
+            munged.arg(format!("--{option}={here}/{file}"));
+        }
+        let munged = Self::spawn(folder, &mut munged, "munged");
+        wait_for("munged", || at("socket").exists());
+        let controller = Self::controller(folder);
+        let mut cluster = Self { folder: folder.to_owned(), munged, controller, nodes: Vec::new() };
+        cluster.nodes = vec![cluster.node(0), cluster.node(1)];
+        wait_for("two idle nodes", || cluster.ask(&["sinfo", "-h", "-t", "idle", "-o", "%D"]) == "2");
+        Some(cluster)
+    }
+
+    fn spawn(folder: &Path, command: &mut Command, name: &str) -> Child {
+        let log = std::fs::File::options().create(true).append(true).open(folder.join(format!("{name}.out"))).unwrap();
+        command.env("PATH", path()).stdin(Stdio::null()).stdout(log.try_clone().unwrap()).stderr(log);
+        command.spawn().unwrap_or_else(|error| panic!("{name}: {error}"))
+    }
+
+    fn controller(folder: &Path) -> Child {
+        Self::spawn(folder, Command::new("slurmctld").arg("-D").arg("-f").arg(folder.join("slurm.conf")), "slurmctld")
+    }
+
+    fn node(&self, k: usize) -> Child {
+        let name = format!("w{k}");
+        let mut command = Command::new("slurmd");
+        command.args(["-D", "-N", &name, "-f"]).arg(self.folder.join("slurm.conf"));
+        Self::spawn(&self.folder, &mut command, &name)
+    }
+
+    fn command(&self, program: impl AsRef<std::ffi::OsStr>) -> Command {
+        let mut command = Command::new(program);
+        command.env("SLURM_CONF", self.folder.join("slurm.conf")).env("PATH", path());
+        command
+    }
+
+    fn ask(&self, words: &[&str]) -> String {
+        output(self.command(words[0]).args(&words[1..]))
+    }
+}
+
+impl Drop for Cluster {
+    fn drop(&mut self) {
+        // Steps of jobs would outlive their node.
+        let _ = self.ask(&["scancel", "--signal=KILL", "--full", "-u", &output(Command::new("id").arg("-un"))]);
+        let daemons = self.nodes.iter_mut().chain([&mut self.controller, &mut self.munged]);
+        for daemon in daemons {
+            let _ = daemon.kill().and_then(|()| daemon.wait().map(drop));
+        }
+        if std::thread::panicking() {
+            for log in ["slurmctld.out", "w0.out", "w1.out", "munged.out"] {
+                let text = std::fs::read_to_string(self.folder.join(log)).unwrap_or_default();
+                let last: Vec<&str> = text.lines().rev().take(15).collect();
+                eprintln!("{log}, last line first:\n{}", last.join("\n"));
+            }
+        }
+    }
+}
+
+/// Numbers of processes that do shards of a job.
+fn shard_processes(job: &Path) -> Vec<u32> {
+    let job = job.display().to_string();
+    let processes = std::fs::read_dir("/proc").into_iter().flatten().flatten();
+    let pid = |entry: std::fs::DirEntry| entry.file_name().to_str()?.parse().ok();
+    let does = |pid: &u32| {
+        let line = std::fs::read(format!("/proc/{pid}/cmdline")).unwrap_or_default();
+        let words: Vec<&[u8]> = line.split(|&byte| byte == 0).collect();
+        words.windows(3).any(|w| w[0] == b"job" && w[1] == b"shard" && w[2] == job.as_bytes())
+    };
+    processes.filter_map(pid).filter(does).collect()
+}
+
+fn n_parts(folder: &Folder) -> usize {
+    let names = crate::common::names(&folder.path("job/parts"));
+    names.iter().filter(|name| name.ends_with(".part")).count()
+}
+
+/// With a shard, the controller and a node killed in the middle, a job ends with the bytes of a build.
+#[cfg(unix)]
+#[test]
+fn a_job_on_slurm_survives_its_daemons() {
+    const TEST: &str = "a_job_on_slurm_survives_its_daemons";
+    let folder = inputs();
+    let Some(mut cluster) = Cluster::start(TEST, &folder.path("slurm")) else { return };
+    let start = Instant::now();
+    let command = COMMANDS[0].0.replace("OUT", "out.pvs").replace("5,3,1", "6,4,1");
+    let words: Vec<&str> = command.split(' ').collect();
+    folder.run(&words).expect(0);
+    let whole = folder.read("out.pvs");
+    std::fs::remove_file(folder.path("out.pvs")).unwrap();
+    folder.run(&[&["job", "plan", "-o", "job", "--shards", "24"][..], &words].concat()).expect(0);
+    let mut submit = cluster.command(env!("CARGO_BIN_EXE_sightlines"));
+    submit.args(["job", "submit", "job", "--engine", "slurm", "--json"]).current_dir(folder.path("."));
+    let mut submit = submit.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let kill =
+        |pid: u32| Command::new("kill").args(["-9", &pid.to_string()]).status().is_ok_and(|status| status.success());
+    let job = folder.path("job").canonicalize().unwrap();
+    let mut n_killed = 0;
+    wait_for("a shard that can be killed", || {
+        n_killed += shard_processes(&job).first().is_some_and(|&pid| kill(pid)) as usize;
+        n_killed > 0
+    });
+    wait_for("parts", || n_parts(&folder) >= 3 || submit.try_wait().unwrap().is_some());
+    let at_controller = n_parts(&folder);
+    cluster.controller.kill().unwrap();
+    cluster.controller.wait().unwrap();
+    std::thread::sleep(Duration::from_millis(300));
+    cluster.controller = Cluster::controller(&cluster.folder);
+    wait_for("more parts", || n_parts(&folder) >= 7 || submit.try_wait().unwrap().is_some());
+    let at_node = n_parts(&folder);
+    cluster.nodes[1].kill().unwrap();
+    cluster.nodes[1].wait().unwrap();
+    wait_for("the end", || {
+        // A controller that has forgotten what it started last takes a node out of use, until somebody who looks after the cluster puts it back.
+        if cluster.ask(&["sinfo", "-h", "-n", "w0", "-t", "drain", "-o", "%D"]) == "1" {
+            cluster.ask(&["scontrol", "update", "NodeName=w0", "State=RESUME"]);
+        }
+        submit.try_wait().unwrap().is_some()
+    });
+    let ended = submit.wait_with_output().unwrap();
+    let (out, err) = (String::from_utf8_lossy(&ended.stdout), String::from_utf8_lossy(&ended.stderr));
+    assert_eq!(ended.status.code(), Some(0), "{out}{err}");
+    assert!(folder.read("out.pvs") == whole);
+    assert!(at_controller < 24 && at_node < 24, "the daemons were killed too late: {at_controller}, {at_node}");
+    eprintln!(
+        "{TEST}: a shard killed; the controller after {at_controller} parts of 24, a node after {at_node}; {:.1} s",
+        start.elapsed().as_secs_f64()
+    );
+}
