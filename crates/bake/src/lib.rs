@@ -72,7 +72,7 @@ pub use reject::{
     MapOutcome, MapStatus, RejectError, RejectOptions, RejectOutcome, RejectSummary, reject_table, reject_wad,
 };
 pub use reports::{ClusterVisibility, MapReport, PlanReport, RegionReport, Report, SceneReport, WorldSummary};
-pub use run::bake;
+pub use run::{bake, bake_packed};
 pub use scene::{PortalMode, SceneBakeOptions, bake_scene};
 pub use sectors::see_groups;
 pub use stab::{BakedStab, StabBakeError, StabOptions, StabReport, with_stab_trees};

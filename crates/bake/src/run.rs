@@ -5,16 +5,20 @@ use crate::baked::Baked;
 use crate::error::BakeError;
 use crate::framed::Framed;
 use crate::input::BakeInput;
-use crate::methods::OcclusionMethodFactory;
+use crate::methods::{MethodError, OcclusionMethodFactory};
 use crate::options::{BakeOptions, SceneMethod};
 use crate::plan::{PlanBakeOptions, bake_plan};
 use crate::quake::{PrtOptions, bake_map, bake_prt};
-use crate::region::{RegionBakeOptions, bake_regions};
+use crate::region::{PackRegionsError, RegionBakeOptions, bake_regions, pack_regions};
+use crate::reports::RegionReport;
 use crate::scene::{SceneBakeOptions, bake_scene};
 use sightlines_cells::Scene;
 use sightlines_formats::SceneInfo;
+use sightlines_packed::PackReport;
 use sightlines_progress::Allowance;
+use sightlines_pvs::TableParts;
 use sightlines_stabtree::ConvexOptions;
+use std::io::Write;
 
 /// Bakes an input: cuts it into cells where it has none, decides what they see, and makes the table.
 ///
@@ -70,13 +74,23 @@ pub fn bake<'i>(input: impl Into<BakeInput<'i>>, options: &BakeOptions<'_>) -> R
 }
 
 fn by_regions(scene: &Scene, options: &BakeOptions<'_>, file: Option<&SceneInfo>) -> Result<Baked, BakeError> {
+    with_regions(scene, options, file, |regions| Ok(bake_regions(scene, regions)?.into_any()))
+}
+
+/// Calls `then` with the options of a bake by regions.
+fn with_regions<T, E: From<BakeError>>(
+    scene: &Scene,
+    options: &BakeOptions<'_>,
+    file: Option<&SceneInfo>,
+    then: impl FnOnce(&RegionBakeOptions<'_>) -> Result<T, E>,
+) -> Result<T, E> {
     let BakeOptions { method, buffers, split, cut, portals, threads, progress, budget, units, ref cells, .. } =
         *options;
-    buffers.check().map_err(crate::methods::MethodError::from)?;
+    buffers.check().map_err(|error| BakeError::from(MethodError::from(error)))?;
     let prepare = |method| OcclusionMethodFactory::new(method, scene, &buffers);
-    let factory = method.region_method().map(prepare).transpose()?;
+    let factory = method.region_method().map(prepare).transpose().map_err(BakeError::from)?;
     let make = || factory.as_ref().expect("only called if there is one").instance();
-    let options = RegionBakeOptions {
+    then(&RegionBakeOptions {
         cells,
         method: factory.is_some().then_some(&make),
         sightlines: method.by_sightlines(),
@@ -88,6 +102,23 @@ fn by_regions(scene: &Scene, options: &BakeOptions<'_>, file: Option<&SceneInfo>
         progress,
         budget: Allowance::all(budget),
         units,
+    })
+}
+
+/// Bakes a scene that is along its axes already, and writes a packed table of the large class row by row: for more cells than a table in memory
+/// has room for. See [`pack_regions`] for what can be written so.
+///
+/// # Errors
+/// [`PackRegionsError`]
+pub fn bake_packed<W: Write>(
+    scene: &Scene,
+    file: Option<&SceneInfo>,
+    options: &BakeOptions<'_>,
+    out: W,
+) -> Result<(W, RegionReport, PackReport), PackRegionsError> {
+    let stated = |parts: &mut TableParts| {
+        parts.frame = options.frame;
+        parts.digest = options.digest.or(parts.digest);
     };
-    Ok(bake_regions(scene, &options)?.into_any())
+    with_regions(scene, options, file, |regions| pack_regions(scene, regions, &stated, out))
 }

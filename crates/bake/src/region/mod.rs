@@ -59,6 +59,16 @@ impl CellsFrom {
     pub const fn have_portals(&self) -> bool {
         matches!(self, Self::KdTree)
     }
+
+    /// How many cells there may be at most; `None` if that is not known before they are cut.
+    pub fn most(&self) -> Option<u64> {
+        match self {
+            Self::KdTree => None,
+            Self::Grid(n) => Some(n.iter().map(|&n| u64::from(n)).fold(1, u64::saturating_mul)),
+            Self::Places(how) => Some(u64::from(how.n_cells())),
+            Self::Boxes(given) => Some(given.cells.len() as u64),
+        }
+    }
 }
 
 /// The share of a budget for sightlines, if there is also a from-region method.

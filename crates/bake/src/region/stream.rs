@@ -10,7 +10,7 @@ use sightlines_cells::Scene;
 use sightlines_geometry::BoxTree;
 use sightlines_multifocal::Effort;
 use sightlines_packed::{PackReport, PackWriter, StreamError, StreamOptions};
-use sightlines_pvs::{CellId, ObjectId, SceneMethods, TableKind};
+use sightlines_pvs::{CellId, ObjectId, SceneMethods, TableKind, TableParts};
 use std::io::Write;
 use std::ops::Range;
 use std::time::Instant;
@@ -37,11 +37,14 @@ pub enum PackRegionsError {
 ///
 /// The visibility is the same, pair by pair. Memory: the rows as runs of cells, some hundreds of bytes for each cell in a city.
 ///
+/// * `state`: adds to the parts of the table what the caller knows
+///
 /// # Errors
 /// [`PackRegionsError`]
 pub fn pack_regions<W: Write>(
     scene: &Scene,
     options: &RegionBakeOptions<'_>,
+    state: &dyn Fn(&mut TableParts),
     out: W,
 ) -> Result<(W, RegionReport, PackReport), PackRegionsError> {
     let start = Instant::now();
@@ -68,6 +71,7 @@ pub fn pack_regions<W: Write>(
     parts.info.sort();
     state_file(&mut parts, options.file);
     parts.digest = Some(scene.digest());
+    state(&mut parts);
     let mut writer = PackWriter::new(out, &parts, &StreamOptions { objects_seen: true })?;
     drop(parts);
     let (mut n_visible_pairs, mut n_objects_seen, mut effort) = (0, 0, Effort::default());

@@ -260,12 +260,12 @@ fn rows_one_by_one_make_the_same_packed_table() {
     let make = || factory.instance();
     let options = RegionBakeOptions { method: Some(&make), sightlines: false, ..RegionBakeOptions::new(&cells) };
     let table = bake_regions(&scene, &options).unwrap().table;
-    let (bytes, report, _) = pack_regions(&scene, &options, Vec::new()).unwrap();
+    let (bytes, report, _) = pack_regions(&scene, &options, &|_| {}, Vec::new()).unwrap();
     let large = PackOptions { class: Some(SizeClass::Large), ..PackOptions::default() };
     assert!(bytes == pack(&table, &large).unwrap());
     let n = table.n_cells() as u64;
     assert!(report.n_visible_pairs > n && report.n_visible_pairs < n * (n - 1) / 2 * 9 / 10, "nothing is hidden");
     // Sightlines decide pairs in doubt of all cells at once.
     let both = RegionBakeOptions { sightlines: true, ..options };
-    assert!(matches!(pack_regions(&scene, &both, Vec::new()), Err(PackRegionsError::NeedsPairs)));
+    assert!(matches!(pack_regions(&scene, &both, &|_| {}, Vec::new()), Err(PackRegionsError::NeedsPairs)));
 }

@@ -133,3 +133,17 @@ fn damaged_packed_tables_are_refused() {
     let error = folder.refused(&["unpack", "small.pvz", "-o", "small.pvz"]);
     assert_eq!(error, "small.pvz: the output would replace the input");
 }
+
+/// A table that is built under a packed name has the bytes of the plain one, packed.
+#[test]
+fn tables_are_built_packed() {
+    let folder = Folder::new();
+    folder.run(&["generate", "tower", "--floors", "1", "--rooms-x", "2", "-o", "a.glb"]).expect(0);
+    folder.run(&["build", "a.glb", "-o", "a.pvs"]).expect(0);
+    folder.run(&["pack", "a.pvs", "-o", "packed.pvz"]).expect(0);
+    folder.run(&["build", "a.glb", "-o", "built.PVZ"]).expect(0);
+    assert!(folder.read("built.PVZ") == folder.read("packed.pvz"));
+    assert!(folder.read("built.PVZ") != folder.read("a.pvs"));
+    folder.run(&["unpack", "built.PVZ", "-o", "back.pvs"]).expect(0);
+    assert!(folder.read("back.pvs") == folder.read("a.pvs"));
+}

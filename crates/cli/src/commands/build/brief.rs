@@ -61,6 +61,7 @@ impl Built {
             Outcome::Regions(outcome) => outcome.brief(),
             Outcome::Portals(outcome) => outcome.brief(),
             Outcome::Map(outcome) => outcome.brief(),
+            Outcome::Rows(outcome) => outcome.brief(),
         };
         self.surfaces.iter().flat_map(|surfaces| surfaces.brief()).for_each(|kind| {
             brief.taken += ", ";

@@ -8,6 +8,8 @@ use sightlines::bake::BakeError;
 use sightlines::bake::CertifyError;
 use sightlines::bake::PrtBakeError;
 use sightlines::bake::StabBakeError;
+use sightlines::bake::region::PackRegionsError;
+use sightlines::packed::PackError;
 use sightlines::verify::{ProofError, ProofViolation};
 use std::path::PathBuf;
 
@@ -48,6 +50,12 @@ pub(crate) enum Error {
     /// The program was interrupted.
     #[error("{0}")]
     Interrupted(Interrupted),
+    /// A table cannot be packed.
+    #[error("{}: {source}", path.display())]
+    Pack { path: PathBuf, source: PackError },
+    /// A table cannot be written row by row.
+    #[error("{}: {source}", path.display())]
+    Rows { path: PathBuf, source: Box<PackRegionsError> },
     /// A table cannot have stab trees.
     #[error("{}: {source}", path.display())]
     Stab { path: PathBuf, source: StabBakeError },

@@ -9,6 +9,7 @@ mod error;
 mod framed;
 mod limit;
 mod options;
+mod packed;
 pub(crate) mod plan;
 mod portals;
 mod quake;
@@ -77,7 +78,8 @@ pub(crate) struct BuildArgs {
     doors: Vec<DoorBox>,
     #[command(flatten)]
     pub(crate) resume: ResumeArgs,
-    /// The table to write
+    /// The table to write; in packed form, as `pack` makes it, if the name ends in .pvz. More than 65,536 cells without portals, by one of the
+    /// methods that look from whole cells, are then written row by row, which no number of cells is too much for
     #[arg(short, long, help_heading = "Output", value_name = "OUT.pvs")]
     pub(crate) output: PathBuf,
     /// Store stab trees in the table: for each cell, the sequences of portals that sight lines pass. A tree is
@@ -145,13 +147,29 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
         let units = Units(store.as_ref().map(|store| store as _));
         let options = BakeOptions { units, ..options.clone() };
         let plan = announce::Plan::new(&source.content, &options, auto.as_ref(), args.time_limit);
+        let is_alone = args.doors.is_empty() && !args.certify.is_given();
+        if let Some(file) = packed::of_rows(&source, &options, out).filter(|_| is_alone) {
+            let outcome = packed::write_rows(path, file, &options, plan, (out, &kept, show_progress))?;
+            let (outcome, surfaces) = (Outcome::Rows(Box::new(outcome)), Some(Surfaces::new(file)));
+            return Ok(Built {
+                auto,
+                outcome,
+                viewers,
+                placed,
+                surfaces,
+                given_doors: Vec::new(),
+                stab: None,
+                proofs: None,
+                verbose,
+            });
+        }
         let baked = bake_announced(path, (&source.content).into(), &options, plan, Some(&kept), show_progress);
         let baked = baked.map_err(|error| source.failed(path, error))?;
         clock.warn(path, &baked.report);
         let (baked, stab) = stab::add(path, baked, args.stab_trees, options.threads, &kept, show_progress)?;
         let (baked, given_doors) = doors::add(path, baked, &args.doors);
         let baked = plans::state(baked, &reading);
-        let bytes = baked.table.to_bytes();
+        let bytes = packed::bytes_of(&baked.table, path, out)?;
         // Proofs that contradict the table leave an older one untouched.
         let proofs = args.certify.write(path, out, &baked, options.threads, &kept, show_progress)?;
         output::save(out, &bytes)?;
@@ -222,6 +240,7 @@ enum Outcome {
     Regions(Box<region::Outcome>),
     Portals(portals::Outcome),
     Map(quake::Outcome),
+    Rows(Box<packed::Outcome>),
 }
 
 impl Outcome {
@@ -264,6 +283,7 @@ impl fmt::Display for Outcome {
             Self::Regions(outcome) => outcome.fmt(f),
             Self::Portals(outcome) => outcome.fmt(f),
             Self::Map(outcome) => outcome.fmt(f),
+            Self::Rows(outcome) => outcome.fmt(f),
         }
     }
 }

@@ -1,0 +1,134 @@
+//! A table in packed form, as `build` writes it under a name that ends in `.pvz`.
+
+use super::brief::{Brief, of_cells};
+use super::source::Source;
+use super::{Error, announce};
+use crate::buffers::MethodFailed;
+use crate::facts::Stated;
+use crate::kept::Kept;
+use crate::output::{self, count};
+use serde::Serialize;
+use sightlines::bake::region::PackRegionsError;
+use sightlines::bake::{BakeError, BakeOptions, Bakeable, RegionReport, SceneMethod, bake_packed};
+use sightlines::formats::SceneFile;
+use sightlines::packed::format::MAX_SMALL_CELLS;
+use sightlines::packed::{PackOptions, PackReport, pack};
+use sightlines::pvs::Table;
+use std::fmt;
+use std::path::Path;
+
+/// Whether an output is packed, by its name.
+pub(super) fn is_packed(out: &Path) -> bool {
+    out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("pvz"))
+}
+
+/// The bytes of a table under a name.
+pub(super) fn bytes_of(table: &Table, path: &Path, out: &Path) -> Result<Vec<u8>, Error> {
+    if !is_packed(out) {
+        return Ok(table.to_bytes());
+    }
+    pack(table, &PackOptions::default()).map_err(|source| Error::Pack { path: path.to_owned(), source })
+}
+
+/// The scene, if its table has more cells than one in memory should have, and can be written row by row.
+pub(super) fn of_rows<'s>(source: &'s Source, options: &BakeOptions<'_>, out: &Path) -> Option<&'s SceneFile> {
+    let Bakeable::Scene(file) = &source.content else { return None };
+    let is_large = options.cells.most().is_some_and(|n| n > MAX_SMALL_CELLS as u64);
+    let is_by_cell = matches!(options.method, SceneMethod::FromRegion(_)) && options.budget.is_none();
+    (is_large && is_by_cell && is_packed(out)).then_some(file)
+}
+
+/// Bakes and writes a table row by row.
+pub(super) fn write_rows(
+    path: &Path,
+    file: &SceneFile,
+    options: &BakeOptions<'_>,
+    plan: announce::Plan,
+    (out, kept, show_progress): (&Path, &Kept<'_>, bool),
+) -> Result<Outcome, Error> {
+    let bar = kept.bar("visibility", show_progress);
+    let announcer = announce::Announcer::new(&bar, &plan, show_progress);
+    let options = BakeOptions { progress: Some(&announcer), ..options.clone() };
+    // Rows are small in comparison with what it takes to find them.
+    let made = bake_packed(&file.scene, Some(&file.info), &options, Vec::new());
+    drop(bar);
+    let (bytes, report, packed) = made.map_err(|error| match error {
+        PackRegionsError::Bake(BakeError::Method(source)) => MethodFailed { path: path.to_owned(), source }.into(),
+        PackRegionsError::Bake(source) => Error::Bake { path: path.to_owned(), map: None, source: Box::new(source) },
+        source => Error::Rows { path: path.to_owned(), source: Box::new(source) },
+    })?;
+    output::save(out, &bytes)?;
+    Ok(Outcome::new(out, file, &report, &packed))
+}
+
+/// What was written row by row.
+#[derive(Debug, Serialize)]
+pub(super) struct Outcome {
+    out: String,
+    #[serde(flatten)]
+    stated: Stated,
+    method: String,
+    n_triangles: usize,
+    n_cells: usize,
+    n_objects: usize,
+    n_bytes: u64,
+    /// Bytes of the rows of cells.
+    n_row_bytes: u64,
+    /// Unordered pairs of different cells that may see each other.
+    n_visible_pairs: u64,
+    /// Pairs of a cell and an object that it may see.
+    n_objects_seen: u64,
+    seconds: f64,
+}
+
+impl Outcome {
+    fn new(out: &Path, file: &SceneFile, report: &RegionReport, packed: &PackReport) -> Self {
+        Self {
+            out: out.display().to_string(),
+            stated: Stated::new(&file.info),
+            method: report.method.clone().unwrap_or_default(),
+            n_triangles: file.info.n_triangles,
+            n_cells: packed.n_classes,
+            n_objects: file.scene.objects().len(),
+            n_bytes: packed.bytes,
+            n_row_bytes: packed.row_bytes,
+            n_visible_pairs: report.n_visible_pairs,
+            n_objects_seen: report.n_objects_seen,
+            seconds: report.time.as_secs_f64(),
+        }
+    }
+
+    fn means(&self) -> [f64; 2] {
+        let n = self.n_cells.max(1) as f64;
+        [(2.0 * self.n_visible_pairs as f64 + n) / n, self.n_objects_seen as f64 / n]
+    }
+
+    pub(super) fn brief(&self) -> Brief {
+        let [cells, objects] = self.means();
+        Brief {
+            kind: "scene",
+            taken: format!(
+                "{}: {}, {}",
+                self.stated,
+                count(self.n_objects as u64, "object"),
+                count(self.n_triangles as u64, "triangle")
+            ),
+            method: self.method.clone(),
+            cells: of_cells(self.n_cells, "given cell", 0),
+            out: self.out.clone(),
+            n_bytes: usize::try_from(self.n_bytes).unwrap_or(usize::MAX),
+            visible: format!("a cell sees {cells:.0} cells and {objects:.0} objects on average"),
+            seconds: self.seconds,
+        }
+    }
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [cells, objects] = self.means();
+        writeln!(f, "cells          {}", of_cells(self.n_cells, "given cell", 0))?;
+        writeln!(f, "method         {}", self.method)?;
+        writeln!(f, "visible        {cells:.1} cells and {objects:.1} objects from a cell on average")?;
+        writeln!(f, "wrote          {}, {} bytes, {} of them rows", self.out, self.n_bytes, self.n_row_bytes)
+    }
+}
