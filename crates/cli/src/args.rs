@@ -54,7 +54,7 @@ pub(crate) struct Arguments {
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Build the visibility table of a floor plan, a Doom map, a scene in space, or a Quake map
-    Build(BuildArgs),
+    Build(Box<BuildArgs>),
     /// Write the REJECT lumps of a WAD; all other lumps stay as they are
     Reject(RejectArgs),
     /// Write the visibility of a Quake or Quake II map; everything else stays as it is

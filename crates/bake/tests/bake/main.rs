@@ -13,6 +13,7 @@ mod plan;
 mod quake;
 mod reject;
 mod reject_text;
+mod reject_units;
 mod space;
 mod stab;
 mod units;

@@ -17,7 +17,7 @@ type Corner = [i16; 2];
 
 /// A map, drawn line by line.
 #[derive(Debug, Clone)]
-pub(crate) struct Sketch(DoomMapSource);
+pub(crate) struct Sketch(pub(crate) DoomMapSource);
 
 impl Sketch {
     fn new(n_sectors: u16) -> Self {
@@ -67,7 +67,7 @@ fn two_rooms(n_sectors: u16, between: impl Fn(Sketch, [Corner; 2]) -> Sketch) ->
     between(map.walls(&[[64, 64], [128, 64], [128, 0], [64, 0]], 1), [[64, 0], [64, 64]])
 }
 
-fn with_door(n_sectors: u16) -> Sketch {
+pub(crate) fn with_door(n_sectors: u16) -> Sketch {
     two_rooms(n_sectors, |map, line| map.open(&line, 1, 0))
 }
 
@@ -529,65 +529,4 @@ fn damaged_maps_do_not_stop_the_others() {
         assert!(matches!(error, RejectError::Map(_)), "{error:?}");
         assert!(error.to_string().starts_with(place), "{error}");
     }
-}
-
-/// Keeps what was computed, and wants only some maps.
-#[derive(Default)]
-struct Some3(std::sync::Mutex<std::collections::BTreeMap<usize, Vec<u8>>>, std::sync::atomic::AtomicUsize, usize);
-
-impl sightlines_progress::UnitStore for Some3 {
-    fn begin(&self, phase: &sightlines_progress::Phase<'_>) -> Result<(), sightlines_progress::Halt> {
-        self.1.store(phase.costs.len(), std::sync::atomic::Ordering::Relaxed);
-        Ok(())
-    }
-
-    fn wants(&self, _: &'static str, unit: usize) -> bool {
-        unit % 3 == self.2
-    }
-
-    fn load(&self, _: &'static str, unit: usize) -> Result<Option<Vec<u8>>, sightlines_progress::Halt> {
-        Ok(self.0.lock().unwrap().get(&unit).cloned())
-    }
-
-    fn save(&self, _: &'static str, unit: usize, result: &[u8]) -> Result<(), sightlines_progress::Halt> {
-        self.0.lock().unwrap().insert(unit, result.to_vec());
-        Ok(())
-    }
-
-    fn end(&self, _: &'static str) -> Result<(), sightlines_progress::Halt> {
-        let n = self.1.load(std::sync::atomic::Ordering::Relaxed);
-        if self.0.lock().unwrap().len() == n { Ok(()) } else { Err(sightlines_progress::Halt::Shared) }
-    }
-}
-
-/// Three processes that each do some maps, and one that puts them together, give the file of one process.
-#[test]
-fn maps_are_units_of_work() {
-    use sightlines_progress::{Halt, Units};
-    let mut builder = WadBuilder::new(WadKind::Pwad);
-    for (k, width) in [3, 9, 5, 7].into_iter().enumerate() {
-        with_door(width).add_to(&mut builder, format!("MAP0{}", k + 1).parse().unwrap()).unwrap();
-    }
-    let wad = Wad::parse(builder.to_bytes().unwrap()).unwrap();
-    let run = |store: Option<&Some3>| {
-        let units = Units(store.map(|store| store as _));
-        reject_wad(&wad, &RejectOptions { threads: 1, units, ..RejectOptions::default() })
-    };
-    let mut kept = std::collections::BTreeMap::new();
-    for third in 0..3 {
-        let store = Some3(std::sync::Mutex::default(), 0.into(), third);
-        assert_eq!(run(Some(&store)), Err(RejectError::Halted(Halt::Shared)));
-        kept.append(&mut store.0.lock().unwrap());
-    }
-    assert_eq!(kept.len(), 4);
-    let (alone, merge) = (run(None).unwrap(), Some3(std::sync::Mutex::new(kept), 0.into(), 9));
-    let merged = run(Some(&merge)).unwrap();
-    assert_eq!(merged.bytes, alone.bytes);
-    assert!(merged.maps.iter().zip(&alone.maps).all(|(a, b)| (a.name, &a.status) == (b.name, &b.status)));
-    // The impostor: the table of another map.
-    let mut others = merge.0.lock().unwrap();
-    let (a, b) = (others[&0].clone(), others[&1].clone());
-    others.extend([(0, b), (1, a)]);
-    drop(others);
-    assert!(run(Some(&merge)).map_or(true, |mixed| mixed.bytes != alone.bytes));
 }

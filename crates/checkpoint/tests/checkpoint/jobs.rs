@@ -51,7 +51,7 @@ proptest! {
         };
         prop_assert_eq!(merged, expected);
         // Whoever plans a phase without units goes on at once.
-        prop_assert_eq!(n_rounds, n.iter().filter(|&&n| n > 0).count());
+        prop_assert_eq!(n_rounds as usize, n.iter().filter(|&&n| n > 0).count());
         let job = Job::open(&folder, PROGRAM).unwrap();
         let states = (0..job.manifest().n_shards()).map(|shard| job.state(shard).unwrap());
         prop_assert!(states.into_iter().all(|state| state == ShardState::Done));

@@ -145,6 +145,40 @@ fn a_killed_run_of_a_real_map_loses_nothing() {
     assert!(!folder.path("map.vis-state").exists());
 }
 
+/// The first Ctrl-C saves the state, however recently it was saved.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_of_a_real_map_goes_on() {
+    let Some(data) = data("an_interrupted_run_of_a_real_map_goes_on") else { return };
+    let folder = copied(&data, "dm3");
+    folder.run(&["vis", "map.bsp", "-o", "whole.bsp"]).expect(0);
+    let before = folder.read("map.bsp");
+    let args = ["vis", "map.bsp", "--resume", "--quiet", "--threads", "1"];
+    let mut n_saved = 0;
+    for wait in [60, 120, 240, 480] {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_sightlines"));
+        command.args(args).current_dir(folder.path(".")).stderr(std::process::Stdio::piped());
+        let child = command.stdout(std::process::Stdio::null()).spawn().expect("the program was built");
+        std::thread::sleep(std::time::Duration::from_millis(wait));
+        // It may be over.
+        let _ = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).output();
+        let ended = child.wait_with_output().expect("a child ends");
+        if ended.status.success() {
+            break;
+        }
+        // Before the search, nothing is to be saved, and it ends at once.
+        assert_eq!(ended.status.code(), Some(130).filter(|_| ended.status.code().is_some()));
+        assert_eq!(folder.read("map.bsp"), before, "the map is as it was");
+        let text = String::from_utf8(ended.stderr).expect("text");
+        let says = text.ends_with("interrupted; the same command with --resume goes on from map.vis-state\n");
+        assert!(!says || folder.path("map.vis-state").exists(), "{text}");
+        n_saved += usize::from(says);
+    }
+    folder.run(&args).expect(0);
+    eprintln!("states saved: {n_saved}");
+    assert!(folder.read("map.bsp") == folder.read("whole.bsp") && !folder.path("map.vis-state").exists());
+}
+
 /// Pairs of a real map that are near to seeing each other, or nearly do: all are proven.
 #[test]
 fn real_pairs_are_proven() {

@@ -16,12 +16,12 @@ pub(crate) struct MergeArgs {
     /// The folder of the job
     #[arg(value_name = "JOB")]
     job: PathBuf,
-    /// The file to write [default: the output of the command that was planned]
-    #[arg(short, long, help_heading = "Output", value_name = "OUT")]
-    output: Option<PathBuf>,
     /// Number of threads [default: as planned]
     #[arg(long, help_heading = "Method", value_name = "N", value_parser = crate::numbers::threads)]
     threads: Option<usize>,
+    /// The file to write [default: the output of the command that was planned]
+    #[arg(short, long, help_heading = "Output", value_name = "OUT")]
+    output: Option<PathBuf>,
     /// Print the result as JSON
     #[arg(long, help_heading = "Output")]
     json: bool,

@@ -17,12 +17,12 @@ const SHARDS: usize = 64;
 #[derive(Debug, clap::Args)]
 #[command(override_usage = "sightlines job plan [OPTIONS] -o JOB build|vis|reject IN [OPTIONS OF THE COMMAND]...")]
 pub(crate) struct PlanArgs {
-    /// The folder of the job, which is made
-    #[arg(short, long, help_heading = "Output", value_name = "JOB")]
-    output: PathBuf,
     /// Shards that each phase of the work is cut into, at most; 8 to 32 for each worker let all end at about the same time
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = SHARDS, value_parser = shards)]
     shards: usize,
+    /// The folder of the job, which is made
+    #[arg(short, long, help_heading = "Output", value_name = "JOB")]
+    output: PathBuf,
     /// Print the result as JSON
     #[arg(long, help_heading = "Output")]
     json: bool,

@@ -23,7 +23,7 @@ pub(super) enum Task {
 pub(super) enum Made {
     Build(Box<build::Built>),
     Reject(reject::Outcome),
-    Vis(vis::Outcome),
+    Vis(Box<vis::Outcome>),
 }
 
 impl fmt::Display for Made {
@@ -47,7 +47,7 @@ impl Task {
             Command::Build(args) if args.resume.is_given() => refuse("--resume or --state"),
             Command::Reject(args) if args.resume.is_given() => refuse("--resume or --state"),
             Command::Vis(args) if args.resume => refuse("--resume"),
-            Command::Build(args) => Ok(Self::Build(Box::new(args))),
+            Command::Build(args) => Ok(Self::Build(args)),
             Command::Reject(args) => Ok(Self::Reject(args)),
             Command::Vis(args) => Ok(Self::Vis(args)),
             _ => Err(Error::Command(format!(
@@ -116,7 +116,7 @@ impl Task {
         Ok(match self {
             Self::Build(args) => Made::Build(Box::new(build::make(args, keeping, show_progress, verbose)?)),
             Self::Reject(args) => Made::Reject(reject::make(args, keeping, show_progress)?),
-            Self::Vis(args) => Made::Vis(vis::make(args, keeping, show_progress)?),
+            Self::Vis(args) => Made::Vis(Box::new(vis::make(args, keeping, show_progress)?)),
         })
     }
 }

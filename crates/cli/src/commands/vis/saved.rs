@@ -130,7 +130,8 @@ impl Saved {
         let since = self.last.elapsed();
         let has_ended = *self.stage.get_or_insert(state.stage) != state.stage;
         let is_kept = self.keep && search.is_done();
-        if since < every && !(has_ended && since >= LEAST) && !is_kept && !ends {
+        let is_due = since >= every || has_ended && since >= LEAST;
+        if !(is_due || is_kept || ends) {
             return;
         }
         // A state that cannot be written is lost only if the run is stopped, so the run continues.
