@@ -146,4 +146,12 @@ fn tables_are_built_packed() {
     assert!(folder.read("built.PVZ") != folder.read("a.pvs"));
     folder.run(&["unpack", "built.PVZ", "-o", "back.pvs"]).expect(0);
     assert!(folder.read("back.pvs") == folder.read("a.pvs"));
+    // Row by row.
+    let how = ["--method", "voxels", "--grid", "3,2,3"];
+    folder.run(&[&["build", "a.glb", "-o", "b.pvs"][..], &how].concat()).expect(0);
+    folder.run(&["pack", "b.pvs", "-o", "packed.pvz", "--class", "large"]).expect(0);
+    folder.run(&[&["build", "a.glb", "-o", "rows.pvz", "--class", "large"][..], &how].concat()).expect(0);
+    assert!(folder.read("rows.pvz") == folder.read("packed.pvz"));
+    let error = folder.refused(&["build", "a.glb", "-o", "b.pvs", "--class", "large"]);
+    assert_eq!(error, "b.pvs: --class is for packed tables, whose names end in .pvz");
 }

@@ -50,6 +50,9 @@ pub(crate) enum Error {
     /// The program was interrupted.
     #[error("{0}")]
     Interrupted(Interrupted),
+    /// A layout for a table that is not packed.
+    #[error("{}: --class is for packed tables, whose names end in .pvz", out.display())]
+    Class { out: PathBuf },
     /// A table cannot be packed.
     #[error("{}: {source}", path.display())]
     Pack { path: PathBuf, source: PackError },

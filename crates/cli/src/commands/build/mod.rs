@@ -35,6 +35,7 @@ use crate::output;
 use crate::plans::{self, PlanArgs};
 use crate::progress::Bar;
 use crate::surfaces::{SurfaceArgs, Surfaces};
+use crate::tables::Class;
 use options::BakeArgs;
 use serde::Serialize;
 use sightlines::bake::auto::choose_for;
@@ -79,9 +80,13 @@ pub(crate) struct BuildArgs {
     #[command(flatten)]
     pub(crate) resume: ResumeArgs,
     /// The table to write; in packed form, as `pack` makes it, if the name ends in .pvz. More than 65,536 cells without portals, by one of the
-    /// methods that look from whole cells, are then written row by row, which no number of cells is too much for
+    /// methods that look from whole cells, are then written row by row, without a square of them in memory
     #[arg(short, long, help_heading = "Output", value_name = "OUT.pvs")]
     pub(crate) output: PathBuf,
+    /// Layout of a packed table: small keeps the places of all cells in memory, large reads them on demand [default: large above
+    /// 65,536 cells]
+    #[arg(long, help_heading = "Output", value_enum)]
+    class: Option<Class>,
     /// Store stab trees in the table: for each cell, the sequences of portals that sight lines pass. A tree is
     /// truncated after N nodes, which never hides anything; without N 65536 for plans, 16384 for scenes in space, 4096
     /// for Quake maps and portal files. May take much longer than the table and make it several times as large; the
@@ -110,6 +115,9 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
     let clock = limit::Clock::new(args.time_limit);
     if out.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) {
         return Err(Error::Json { out: out.clone() });
+    }
+    if args.class.is_some() && !packed::is_packed(out) {
+        return Err(Error::Class { out: out.clone() });
     }
     output::check(&[path], &[out])?;
     args.certify.check(path, out)?;
@@ -148,15 +156,14 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
         let options = BakeOptions { units, ..options.clone() };
         let plan = announce::Plan::new(&source.content, &options, auto.as_ref(), args.time_limit);
         let is_alone = args.doors.is_empty() && !args.certify.is_given();
-        if let Some(file) = packed::of_rows(&source, &options, out).filter(|_| is_alone) {
+        if let Some(file) = packed::of_rows(&source, &options, out, args.class).filter(|_| is_alone) {
             let outcome = packed::write_rows(path, file, &options, plan, (out, &kept, show_progress))?;
-            let (outcome, surfaces) = (Outcome::Rows(Box::new(outcome)), Some(Surfaces::new(file)));
             return Ok(Built {
-                auto,
-                outcome,
-                viewers,
+                auto: None,
+                outcome: Outcome::Rows(Box::new(outcome)),
+                viewers: None,
                 placed,
-                surfaces,
+                surfaces: None,
                 given_doors: Vec::new(),
                 stab: None,
                 proofs: None,
@@ -169,7 +176,7 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
         let (baked, stab) = stab::add(path, baked, args.stab_trees, options.threads, &kept, show_progress)?;
         let (baked, given_doors) = doors::add(path, baked, &args.doors);
         let baked = plans::state(baked, &reading);
-        let bytes = packed::bytes_of(&baked.table, path, out)?;
+        let bytes = packed::bytes_of(&baked.table, path, out, args.class)?;
         // Proofs that contradict the table leave an older one untouched.
         let proofs = args.certify.write(path, out, &baked, options.threads, &kept, show_progress)?;
         output::save(out, &bytes)?;

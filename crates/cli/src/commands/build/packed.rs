@@ -7,6 +7,7 @@ use crate::buffers::MethodFailed;
 use crate::facts::Stated;
 use crate::kept::Kept;
 use crate::output::{self, count};
+use crate::tables::Class;
 use serde::Serialize;
 use sightlines::bake::region::PackRegionsError;
 use sightlines::bake::{BakeError, BakeOptions, Bakeable, RegionReport, SceneMethod, bake_packed};
@@ -23,17 +24,24 @@ pub(super) fn is_packed(out: &Path) -> bool {
 }
 
 /// The bytes of a table under a name.
-pub(super) fn bytes_of(table: &Table, path: &Path, out: &Path) -> Result<Vec<u8>, Error> {
+pub(super) fn bytes_of(table: &Table, path: &Path, out: &Path, class: Option<Class>) -> Result<Vec<u8>, Error> {
     if !is_packed(out) {
         return Ok(table.to_bytes());
     }
-    pack(table, &PackOptions::default()).map_err(|source| Error::Pack { path: path.to_owned(), source })
+    let options = PackOptions { class: class.map(Class::size_class), ..PackOptions::default() };
+    pack(table, &options).map_err(|source| Error::Pack { path: path.to_owned(), source })
 }
 
-/// The scene, if its table has more cells than one in memory should have, and can be written row by row.
-pub(super) fn of_rows<'s>(source: &'s Source, options: &BakeOptions<'_>, out: &Path) -> Option<&'s SceneFile> {
+/// The scene, if its table is large and can be written row by row.
+pub(super) fn of_rows<'s>(
+    source: &'s Source,
+    options: &BakeOptions<'_>,
+    out: &Path,
+    class: Option<Class>,
+) -> Option<&'s SceneFile> {
     let Bakeable::Scene(file) = &source.content else { return None };
-    let is_large = options.cells.most().is_some_and(|n| n > MAX_SMALL_CELLS as u64);
+    let n = options.cells.most()?;
+    let is_large = class.map_or(n > MAX_SMALL_CELLS as u64, |class| class == Class::Large);
     let is_by_cell = matches!(options.method, SceneMethod::FromRegion(_)) && options.budget.is_none();
     (is_large && is_by_cell && is_packed(out)).then_some(file)
 }
