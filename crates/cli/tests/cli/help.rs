@@ -68,7 +68,7 @@ fn options_are_grouped_and_those_of_all_commands_come_last() {
     }
     let names: Vec<String> =
         headings(&folder.run(&["build", "-h"]).expect(0).out).into_iter().map(|(name, _)| name).collect();
-    assert_eq!(names, ["Arguments", "Input", "Cells", "Method", "Multifocal buffers", "Output", "General"]);
+    assert_eq!(names, ["Arguments", "Input", "Cells", "Method", "Multifocal buffers", "Resuming", "Output", "General"]);
     for args in [&["--help"][..], &["help", "render"], &["render", "--help"], &["-V"], &["--version"]] {
         assert!(!folder.run(args).expect(0).out.is_empty(), "{args:?}");
     }

@@ -160,11 +160,16 @@ fn jobs(all: &mut Results) {
     add("job merge", "job merge j");
     add("job status", "job status j");
     add("job submit", "job submit j --workers 1");
+    add("job merge", "job merge j");
     // Nothing of a plan in the plane is shared.
     folder.write("maze.geojson", maze_text(1));
     add("job plan", "job plan --json -o n build maze.geojson -o n.pvs");
-    // The next phase of a job: objects, behind pairs of cells.
-    add("job plan", "job plan --json -o k --shards 2 build tower.glb -o k.pvs");
+    // The next phase of a job.
+    let map = rooms(4, 3);
+    folder.write("map.bsp", map.bsp);
+    folder.write("map.prt", map.prt);
+    folder.run(&["job", "plan", "-o", "k", "vis", "map.bsp", "-o", "out.bsp"]).expect(0);
+    folder.run(&["job", "shard", "k", "0"]).expect(0);
     add("job merge", "job merge k");
 }
 
