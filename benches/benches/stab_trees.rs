@@ -169,7 +169,7 @@ fn measure(scene: &str, table: &Table, nodes: usize, threads: usize) -> Result<R
         nodes => nodes,
     };
     let table_bytes = table.to_bytes().len();
-    let options = StabOptions { max_nodes: Some(max_nodes), threads, progress: None };
+    let options = StabOptions { max_nodes: Some(max_nodes), threads, ..StabOptions::default() };
     let baked = with_stab_trees(table.clone(), &graph, &options)?;
     let trees = baked.table.stab().ok_or("the trees were not kept")?;
     let bytes = baked.table.to_bytes();

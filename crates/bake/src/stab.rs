@@ -2,7 +2,7 @@
 
 use crate::baked::Baked;
 use crate::graph::{GraphRef, OtherGraph, TableGraph};
-use sightlines_progress::{Cancelled, Observer};
+use sightlines_progress::{Cancelled, Halt, Observer, Units};
 use sightlines_pvs::{BitMatrix, StabError, StabParts, StabTrees, Table, TableError};
 use sightlines_sightline::StabLimits;
 use sightlines_stabtree::{StabTreesOptions, StabTreesSummary, stab_trees_axial, stab_trees_convex, stab_trees_planar};
@@ -19,6 +19,8 @@ pub struct StabOptions<'a> {
     pub threads: usize,
     /// Receives reports, and may cancel.
     pub progress: Option<&'a dyn Observer>,
+    /// Where the trees of cells are kept as results of units of work. Changes nothing but who computes what.
+    pub units: Units<'a>,
 }
 
 impl fmt::Debug for StabOptions<'_> {
@@ -41,12 +43,24 @@ pub enum StabBakeError {
     /// The observer cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+    /// The store of units ends the bake: it keeps what was done, and the rest is for others or later.
+    #[error(transparent)]
+    Halted(Halt),
     /// The trees do not fit the table: a defect of this crate.
     #[error("the stab trees are inconsistent: {0}")]
     Stab(#[from] StabError),
     /// The table with trees is invalid: a defect of this crate.
     #[error("the table is inconsistent: {0}")]
     Table(#[from] TableError),
+}
+
+impl From<Halt> for StabBakeError {
+    fn from(halt: Halt) -> Self {
+        match halt {
+            Halt::Cancelled(cancelled) => cancelled.into(),
+            halt => Self::Halted(halt),
+        }
+    }
 }
 
 /// A table with stab trees, and a report on them.
@@ -119,7 +133,8 @@ pub fn with_stab_trees<'g>(
     let graph = graph.into();
     let max_nodes = options.max_nodes.or(graph.most_nodes()).ok_or(StabBakeError::NoGraph)?;
     graph.check_size(&table)?;
-    let how = StabTreesOptions { max_nodes, threads: options.threads, progress: options.progress };
+    let StabOptions { threads, progress, units, .. } = *options;
+    let how = StabTreesOptions { max_nodes, threads, progress, units };
     let mut parts = table.into_parts();
     let (trees, summary) = graph.trees(&parts.rows, &how)?;
     let time = start.elapsed();

@@ -1,6 +1,7 @@
 //! Stab trees: every stabbable portal sequence out of a cell; of one cell, or of all cells in one graph.
 
 mod by_polygons;
+mod folded;
 mod follow;
 mod forest;
 mod gate_graph;
@@ -8,10 +9,9 @@ mod grow;
 mod share;
 
 pub use by_polygons::ByPolygons;
+pub use folded::StabTreesSummary;
 pub use follow::{ByStabber, Follower, gate_of, portal_of};
-pub use forest::{
-    StabTreesOptions, StabTreesSummary, stab_trees, stab_trees_axial, stab_trees_convex, stab_trees_planar,
-};
+pub use forest::{StabTreesOptions, stab_trees, stab_trees_axial, stab_trees_convex, stab_trees_planar};
 
 use sightlines_cells::{CellGraph, CellId, Exit, PortalId, Space};
 use sightlines_sightline::Stabber;

@@ -5,7 +5,7 @@
 //! - **Owns**: brute-force answers in exact integer arithmetic ([`stabbable_brute_force`],
 //!   [`axial_stabbable_brute_force`], [`sees_brute_force`], [`sector_visibility_brute_force`], [`eye_fan`]), what a
 //!   point among boxes sees ([`directions_among_boxes`]), sampled lower bounds (from a volume: [`sampled_view`]), what is known of worlds of convex
-//!   cells ([`convex`]), stabbing lines as linear programs ([`lp`]), pages in a browser ([`browser`]), and strategies that draw from small grids.
+//!   cells ([`convex`]), stabbing lines as linear programs ([`lp`]), pages in a browser ([`browser`]), work by units with kept results ([`units`]), and strategies that draw from small grids.
 //! - **Out of scope**: the code under test; an oracle that shares a method with it proves nothing.
 //! - **Invariants**: slow on purpose; every answer in the plane is exact for every finite coordinate; rays in
 //!   space are traced in doubles, and what is sampled with them stands clear of rounding.
@@ -34,6 +34,7 @@ pub mod sector_plans;
 pub mod sectors;
 pub mod sees;
 pub mod stab;
+pub mod units;
 
 pub use axial::{
     AXIS_ORDERS, any_axial_doors, axial_corridor, axial_meets_brute_force, axial_moved, axial_stabbable_brute_force,

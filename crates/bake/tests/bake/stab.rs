@@ -157,7 +157,7 @@ fn shoot(table: &Table, trees: &StabTrees) -> (u64, u64) {
 }
 
 fn options(max_nodes: Option<usize>, threads: usize) -> StabOptions<'static> {
-    StabOptions { max_nodes, threads, progress: None }
+    StabOptions { max_nodes, threads, ..StabOptions::default() }
 }
 
 /// Invariant: what a line was seen to pass is in the trees, or beyond a cut; nothing else of a table changes; any

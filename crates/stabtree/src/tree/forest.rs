@@ -1,14 +1,15 @@
 //! The stab trees of all cells, in one graph.
 
 use super::by_polygons::ByPolygons;
+use super::folded::{Folded, StabTreesSummary};
 use super::follow::{ByStabber, Follower};
 use super::gate_graph::GateGraph;
-use super::grow::{Grown, grow};
+use super::grow::grow;
 use super::share::Shared;
 use crate::convex::Workers;
 use sightlines_cells::{Axial, CellGraph, CellId, Convex, Planar, Space};
 use sightlines_geometry::{Adaptive, AxialDoor, Portal2};
-use sightlines_progress::{Cancelled, Counter, Observer};
+use sightlines_progress::{Counter, Halt, Observer, Phase, Units, shares_of};
 use sightlines_pvs::{BitMatrix, StabParts};
 use sightlines_sightline::{AxialStabber, Funnel, StabLimits};
 
@@ -17,6 +18,9 @@ const BATCH: usize = 64;
 /// Most nodes, and most children, of the whole graph, so that ids have 32 bits with a bit to spare. Trees beyond are
 /// left out.
 const MOST: usize = 1 << 31;
+
+/// The phase of units of work: each cell is one.
+const PHASE: &str = "stab-trees";
 
 /// Limits on trees.
 #[derive(Clone, Copy)]
@@ -28,11 +32,13 @@ pub struct StabTreesOptions<'a> {
     pub threads: usize,
     /// Receives a report for each finished tree, and may cancel.
     pub progress: Option<&'a dyn Observer>,
+    /// Where the tree of each cell is kept, to go on after a stop or to share the work among processes.
+    pub units: Units<'a>,
 }
 
 impl Default for StabTreesOptions<'_> {
     fn default() -> Self {
-        Self { max_nodes: 16_384, threads: 0, progress: None }
+        Self { max_nodes: 16_384, threads: 0, progress: None, units: Units::default() }
     }
 }
 
@@ -40,56 +46,6 @@ impl std::fmt::Debug for StabTreesOptions<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let mut out = f.debug_struct("StabTreesOptions");
         out.field("max_nodes", &self.max_nodes).field("threads", &self.threads).finish_non_exhaustive()
-    }
-}
-
-/// Numbers of the trees of all cells, before equal ones are shared.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[non_exhaustive]
-pub struct StabTreesSummary {
-    /// Sequences of at least one gate: nodes of all trees but their roots.
-    pub n_sequences: u64,
-    /// Those of them that may continue with sequences that are not in the tree.
-    pub n_open: u64,
-    /// Cells whose tree was cut.
-    pub n_cut_cells: u64,
-    /// Nodes of the largest tree, the root included.
-    pub n_largest: u64,
-    /// Sequences of convex portals that count as passed because they are undecided.
-    pub n_undecided: u64,
-}
-
-/// One tree with equal nodes shared.
-struct Folded {
-    shared: Shared,
-    roots: Vec<u32>,
-    root_open: bool,
-    counts: StabTreesSummary,
-}
-
-impl Folded {
-    fn new(tree: &Grown) -> Self {
-        let mut shared = Shared::default();
-        let mut ids = vec![0u32; tree.len()];
-        let mut children = Vec::new();
-        // A parent comes before its children.
-        for node in (1..tree.len()).rev() {
-            children.clear();
-            children.extend_from_slice(&ids[tree.children(node)]);
-            children.sort_unstable();
-            ids[node] = shared.id(tree.gates[node], tree.open[node], &children);
-        }
-        let mut roots = ids[tree.children(0)].to_vec();
-        roots.sort_unstable();
-        let n_open = tree.open[1..].iter().filter(|&&open| open).count() as u64;
-        let counts = StabTreesSummary {
-            n_sequences: tree.len() as u64 - 1,
-            n_open,
-            n_cut_cells: u64::from(n_open > 0 || tree.open[0]),
-            n_largest: tree.len() as u64,
-            n_undecided: tree.n_undecided,
-        };
-        Self { shared, roots, root_open: tree.open[0], counts }
     }
 }
 
@@ -125,7 +81,7 @@ impl Shared {
 /// of a tree to the other; memory is the graph, and a batch of trees.
 ///
 /// # Errors
-/// [`Cancelled`] by the observer.
+/// [`Halt`] by the observer, or by the store of units.
 ///
 /// # Panics
 /// If `rows` has another size.
@@ -137,16 +93,36 @@ pub fn stab_trees<C: Space, F: Follower>(
     rows: &BitMatrix,
     follower: &F,
     options: &StabTreesOptions<'_>,
-) -> Result<(StabParts, StabTreesSummary), Cancelled> {
+) -> Result<(StabParts, StabTreesSummary), Halt> {
     let n = graph.n_cells();
     assert_eq!((rows.n_rows(), rows.n_cols()), (n, n), "rows are cells by cells");
     let ways = GateGraph::new(graph, rows);
     let workers = Workers::new(options.threads);
     let max_nodes = options.max_nodes.clamp(1, MOST);
+    let units = options.units;
+    // What a cell may see bounds the cells of its sequences.
+    let costs: Vec<f64> = (0..n).map(|cell| rows.count_row(cell) as f64).collect();
+    let shares = shares_of(&costs);
+    units.begin(&Phase { name: PHASE, costs: &costs })?;
     let counter = Counter::new(options.progress, "stab trees", n);
-    let one = |follower: &mut F, cell: usize| -> Result<Folded, Cancelled> {
-        let folded = Folded::new(&grow(&ways, CellId(cell as u32), follower, max_nodes));
-        counter.step()?;
+    let one = |follower: &mut F, cell: usize| -> Result<Option<Folded>, Halt> {
+        counter.check()?;
+        let (id, mut computed) = (CellId(cell as u32), None);
+        let result = units.get(PHASE, cell, || {
+            let folded = Folded::new(&grow(&ways, id, follower, max_nodes));
+            let bytes = if units.are_kept() { folded.to_bytes() } else { Vec::new() };
+            computed = Some(folded);
+            Ok::<_, Halt>(bytes)
+        })?;
+        let is_kept = computed.is_none();
+        let folded = match (computed, result) {
+            (None, Some(bytes)) => {
+                let read = Folded::from_bytes(&bytes, &ways, id, max_nodes);
+                Some(read.ok_or_else(|| unfit(cell))?)
+            }
+            (computed, _) => computed,
+        };
+        counter.step_by(shares[cell], is_kept)?;
         Ok(folded)
     };
     let mut shared = Shared::default();
@@ -155,7 +131,8 @@ pub fn stab_trees<C: Space, F: Follower>(
     for first in (0..n).step_by(BATCH) {
         // In the order of cells, so that ids do not depend on which finished first.
         for tree in workers.map(first..n.min(first + BATCH), || follower.clone(), one) {
-            let tree = tree?;
+            // Without one that is for another process this ends below.
+            let Some(tree) = tree? else { continue };
             let fits = shared.len() + tree.shared.len() <= MOST
                 && shared.children.len() + tree.shared.children.len() <= MOST
                 && forest.roots.len() + tree.roots.len() <= MOST;
@@ -172,30 +149,25 @@ pub fn stab_trees<C: Space, F: Follower>(
             forest.first_root.push(forest.roots.len() as u32);
         }
     }
+    units.end(PHASE)?;
     forest.first_child = shared.first_child();
     (forest.gates, forest.children, forest.open) = (shared.gates, shared.children, shared.open);
     Ok((forest, summary))
 }
 
-impl std::ops::AddAssign for StabTreesSummary {
-    fn add_assign(&mut self, other: Self) {
-        self.n_sequences += other.n_sequences;
-        self.n_open += other.n_open;
-        self.n_cut_cells += other.n_cut_cells;
-        self.n_largest = self.n_largest.max(other.n_largest);
-        self.n_undecided += other.n_undecided;
-    }
+fn unfit(cell: usize) -> Halt {
+    Halt::Store(format!("the kept result of unit {cell} of the phase '{PHASE}' does not fit this bake"))
 }
 
 /// [`stab_trees`] of a planar graph: exact.
 ///
 /// # Errors
-/// [`Cancelled`] by the observer.
+/// [`Halt`] by the observer, or by the store of units.
 pub fn stab_trees_planar(
     graph: &CellGraph<Planar>,
     rows: &BitMatrix,
     options: &StabTreesOptions<'_>,
-) -> Result<(StabParts, StabTreesSummary), Cancelled> {
+) -> Result<(StabParts, StabTreesSummary), Halt> {
     let seen = |p: &Portal2, forward: bool| if forward { *p } else { p.reversed() };
     match graph.small_grid() {
         Some(grid) => stab_trees(graph, rows, &ByStabber::new(graph, Funnel::new(grid), seen), options),
@@ -206,12 +178,12 @@ pub fn stab_trees_planar(
 /// [`stab_trees`] of a graph of boxes: exact.
 ///
 /// # Errors
-/// [`Cancelled`] by the observer.
+/// [`Halt`] by the observer, or by the store of units.
 pub fn stab_trees_axial(
     graph: &CellGraph<Axial>,
     rows: &BitMatrix,
     options: &StabTreesOptions<'_>,
-) -> Result<(StabParts, StabTreesSummary), Cancelled> {
+) -> Result<(StabParts, StabTreesSummary), Halt> {
     let seen = |p: &AxialDoor, forward: bool| if forward { *p } else { p.reversed() };
     stab_trees(graph, rows, &ByStabber::new(graph, AxialStabber::new(), seen), options)
 }
@@ -219,12 +191,12 @@ pub fn stab_trees_axial(
 /// [`stab_trees`] of a graph of convex cells. Sequences that are not decided within `limits` count as passed.
 ///
 /// # Errors
-/// [`Cancelled`] by the observer.
+/// [`Halt`] by the observer, or by the store of units.
 pub fn stab_trees_convex(
     graph: &CellGraph<Convex>,
     rows: &BitMatrix,
     limits: StabLimits,
     options: &StabTreesOptions<'_>,
-) -> Result<(StabParts, StabTreesSummary), Cancelled> {
+) -> Result<(StabParts, StabTreesSummary), Halt> {
     stab_trees(graph, rows, &ByPolygons::new(graph, limits), options)
 }

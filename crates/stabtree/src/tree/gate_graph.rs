@@ -31,6 +31,12 @@ impl<'a> GateGraph<'a> {
         self.heads[gate as usize].0
     }
 
+    /// The cells that a gate leads out of and into; `None` if there is no such gate.
+    pub(super) fn ends(&self, gate: u32) -> Option<[CellId; 2]> {
+        let of = |gate: u32| self.heads.get(gate as usize).map(|head| head.0);
+        Some([of(gate ^ 1)?, of(gate)?])
+    }
+
     /// Gates that may follow: `met` are the cells so far, at least one, `entry` the gate into the last of them.
     ///
     /// A line meets a convex cell once and does not leave it by the side through which it entered; and every point on

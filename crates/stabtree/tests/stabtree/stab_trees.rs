@@ -24,7 +24,7 @@ type Sequence = Vec<u32>;
 type Unfolded = BTreeMap<Sequence, bool>;
 
 fn options(max_nodes: usize, threads: usize) -> StabTreesOptions<'static> {
-    StabTreesOptions { max_nodes, threads, progress: None }
+    StabTreesOptions { max_nodes, threads, ..StabTreesOptions::default() }
 }
 
 /// All paths from the roots of a cell.

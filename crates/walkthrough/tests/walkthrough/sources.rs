@@ -12,7 +12,7 @@ use sightlines_walkthrough::PackedCells;
 fn table() -> Table {
     let plan = office(OfficeOptions { furniture: true, ..OfficeOptions::default() }).expect("an office");
     let baked = bake_plan(&plan, &PlanBakeOptions::default()).expect("a plan");
-    let few = StabOptions { max_nodes: Some(64), threads: 1, progress: None };
+    let few = StabOptions { max_nodes: Some(64), threads: 1, ..StabOptions::default() };
     with_stab_trees(baked.table, &baked.graph, &few).expect("the graph of the table").table
 }
 

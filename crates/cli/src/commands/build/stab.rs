@@ -22,7 +22,8 @@ pub(super) fn add(
     let Some(max_nodes) = wanted else { return Ok((baked, None)) };
     let bar = kept.bar("stab trees", show_progress);
     let max_nodes = max_nodes.map(|n| n as usize);
-    let with = baked.with_stab_trees(&StabOptions { max_nodes, threads, progress: Some(&bar) });
+    let with =
+        baked.with_stab_trees(&StabOptions { max_nodes, threads, progress: Some(&bar), ..StabOptions::default() });
     drop(bar);
     let (baked, report) = with.map_err(|source| Error::Stab { path: path.to_owned(), source })?;
     let added = Added::new(&baked.table, &report);
