@@ -67,7 +67,7 @@ fn graph(plan: &Plan, points: &Points, effort: &Effort<'_>) -> VisibilityGraph {
 }
 
 fn small(plan: &Plan, points: &Points, args: &Args) {
-    let effort = Effort { threads: 1, observer: None };
+    let effort = Effort { threads: 1, ..Effort::default() };
     let walls: Vec<Segment2> = plan.lines().iter().filter(|l| l.opaque).map(|l| Segment2::new(l.a, l.b)).collect();
     let at = points.coordinates();
     let (plain, pairs) = timed(|| {

@@ -8,7 +8,7 @@ use crate::plan::Plan;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
 use sightlines_geometry::Point2;
-use sightlines_progress::{Cancelled, Observer};
+use sightlines_progress::{Cancelled, Halt, Observer};
 use sightlines_visibility_graph::{
     Analysis, AnalysisOptions, Effort, GraphError, Grid, GridError, Group, Measure, Points, Turns, UNDEFINED,
     VisibilityGraph,
@@ -91,7 +91,7 @@ fn analyse(
     let grid = Grid::over(&plan.plan, spacing).map_err(Why::Grid)?;
     let points = seeds.map_or_else(|| grid.enclosed(), |seeds| grid.fill(seeds)).map_err(Why::Grid)?;
     let at = points.coordinates();
-    let effort = Effort { threads: options.threads, observer: Some(observer) };
+    let effort = Effort { threads: options.threads, observer: Some(observer), ..Effort::default() };
     let graph = plan.mesh_around(at.iter().copied(), |mesh| {
         let index = mesh.index(at).map_err(|failure| Failed::Eye(0, failure))?;
         let seen = |eye: u32, list: &mut Vec<u32>| mesh.points_seen(eye, &index, touch(options.touching), list);
@@ -105,7 +105,7 @@ fn analyse(
     let turns = if options.turns_anywhere { Turns::Anywhere } else { Turns::NearWalls };
     let &Options { radius, metric_radius, angular_radius, .. } = options;
     let analysis_options = AnalysisOptions { radius, metric_radius, angular_radius, turns };
-    let analysis = Analysis::of(&graph, &points, measures, &analysis_options, &effort)?;
+    let analysis = Analysis::of(&graph, &points, measures, &analysis_options, &effort).map_err(Halt::without_store)?;
     Ok((points, analysis, n_pairs))
 }
 

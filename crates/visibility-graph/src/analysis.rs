@@ -1,7 +1,7 @@
 //! All measures by name.
 
 use crate::{AngularMeasures, Effort, GlobalMeasures, LocalMeasures, MetricMeasures, Points, Turns, VisibilityGraph};
-use sightlines_progress::Cancelled;
+use sightlines_progress::Halt;
 
 /// Measures that are computed together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -120,7 +120,7 @@ impl Analysis {
     /// Computes the groups of some measures.
     ///
     /// # Errors
-    /// [`Cancelled`]
+    /// [`Halt`] by the observer, or by the store of units.
     ///
     /// # Panics
     /// If the points are not as many as those of the graph.
@@ -130,7 +130,7 @@ impl Analysis {
         measures: &[Measure],
         options: &AnalysisOptions,
         effort: &Effort<'_>,
-    ) -> Result<Self, Cancelled> {
+    ) -> Result<Self, Halt> {
         let AnalysisOptions { radius, metric_radius, angular_radius, turns } = *options;
         let is_wanted = |group: Group| measures.iter().any(|measure| measure.group() == group);
         let mut all = Self::default();

@@ -3,7 +3,7 @@
 use crate::functions::log2;
 use crate::search::{WIDTH, depths};
 use crate::{Effort, UNDEFINED, VisibilityGraph};
-use sightlines_progress::Cancelled;
+use sightlines_progress::Halt;
 
 /// Global measures of all points, a value for each point in every list. A step leads from a point to one that it sees; depth is the
 /// smallest number of steps. What cannot be reached does not count.
@@ -43,11 +43,11 @@ impl GlobalMeasures {
     /// * `radius`: the most steps that count; `None` for any number
     ///
     /// # Errors
-    /// [`Cancelled`]
+    /// [`Halt`] by the observer, or by the store of units.
     ///
     /// # Cost
     /// O(depth · runs) for every 256 points, on all threads, and 32 · 10 bytes for each point and thread. No libm: the same bits everywhere.
-    pub fn of(graph: &VisibilityGraph, radius: Option<u32>, effort: &Effort<'_>) -> Result<Self, Cancelled> {
+    pub fn of(graph: &VisibilityGraph, radius: Option<u32>, effort: &Effort<'_>) -> Result<Self, Halt> {
         let n = graph.n_points();
         let of_point = depths(graph, radius, effort)?;
         let mut all = Self::default();

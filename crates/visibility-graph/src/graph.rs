@@ -1,7 +1,9 @@
 //! The graph: for each point the points that it sees, as runs of consecutive numbers.
 
 use crate::Effort;
-use sightlines_progress::Cancelled;
+use crate::bytes::Rows;
+use crate::work::Stage;
+use sightlines_progress::{Cancelled, Halt};
 
 /// Points with consecutive numbers, from `start` up to but without `end`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,7 +24,7 @@ pub struct VisibilityGraph {
 }
 
 /// Why there is no graph.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GraphError {
     /// What a point sees is not an ascending list of points.
@@ -36,7 +38,22 @@ pub enum GraphError {
     /// The observer cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+    /// The store of units ends the work: it keeps what was done, and the rest is for others or later.
+    #[error(transparent)]
+    Halted(Halt),
 }
+
+impl From<Halt> for GraphError {
+    fn from(halt: Halt) -> Self {
+        match halt {
+            Halt::Cancelled(cancelled) => cancelled.into(),
+            halt => Self::Halted(halt),
+        }
+    }
+}
+
+/// Points of a unit of work.
+const UNIT: usize = 256;
 
 impl VisibilityGraph {
     /// Builds the graph of `n_points` points.
@@ -64,8 +81,9 @@ impl VisibilityGraph {
             runs_of(list, point, runs);
             ascends.then(|| Box::<[Run]>::from(&runs[..])).ok_or(GraphError::Row { point, n_points })
         };
-        let rows = effort.each("what points see", n_points as usize, state, row)?;
-        Ok(Self { rows: rows.into_iter().collect::<Result<_, _>>()? })
+        let (cost, kept) = (&|_| 1.0, &Rows { n_points });
+        let stage = Stage { title: "what points see", phase: "sight", size: UNIT, cost, kept };
+        Ok(Self { rows: effort.each(&stage, n_points as usize, state, row)? })
     }
 
     /// Number of points.
@@ -215,7 +233,7 @@ mod tests {
     #[test]
     fn an_observer_cancels() {
         let stop = |_: sightlines_progress::Progress| std::ops::ControlFlow::Break(());
-        let effort = Effort { threads: 2, observer: Some(&stop) };
+        let effort = Effort { threads: 2, observer: Some(&stop), ..Effort::default() };
         let graph = VisibilityGraph::build(9, |_, _| (), &effort);
         assert_eq!(graph, Err(GraphError::Cancelled(Cancelled)));
     }

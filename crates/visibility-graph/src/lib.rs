@@ -10,6 +10,7 @@
 //!   the same bits with any number of threads, on any machine.
 
 mod analysis;
+mod bytes;
 mod fill;
 mod functions;
 mod global;

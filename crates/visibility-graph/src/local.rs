@@ -1,7 +1,9 @@
 //! Local measures: what a point's neighbourhood in the graph is like.
 
+use crate::bytes::Values;
+use crate::work::Stage;
 use crate::{Effort, Points, Run, UNDEFINED, VisibilityGraph};
-use sightlines_progress::Cancelled;
+use sightlines_progress::Halt;
 
 /// Local measures of all points, a value for each point in every list. With N(i) the points that i sees, and k of them:
 ///
@@ -26,6 +28,9 @@ pub struct LocalMeasures {
     pub controllability: Vec<f64>,
 }
 
+/// Points of a unit of work.
+const UNIT: usize = 256;
+
 /// What one point has, in the order of the fields.
 type Row = (u32, [f64; 5]);
 
@@ -33,19 +38,22 @@ impl LocalMeasures {
     /// Computes the local measures.
     ///
     /// # Errors
-    /// [`Cancelled`]
+    /// [`Halt`] by the observer, or by the store of units.
     ///
     /// # Panics
     /// If the points are not as many as those of the graph.
     ///
     /// # Cost
     /// For each point O(points + runs of the points that it sees and the one before it does not, or the other way round), on all threads.
-    pub fn of(graph: &VisibilityGraph, points: &Points, effort: &Effort<'_>) -> Result<Self, Cancelled> {
+    pub fn of(graph: &VisibilityGraph, points: &Points, effort: &Effort<'_>) -> Result<Self, Halt> {
         let n = graph.n_points();
         assert_eq!(n, points.len(), "one row for each point");
         let degrees: Vec<u32> = (0..n as u32).map(|p| graph.n_seen(p)).collect();
-        let row = |sight: &mut Sight<'_>, point: usize| one(graph, points, &degrees, point as u32, sight);
-        let rows = effort.each("local measures", n, || Sight::new(graph), row)?;
+        let row =
+            |sight: &mut Sight<'_>, point: usize| Ok::<_, Halt>(one(graph, points, &degrees, point as u32, sight));
+        let (cost, kept) = (&|point: usize| f64::from(degrees[point]), &Values { n_points: n as u32 });
+        let stage = Stage { title: "local measures", phase: "local-measures", size: UNIT, cost, kept };
+        let rows = effort.each(&stage, n, || Sight::new(graph), row)?;
         let column = |k: usize| rows.iter().map(|(_, values)| values[k]).collect();
         Ok(Self {
             connectivity: rows.iter().map(|&(k, _)| k).collect(),

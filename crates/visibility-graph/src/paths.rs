@@ -1,10 +1,15 @@
 //! Shortest paths through the graph, by length and by turns.
 
+use crate::bytes::Values;
 use crate::functions::{quarter_turns, quarter_turns_at_least};
+use crate::work::Stage;
 use crate::{Effort, Points, Run, VisibilityGraph};
-use sightlines_progress::Cancelled;
+use sightlines_progress::Halt;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
+
+/// Points of a unit of work: each is a search through the graph.
+const UNIT: usize = 64;
 
 /// At which points a path may turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -57,7 +62,7 @@ impl MetricMeasures {
     /// * `radius`: the longest paths that count, in scene units; `None` for any
     ///
     /// # Errors
-    /// [`Cancelled`]
+    /// [`Halt`] by the observer, or by the store of units.
     ///
     /// # Panics
     /// If the points are not as many as those of the graph.
@@ -71,7 +76,7 @@ impl MetricMeasures {
         turns: Turns,
         radius: Option<f64>,
         effort: &Effort<'_>,
-    ) -> Result<Self, Cancelled> {
+    ) -> Result<Self, Halt> {
         assert_eq!(graph.n_points(), points.len(), "one row for each point");
         let radius = radius.map_or(f64::INFINITY, |radius| radius / points.unit());
         let one = |room: &mut Room, point: usize| {
@@ -105,9 +110,11 @@ impl MetricMeasures {
                 }
             }
             let mean = |sum: f64| sum / f64::from(n);
-            (n, [mean(length) * points.unit(), mean(angle), mean(straight) * points.unit()])
+            Ok::<_, Halt>((n, [mean(length) * points.unit(), mean(angle), mean(straight) * points.unit()]))
         };
-        let rows = effort.each("metric depths", points.len(), || Room::new(points.len()), one)?;
+        let (cost, kept) = (&|_| 1.0, &Values { n_points: points.len() as u32 });
+        let stage = Stage { title: "metric depths", phase: "metric-paths", size: UNIT, cost, kept };
+        let rows = effort.each(&stage, points.len(), || Room::new(points.len()), one)?;
         let column = |k: usize| rows.iter().map(|(_, values)| values[k]).collect();
         Ok(Self {
             node_count: rows.iter().map(|&(n, _)| n).collect(),
@@ -124,7 +131,7 @@ impl AngularMeasures {
     /// * `radius`: the largest depth that counts, in right angles; `None` for any
     ///
     /// # Errors
-    /// [`Cancelled`]
+    /// [`Halt`] by the observer, or by the store of units.
     ///
     /// # Panics
     /// If the points are not as many as those of the graph.
@@ -137,7 +144,7 @@ impl AngularMeasures {
         turns: Turns,
         radius: Option<f64>,
         effort: &Effort<'_>,
-    ) -> Result<Self, Cancelled> {
+    ) -> Result<Self, Halt> {
         assert_eq!(graph.n_points(), points.len(), "one row for each point");
         let radius = radius.unwrap_or(f64::INFINITY);
         let one = |room: &mut Room, point: usize| {
@@ -163,13 +170,15 @@ impl AngularMeasures {
                     }
                 }
             }
-            (n, total)
+            Ok::<_, Halt>((n, [total]))
         };
-        let rows = effort.each("angular depths", points.len(), || Room::new(points.len()), one)?;
+        let (cost, kept) = (&|_| 1.0, &Values { n_points: points.len() as u32 });
+        let stage = Stage { title: "angular depths", phase: "angular-paths", size: UNIT, cost, kept };
+        let rows = effort.each(&stage, points.len(), || Room::new(points.len()), one)?;
         Ok(Self {
             node_count: rows.iter().map(|&(n, _)| n).collect(),
-            total_depth: rows.iter().map(|&(_, total)| total).collect(),
-            mean_depth: rows.iter().map(|&(n, total)| total / f64::from(n)).collect(),
+            total_depth: rows.iter().map(|&(_, [total])| total).collect(),
+            mean_depth: rows.iter().map(|&(n, [total])| total / f64::from(n)).collect(),
         })
     }
 }

@@ -9,8 +9,10 @@
 //! A run costs the same whatever its length: the union over its points is that of two unions over a power of two of points, which are
 //! computed once for each step; and what all its points get is handed to two such groups, and on from these at the end.
 
+use crate::bytes::{Kept, read_number, write_number};
+use crate::work::Stage;
 use crate::{Effort, Run, VisibilityGraph};
-use sightlines_progress::Cancelled;
+use sightlines_progress::Halt;
 
 /// Words of a set.
 const WORDS: usize = 4;
@@ -38,6 +40,30 @@ impl Depths {
     }
 }
 
+/// Depths of so many points, as bytes.
+struct DepthsOf {
+    n_points: usize,
+}
+
+impl Kept<Depths> for DepthsOf {
+    fn write(&self, depths: &Depths, out: &mut Vec<u8>) {
+        write_number((depths.counts.len() / WIDTH) as u32, out);
+        depths.counts.iter().for_each(|&count| write_number(count, out));
+    }
+
+    fn read(&self, bytes: &mut &[u8], batch: usize) -> Option<Depths> {
+        let n = read_number(bytes)? as usize;
+        let n = n.checked_mul(WIDTH).filter(|n| (WIDTH..=bytes.len()).contains(n))?;
+        let counts: Vec<u32> = (0..n).map(|_| read_number(bytes)).collect::<Option<_>>()?;
+        let n_searches = (self.n_points - batch * WIDTH).min(WIDTH);
+        let fits = |search: usize| {
+            let found: u64 = counts.iter().skip(search).step_by(WIDTH).map(|&count| u64::from(count)).sum();
+            counts[search] == u32::from(search < n_searches) && found <= self.n_points as u64
+        };
+        (0..WIDTH).all(fits).then_some(Depths { counts })
+    }
+}
+
 /// Memory of a thread.
 struct Room {
     /// Searches that are done with a point, or will never come to it.
@@ -48,11 +74,7 @@ struct Room {
 }
 
 /// The depths of all points from all points, in batches of [`WIDTH`].
-pub(crate) fn depths(
-    graph: &VisibilityGraph,
-    radius: Option<u32>,
-    effort: &Effort<'_>,
-) -> Result<Vec<Depths>, Cancelled> {
+pub(crate) fn depths(graph: &VisibilityGraph, radius: Option<u32>, effort: &Effort<'_>) -> Result<Vec<Depths>, Halt> {
     let n = graph.n_points();
     let components = graph.components();
     let longest = (0..n as u32).flat_map(|p| graph.row(p)).map(|run| run.end - run.start).max().unwrap_or(1);
@@ -60,9 +82,10 @@ pub(crate) fn depths(
     let room = || Room { done: vec![NONE; n], levels: vec![vec![NONE; n]; n_levels], next: vec![NONE; n] };
     let batch = |room: &mut Room, batch: usize| {
         let first = batch * WIDTH;
-        search(graph, &components, first..(first + WIDTH).min(n), radius.unwrap_or(u32::MAX), room)
+        Ok(search(graph, &components, first..(first + WIDTH).min(n), radius.unwrap_or(u32::MAX), room))
     };
-    effort.each("depths", n.div_ceil(WIDTH), room, batch)
+    let stage = Stage { title: "depths", phase: "depths", size: 1, cost: &|_| 1.0, kept: &DepthsOf { n_points: n } };
+    effort.each(&stage, n.div_ceil(WIDTH), room, batch)
 }
 
 fn search(

@@ -1,47 +1,149 @@
-//! Threads and observers of long work.
+//! Threads, observers and stores of long work.
 
+use crate::bytes::Kept;
 use rayon::prelude::*;
-use sightlines_progress::{Cancelled, Counter, Observer};
+use sightlines_progress::{Counter, Halt, Observer, Phase, Units, shares_of};
+use std::ops::Range;
 
-/// How long work is done: by how many threads, and who is told. Neither changes a result.
+/// How long work is done: by how many threads, who is told, and where results are kept. None of them changes a result.
 #[derive(Clone, Copy, Default)]
 pub struct Effort<'a> {
     /// Number of threads; 0 for one per core.
     pub threads: usize,
     /// Is told how far the work is, and may cancel it.
     pub observer: Option<&'a dyn Observer>,
+    /// Where results of units of work are kept, to go on after a stop or to share the work among processes. Phases are `sight`,
+    /// `local-measures`, `depths`, `metric-paths` and `angular-paths`: a store serves each of them once.
+    pub units: Units<'a>,
 }
 
 impl std::fmt::Debug for Effort<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Effort").field("threads", &self.threads).field("observer", &self.observer.is_some()).finish()
+        let mut out = f.debug_struct("Effort");
+        out.field("threads", &self.threads).field("observer", &self.observer.is_some()).field("units", &self.units);
+        out.finish()
+    }
+}
+
+/// A stage of the work: a result for each of some numbers.
+pub(crate) struct Stage<'a, R> {
+    /// What is done, for people.
+    pub(crate) title: &'static str,
+    /// Name of the phase of units.
+    pub(crate) phase: &'static str,
+    /// Results of a unit.
+    pub(crate) size: usize,
+    /// The predicted cost of each result.
+    pub(crate) cost: &'a (dyn Fn(usize) -> f64 + Sync),
+    /// Results as bytes.
+    pub(crate) kept: &'a dyn Kept<R>,
+}
+
+/// Why there is no result of a unit.
+enum Stop<E> {
+    Halt(Halt),
+    Error(E),
+}
+
+impl<E> From<Halt> for Stop<E> {
+    fn from(halt: Halt) -> Self {
+        Self::Halt(halt)
     }
 }
 
 impl Effort<'_> {
-    /// Applies `unit` to the numbers below `n`, each with a state that `state` makes once for some of them, and returns the results in
-    /// order.
-    pub(crate) fn each<S, R: Send>(
+    /// Applies `one` to the numbers below `n`, each with a state that `state` makes once for some of them, and returns the results in
+    /// order, or the error of the lowest number.
+    pub(crate) fn each<S, R: Send, E: From<Halt> + Send>(
         &self,
-        phase: &'static str,
+        stage: &Stage<'_, R>,
         n: usize,
         state: impl Fn() -> S + Sync + Send,
-        unit: impl Fn(&mut S, usize) -> R + Sync + Send,
-    ) -> Result<Vec<R>, Cancelled> {
-        let counter = Counter::new(self.observer, phase, n);
+        one: impl Fn(&mut S, usize) -> Result<R, E> + Sync + Send,
+    ) -> Result<Vec<R>, E> {
+        if self.units.are_kept() {
+            return self.each_in_units(stage, n, state, one);
+        }
+        let counter = Counter::new(self.observer, stage.title, n);
         let all = || {
             let step = |state: &mut S, k: usize| {
                 counter.check()?;
-                let result = unit(state, k);
+                let result = one(state, k);
                 counter.step()?;
                 Ok(result)
             };
-            (0..n).into_par_iter().map_init(&state, step).collect()
+            (0..n).into_par_iter().map_init(&state, step).collect::<Result<Vec<Result<R, E>>, Halt>>()
         };
+        self.on_threads(all)?.into_iter().collect()
+    }
+
+    fn each_in_units<S, R: Send, E: From<Halt> + Send>(
+        &self,
+        stage: &Stage<'_, R>,
+        n: usize,
+        state_of: impl Fn() -> S + Sync + Send,
+        one: impl Fn(&mut S, usize) -> Result<R, E> + Sync + Send,
+    ) -> Result<Vec<R>, E> {
+        let ranges: Vec<Range<usize>> =
+            (0..n).step_by(stage.size).map(|first| first..n.min(first + stage.size)).collect();
+        let costs: Vec<f64> = ranges.iter().map(|range| range.clone().map(stage.cost).sum()).collect();
+        let shares = shares_of(&costs);
+        self.units.begin(&Phase { name: stage.phase, costs: &costs })?;
+        let counter = Counter::new(self.observer, stage.title, ranges.len());
+        let step = |state: &mut Option<S>, unit: usize| -> Result<Result<Vec<R>, E>, Halt> {
+            counter.check()?;
+            let mut computed = None;
+            let result = self.units.get(stage.phase, unit, || {
+                let state = state.get_or_insert_with(&state_of);
+                let (mut all, mut bytes) = (Vec::with_capacity(ranges[unit].len()), Vec::new());
+                for k in ranges[unit].clone() {
+                    counter.check().map_err(Halt::from)?;
+                    let result = one(state, k).map_err(Stop::Error)?;
+                    stage.kept.write(&result, &mut bytes);
+                    all.push(result);
+                }
+                computed = Some(all);
+                Ok(bytes)
+            });
+            let result = match result {
+                Ok(result) => result,
+                Err(Stop::Halt(halt)) => return Err(halt),
+                Err(Stop::Error(error)) => return Ok(Err(error)),
+            };
+            let is_kept = computed.is_none();
+            let found = match (computed, result) {
+                (None, Some(bytes)) => {
+                    read(stage.kept, &bytes, ranges[unit].clone()).ok_or_else(|| unfit(stage.phase, unit))?
+                }
+                // Those of another process are missing, and the end of the phase says so.
+                (computed, _) => computed.unwrap_or_default(),
+            };
+            counter.step_by(shares[unit], is_kept)?;
+            Ok(Ok(found))
+        };
+        let all = || {
+            let units = (0..ranges.len()).into_par_iter().with_max_len(1);
+            units.map_init(|| None, step).collect::<Result<Vec<Result<Vec<R>, E>>, Halt>>()
+        };
+        let found = self.on_threads(all)?.into_iter().collect::<Result<Vec<Vec<R>>, E>>()?;
+        self.units.end(stage.phase)?;
+        Ok(found.into_iter().flatten().collect())
+    }
+
+    fn on_threads<T: Send>(&self, all: impl FnOnce() -> T + Send) -> T {
         match rayon::ThreadPoolBuilder::new().num_threads(self.threads).build() {
             Ok(pool) => pool.install(all),
             // The system has no threads left: the shared ones do it.
             Err(_) => all(),
         }
     }
+}
+
+fn read<R>(kept: &dyn Kept<R>, mut bytes: &[u8], range: Range<usize>) -> Option<Vec<R>> {
+    let found = range.map(|k| kept.read(&mut bytes, k)).collect::<Option<Vec<R>>>()?;
+    bytes.is_empty().then_some(found)
+}
+
+fn unfit(phase: &str, unit: usize) -> Halt {
+    Halt::Store(format!("the kept result of unit {unit} of the phase '{phase}' does not fit this analysis"))
 }

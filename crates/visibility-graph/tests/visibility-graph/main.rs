@@ -5,3 +5,4 @@ mod grids;
 mod measures;
 mod python;
 mod threads;
+mod units;

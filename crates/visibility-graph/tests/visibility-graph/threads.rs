@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 use std::sync::Mutex;
 
 /// Two rooms that are joined by a door, and one that is shut: some 560 points.
-fn rooms() -> (Walls, Points, Matrix) {
+pub(crate) fn rooms() -> (Walls, Points, Matrix) {
     let walls = Walls(vec![
         [[1, 1], [61, 1]],
         [[61, 1], [61, 41]],
@@ -34,7 +34,7 @@ fn analysis(graph: &VisibilityGraph, points: &Points, effort: &Effort<'_>) -> An
 fn threads_change_nothing() {
     let (_, points, matrix) = rooms();
     let run = |threads: usize| {
-        let effort = Effort { threads, observer: None };
+        let effort = Effort { threads, ..Effort::default() };
         let graph = matrix.graph(&effort).unwrap();
         let all = analysis(&graph, &points, &effort);
         (graph, all)
@@ -76,12 +76,12 @@ fn groups_are_reported_and_can_be_cancelled() {
         phases.lock().unwrap().insert(progress.phase);
         ControlFlow::Continue(())
     };
-    analysis(&graph, &points, &Effort { threads: 2, observer: Some(&observer) });
+    analysis(&graph, &points, &Effort { threads: 2, observer: Some(&observer), ..Effort::default() });
     assert_eq!(phases.lock().unwrap().len(), 4, "a phase for each group");
     for group in Group::ALL {
         let measures: Vec<Measure> = Measure::ALL.into_iter().filter(|measure| measure.group() == group).collect();
         let stop = |_: Progress| ControlFlow::Break(());
-        let effort = Effort { threads: 2, observer: Some(&stop) };
+        let effort = Effort { threads: 2, observer: Some(&stop), ..Effort::default() };
         assert!(Analysis::of(&graph, &points, &measures, &AnalysisOptions::default(), &effort).is_err());
         let some =
             Analysis::of(&graph, &points, &measures[..1], &AnalysisOptions::default(), &Effort::default()).unwrap();

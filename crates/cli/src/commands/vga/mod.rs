@@ -217,7 +217,7 @@ pub(crate) fn run(args: &VgaArgs, show_progress: bool) -> Result<Answer, Error> 
     let measures = measures(args, kind);
 
     let bar = Bar::new("visibility graph", show_progress);
-    let effort = Effort { threads: args.threads, observer: Some(&bar) };
+    let effort = Effort { threads: args.threads, observer: Some(&bar), ..Effort::default() };
     let start = Instant::now();
     let graph = graph(args, &plan, &points, &effort)?;
     let graph_seconds = start.elapsed().as_secs_f64();
