@@ -6,6 +6,7 @@ use crate::kept::Kept;
 use crate::output::{percent, seconds};
 use serde::Serialize;
 use sightlines::bake::{Baked, StabOptions, StabReport};
+use sightlines::progress::Units;
 use sightlines::pvs::Table;
 use std::fmt;
 use std::path::Path;
@@ -22,8 +23,9 @@ pub(super) fn add(
     let Some(max_nodes) = wanted else { return Ok((baked, None)) };
     let bar = kept.bar("stab trees", show_progress);
     let max_nodes = max_nodes.map(|n| n as usize);
-    let with =
-        baked.with_stab_trees(&StabOptions { max_nodes, threads, progress: Some(&bar), ..StabOptions::default() });
+    let store = kept.store();
+    let units = Units(store.as_ref().map(|store| store as _));
+    let with = baked.with_stab_trees(&StabOptions { max_nodes, threads, progress: Some(&bar), units });
     drop(bar);
     let (baked, report) = with.map_err(|source| Error::Stab { path: path.to_owned(), source })?;
     let added = Added::new(&baked.table, &report);

@@ -1,6 +1,7 @@
 //! Why `vga` fails.
 
 use crate::file_error::{FileError, from_file_error};
+use crate::kept::{Interrupted, KeptError};
 use crate::place::LookupError;
 use sightlines::isovist::{EyeError, MeshError};
 use sightlines::visibility_graph::{GraphError, GridError, PointsError};
@@ -30,6 +31,12 @@ pub(crate) enum Error {
     /// The graph cannot be built.
     #[error("{}: {source}", path.display())]
     Graph { path: PathBuf, source: GraphError },
+    /// Results cannot be kept, or taken up.
+    #[error(transparent)]
+    Kept(#[from] KeptError),
+    /// The program was interrupted.
+    #[error("{0}")]
+    Interrupted(Interrupted),
     /// An output of no known kind.
     #[error("{}: the name of the output ends in .csv, .geojson, .svg or .png", .0.display())]
     Kind(PathBuf),

@@ -7,12 +7,12 @@ mod points;
 use crate::Answer;
 use crate::error::InputError;
 use crate::input;
+use crate::kept::{Identity, Keeping, Kept, ResumeArgs};
 use crate::named::one_of;
 use crate::output;
 use crate::picture::PictureError;
 use crate::place::Point;
 use crate::plans::PlanArgs;
-use crate::progress::Bar;
 use error::Error;
 use outcome::{Outcome, Range};
 use sightlines::bake::Bakeable;
@@ -21,6 +21,7 @@ use sightlines::formats::InputKind;
 use sightlines::formats::scene::SceneReadOptions;
 use sightlines::geometry::{Point2, Segment2};
 use sightlines::isovist::{Touch, WallMesh};
+use sightlines::progress::Units;
 use sightlines::report::{Field, MAX_SIZE, MIN_SIZE, PointColumn, field_png, field_svg, points_csv, points_geojson};
 use sightlines::visibility_graph::{
     Analysis, AnalysisOptions, Effort, Group, Measure, Points, Turns, UNDEFINED, VisibilityGraph,
@@ -84,6 +85,8 @@ pub(crate) struct VgaArgs {
     /// Number of threads; 0 uses every core
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::numbers::threads)]
     threads: usize,
+    #[command(flatten)]
+    resume: ResumeArgs,
     /// The measure that a picture shows [default: the first of --measures, else connectivity]
     #[arg(long, help_heading = "Output", value_name = "NAME")]
     #[arg(value_parser = one_of(&Measure::ALL, Measure::name, Measure::title))]
@@ -216,23 +219,12 @@ pub(crate) fn run(args: &VgaArgs, show_progress: bool) -> Result<Answer, Error> 
     };
     let measures = measures(args, kind);
 
-    let bar = Bar::new("visibility graph", show_progress);
-    let effort = Effort { threads: args.threads, observer: Some(&bar), ..Effort::default() };
-    let start = Instant::now();
-    let graph = graph(args, &plan, &points, &effort)?;
-    let graph_seconds = start.elapsed().as_secs_f64();
-    let start = Instant::now();
-    let options = AnalysisOptions {
-        radius: args.radius,
-        metric_radius: args.metric_radius,
-        angular_radius: args.angular_radius,
-        turns: args.turns,
-    };
-    let cancelled = |error| Error::Graph { path: args.plan.clone(), source: error };
-    let analysis =
-        Analysis::of(&graph, &points, &measures, &options, &effort).map_err(|error| cancelled(error.into()))?;
-    let measure_seconds = start.elapsed().as_secs_f64();
-    drop(bar);
+    let kept = Kept::open(Keeping::File(&args.resume), &args.output, &inputs, || args.identity())?;
+    let analysed = analyse(args, &plan, &points, &measures, (&kept, show_progress));
+    if let Some(interrupted) = kept.finish(analysed.is_ok()) {
+        return Err(Error::Interrupted(interrupted));
+    }
+    let Analysed { graph, analysis, graph_seconds, measure_seconds } = analysed?;
 
     let columns: Vec<(Measure, Vec<f64>)> =
         measures.iter().map(|&measure| (measure, analysis.values(measure).unwrap_or_default())).collect();
@@ -255,6 +247,53 @@ pub(crate) fn run(args: &VgaArgs, show_progress: bool) -> Result<Answer, Error> 
     };
     output::print(args.json, &outcome)?;
     Ok(Answer::Yes)
+}
+
+/// What was found.
+struct Analysed {
+    graph: VisibilityGraph,
+    analysis: Analysis,
+    graph_seconds: f64,
+    measure_seconds: f64,
+}
+
+fn analyse(
+    args: &VgaArgs,
+    plan: &Plan,
+    points: &Points,
+    measures: &[Measure],
+    (kept, show_progress): (&Kept<'_>, bool),
+) -> Result<Analysed, Error> {
+    let bar = kept.bar("visibility graph", show_progress);
+    let store = kept.store();
+    let units = Units(store.as_ref().map(|store| store as _));
+    let effort = Effort { threads: args.threads, observer: Some(&bar), units };
+    let start = Instant::now();
+    let graph = graph(args, plan, points, &effort)?;
+    let graph_seconds = start.elapsed().as_secs_f64();
+    let start = Instant::now();
+    let options = AnalysisOptions {
+        radius: args.radius,
+        metric_radius: args.metric_radius,
+        angular_radius: args.angular_radius,
+        turns: args.turns,
+    };
+    let failed = |error| Error::Graph { path: args.plan.clone(), source: error };
+    let analysis = Analysis::of(&graph, points, measures, &options, &effort).map_err(|error| failed(error.into()))?;
+    Ok(Analysed { graph, analysis, graph_seconds, measure_seconds: start.elapsed().as_secs_f64() })
+}
+
+impl VgaArgs {
+    /// What decides the results of units: the files, how they are read, and what is measured; not the number of threads.
+    fn identity(&self) -> Result<Identity, InputError> {
+        let mut identity = Identity::new("vga");
+        identity.file(&self.plan)?;
+        self.points.iter().try_for_each(|points| identity.file(points))?;
+        identity.debug("points", &(&self.map, &self.plans, self.spacing, &self.seed));
+        let Self { measures, measure, radius, metric_radius, angular_radius, turns, touch, .. } = self;
+        identity.debug("measures", &(measures, measure, radius, metric_radius, angular_radius, turns, touch));
+        Ok(identity)
+    }
 }
 
 /// The plan of a file.
