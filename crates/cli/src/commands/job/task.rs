@@ -1,14 +1,36 @@
 //! The command that a job shares.
 
 use super::Error;
-use crate::args::{Arguments, Command};
 use crate::commands::{build, reject, vis};
 use crate::kept::{Keeping, KeptError};
-use clap::Parser;
+use clap::{Parser, Subcommand};
 use sightlines::checkpoint::Job;
 use std::fmt;
 use std::fs::File;
 use std::path::{Path, PathBuf};
+
+/// A command line that a job can share. `-v` and `-q` may be in it, as in any other.
+#[derive(Debug, Parser)]
+#[command(name = "sightlines")]
+struct Line {
+    #[command(subcommand)]
+    command: Command,
+    #[arg(short, long, global = true, action = clap::ArgAction::Count)]
+    verbose: u8,
+    #[arg(short, long, global = true)]
+    quiet: bool,
+}
+
+/// The commands that can be shared.
+#[derive(Debug, Subcommand)]
+enum Command {
+    Build(Box<build::BuildArgs>),
+    Reject(reject::RejectArgs),
+    Vis(vis::VisArgs),
+}
+
+/// Their names.
+const NAMES: [&str; 3] = ["build", "reject", "vis"];
 
 /// The command that a job shares, with its arguments.
 #[derive(Debug)]
@@ -39,8 +61,12 @@ impl fmt::Display for Made {
 impl Task {
     /// The command in words of a command line behind the name of the program. Refuses what cannot be shared.
     pub(super) fn parse(words: &[String]) -> Result<Self, Error> {
+        let name = words.first().map_or("", String::as_str);
+        if !NAMES.contains(&name) {
+            return Err(Error::Command(format!("{name}: only build, vis and reject can be shared")));
+        }
         let line = std::iter::once("sightlines").chain(words.iter().map(String::as_str));
-        let parsed = Arguments::try_parse_from(line).map_err(|error| Error::Command(plain(&error)))?;
+        let parsed = Line::try_parse_from(line).map_err(|error| Error::Command(plain(&error)))?;
         let refuse = |option: &str| Err(Error::Command(format!("{option} means nothing for a job")));
         match parsed.command {
             Command::Build(args) if args.time_limit.is_some() => refuse("--time-limit"),
@@ -50,10 +76,6 @@ impl Task {
             Command::Build(args) => Ok(Self::Build(args)),
             Command::Reject(args) => Ok(Self::Reject(args)),
             Command::Vis(args) => Ok(Self::Vis(args)),
-            _ => Err(Error::Command(format!(
-                "{}: only build, vis and reject can be shared",
-                words.first().map_or("", String::as_str)
-            ))),
         }
     }
 
