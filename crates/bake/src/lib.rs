@@ -42,7 +42,6 @@ mod plan;
 pub mod quake;
 pub mod region;
 pub mod reject;
-mod reject_units;
 mod reports;
 mod run;
 pub mod scene;

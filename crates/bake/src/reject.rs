@@ -21,8 +21,9 @@
 //! blind or deaf monsters that way. Such a table is kept unless the caller insists, or says itself which effects there are
 //! ([`RejectOptions::rmb`]).
 
+mod kept;
+
 use crate::error::BakeError;
-use crate::reject_units;
 use crate::sectors::see_groups;
 use sightlines_formats::doom::{DoomMap, MapFormat, MapLumps, RmbError, RmbFile, list_maps};
 use sightlines_formats::{DoomError, LumpName, RejectTable, Wad, WadError};
@@ -192,8 +193,8 @@ pub fn reject_wad(wad: &Wad, options: &RejectOptions<'_>) -> Result<RejectOutcom
     let insist = is_named || !chosen.iter().any(|m| is_readable(m));
     let mut maps = Vec::with_capacity(chosen.len());
     let (mut lumps, mut n_bytes) = (Vec::new(), 0u64);
-    let costs: Vec<f64> = chosen.iter().map(|map| reject_units::cost(wad, map)).collect();
-    options.units.begin(&Phase { name: reject_units::PHASE, costs: &costs })?;
+    let costs: Vec<f64> = chosen.iter().map(|map| kept::cost(wad, map)).collect();
+    options.units.begin(&Phase { name: kept::PHASE, costs: &costs })?;
     for (unit, map) in chosen.into_iter().enumerate() {
         let start = Instant::now();
         let do_map = || match do_map(wad, map, insist, options) {
@@ -201,11 +202,8 @@ pub fn reject_wad(wad: &Wad, options: &RejectOptions<'_>) -> Result<RejectOutcom
             Err(error) => Ok((0, MapStatus::Failed(Box::new(error)), None)),
             Ok(done) => Ok(done),
         };
-        let done = if options.units.are_kept() {
-            reject_units::get(options.units, unit, map, do_map)?
-        } else {
-            Some(do_map()?)
-        };
+        let done =
+            if options.units.are_kept() { kept::get(options.units, unit, map, do_map)? } else { Some(do_map()?) };
         // A map that is for another process.
         let Some((n_sectors, status, bytes)) = done else { continue };
         n_bytes += bytes.as_ref().map_or(0, |b| b.len() as u64);
@@ -216,7 +214,7 @@ pub fn reject_wad(wad: &Wad, options: &RejectOptions<'_>) -> Result<RejectOutcom
         lumps.extend(bytes.map(|b| (map, b)));
         maps.push(MapOutcome { name: map.name(), n_sectors, status, time: start.elapsed() });
     }
-    options.units.end(reject_units::PHASE)?;
+    options.units.end(kept::PHASE)?;
     let is_done = |m: &MapOutcome| matches!(m.status, MapStatus::Written(_) | MapStatus::KeptHandMade);
     let first_failure = maps.iter().find_map(|m| match &m.status {
         MapStatus::Failed(error) => Some(error),
@@ -255,7 +253,7 @@ fn old_table(n_sectors: u32, bytes: &[u8]) -> Option<RejectTable> {
     if is_padding { RejectTable::from_bytes(n_sectors, table).ok() } else { None }
 }
 
-pub(crate) type Done = (u32, MapStatus, Option<Vec<u8>>);
+type Done = (u32, MapStatus, Option<Vec<u8>>);
 
 /// Does one map; with `insist`, one in a format that is not read is an error.
 fn do_map(wad: &Wad, lumps: &MapLumps, insist: bool, options: &RejectOptions<'_>) -> Result<Done, RejectError> {

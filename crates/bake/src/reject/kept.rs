@@ -1,6 +1,6 @@
 //! Maps as units of work: what they cost, and their tables as results that are kept.
 
-use crate::reject::{Done, MapStatus, RejectError, RejectSummary};
+use super::{Done, MapStatus, RejectError, RejectSummary};
 use sightlines_formats::Wad;
 use sightlines_formats::doom::{MapLump, MapLumps};
 use sightlines_progress::Units;
