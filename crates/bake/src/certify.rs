@@ -6,7 +6,7 @@ use sightlines_certificates::convex::{ConvexNetworkError, ConvexProofs};
 use sightlines_certificates::plan::{NetworkError, PlanProofs};
 use sightlines_certificates::space::{BoxNetworkError, BoxProofs};
 use sightlines_geometry::Aabb;
-use sightlines_progress::Cancelled;
+use sightlines_progress::{Cancelled, Halt};
 use sightlines_pvs::{CellId, Table};
 use sightlines_stabtree::{
     CertifyError as SearchError, CertifyOptions, ObjectRows, certify_convex, certify_plan, certify_space,
@@ -36,12 +36,16 @@ pub enum CertifyError {
     /// The observer cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+    /// The store of units ends the work: it keeps what was done, and the rest is for others or later.
+    #[error(transparent)]
+    Halted(Halt),
 }
 
 impl CertifyError {
     fn of<N: Error + Into<Self>>(error: SearchError<N>) -> Self {
         match error {
             SearchError::Network(error) => error.into(),
+            SearchError::Halted(halt) => Self::Halted(halt),
             _ => Cancelled.into(),
         }
     }
@@ -89,7 +93,7 @@ pub struct Certified {
 ///
 /// # Errors
 /// [`CertifyError::NoGraph`] for boxes without portals; [`CertifyError::OtherGraph`] for the graph of another table;
-/// [`CertifyError::Cancelled`] if the observer cancels; others for cells and portals that nothing can be proven about.
+/// [`CertifyError::Cancelled`] if the observer cancels, [`CertifyError::Halted`] by the store of units; others for cells and portals that nothing can be proven about.
 pub fn certify_table<'g>(
     table: &Table,
     graph: impl Into<GraphRef<'g>>,

@@ -4,15 +4,16 @@ use crate::limit::building;
 use sightlines_bake::methods::{BufferOptions, OcclusionMethod, OcclusionMethodFactory};
 use sightlines_bake::region::{PackRegionsError, pack_regions};
 use sightlines_bake::{
-    BakeError, BakeInput, BakeOptions, Baked, CellsFrom, RegionBakeOptions, Report, SceneMethod, StabBakeError,
-    StabOptions, TableGraph, bake, bake_regions, with_stab_trees,
+    BakeError, BakeInput, BakeOptions, Baked, CellsFrom, CertifyError, RegionBakeOptions, Report, SceneMethod,
+    StabBakeError, StabOptions, TableGraph, bake, bake_regions, with_stab_trees,
 };
 use sightlines_formats::quake::Prt;
 use sightlines_formats::{ViewCell, ViewCells};
 use sightlines_geometry::Aabb;
 use sightlines_packed::{PackOptions, SizeClass, pack};
-use sightlines_progress::Units;
+use sightlines_progress::{Halt, Units};
 use sightlines_scenes::{CityOptions, OfficeOptions, TowerOptions, city, city_crossings, office, tower};
+use sightlines_stabtree::CertifyOptions;
 use sightlines_testkit::units::{Memory, check_impostor, check_units};
 use std::collections::BTreeSet;
 
@@ -141,6 +142,40 @@ fn stab_trees_of_cells() {
         let baked = bake(input, &BakeOptions::default()).unwrap();
         assert_eq!(check_units(trees(&baked)), [("stab-trees", baked.table.n_cells())]);
         check_impostor(trees(&baked), "stab-trees");
+    }
+}
+
+/// Proofs are one unit: kept once they are found, by one of several processes.
+#[test]
+fn proofs_of_tables() {
+    let options = OfficeOptions { rooms_x: 4, rooms_y: 2, block: 2, ..OfficeOptions::default() };
+    let (plan, prt) = (office(options).unwrap(), rooms(4, 3));
+    let scene =
+        tower(TowerOptions { floors: 1, rooms_x: 2, rooms_y: 1, furniture: 1, ..TowerOptions::default() }).unwrap();
+    let mut others: Vec<Vec<u8>> = Vec::new();
+    for input in [BakeInput::from(&plan), (&scene).into(), (&prt).into()] {
+        let baked = bake(input, &BakeOptions::default()).unwrap();
+        let proofs = |store: &Memory| {
+            let options = CertifyOptions { threads: 1, units: Units(Some(store)), ..CertifyOptions::default() };
+            baked.certify(&options).map(|made| made.proofs.to_bytes())
+        };
+        let plain = baked.certify(&CertifyOptions::default()).unwrap().proofs.to_bytes();
+        let store = Memory::default();
+        assert_eq!(proofs(&store).unwrap(), plain);
+        assert_eq!(store.phases(), [("proofs", vec![1.0])]);
+        let results = store.into_results();
+        assert_eq!(proofs(&Memory { stop_after: Some(0), ..Memory::with(&results) }).unwrap(), plain);
+        let stopped = proofs(&Memory { stop_after: Some(0), ..Memory::default() });
+        assert!(matches!(stopped, Err(CertifyError::Cancelled(_))), "{stopped:?}");
+        let of_other = proofs(&Memory { part: Some((1, 3)), ..Memory::default() });
+        assert_eq!(of_other, Err(CertifyError::Halted(Halt::Shared)));
+        // What is cut short, or of another table, is noticed.
+        others.push(plain[..plain.len() / 2].to_vec());
+        for other in &others {
+            let wrong = proofs(&Memory::with(&[(("proofs", 0), other.clone())].into()));
+            assert!(matches!(wrong, Err(CertifyError::Halted(Halt::Store(_)))), "{wrong:?}");
+        }
+        others.push(plain);
     }
 }
 

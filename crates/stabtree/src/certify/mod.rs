@@ -9,7 +9,7 @@ mod space;
 pub use plan::{certify_plan, plan_network};
 pub use space::{ObjectRows, certify_space, space_network};
 
-use sightlines_progress::{Cancelled, Observer};
+use sightlines_progress::{Cancelled, Halt, Observer, Phase, Units};
 use std::error::Error;
 
 /// How much effort goes into proofs. More effort proves more pairs and never changes what is proven.
@@ -27,11 +27,21 @@ pub struct CertifyOptions<'a> {
     pub threads: usize,
     /// Receives a report for each finished unit (cell, gate or pair of groups), and may cancel.
     pub progress: Option<&'a dyn Observer>,
+    /// Where proofs are kept once all are found: they are one unit of work, as each rests on what those before it leave open. A run
+    /// that is stopped before begins anew, and of several processes one finds them.
+    pub units: Units<'a>,
 }
 
 impl Default for CertifyOptions<'_> {
     fn default() -> Self {
-        Self { chords: 12, most_steps: 20_000_000, most_steps_in_all: 2_000_000_000, threads: 0, progress: None }
+        Self {
+            chords: 12,
+            most_steps: 20_000_000,
+            most_steps_in_all: 2_000_000_000,
+            threads: 0,
+            progress: None,
+            units: Units::default(),
+        }
     }
 }
 
@@ -56,4 +66,46 @@ pub enum CertifyError<N: Error + 'static> {
     /// The observer cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+    /// The store of units ends the work.
+    #[error(transparent)]
+    Halted(Halt),
+}
+
+impl<N: Error + 'static> From<Halt> for CertifyError<N> {
+    fn from(halt: Halt) -> Self {
+        match halt {
+            Halt::Cancelled(cancelled) => cancelled.into(),
+            halt => Self::Halted(halt),
+        }
+    }
+}
+
+/// The phase of units of work.
+const PHASE: &str = "proofs";
+
+/// Proofs that are kept, or found and then kept.
+///
+/// * `read`: proofs from bytes, if they are of these cells and portals
+pub(crate) fn kept<P, N: Error + 'static>(
+    units: Units<'_>,
+    find: impl FnOnce() -> Result<P, CertifyError<N>>,
+    write: impl FnOnce(&P) -> Vec<u8>,
+    read: impl FnOnce(&[u8]) -> Option<P>,
+) -> Result<P, CertifyError<N>> {
+    units.begin(&Phase { name: PHASE, costs: &[1.0] })?;
+    let mut found = None;
+    let result = units.get(PHASE, 0, || {
+        let proofs = find()?;
+        let bytes = if units.are_kept() { write(&proofs) } else { Vec::new() };
+        found = Some(proofs);
+        Ok::<_, CertifyError<N>>(bytes)
+    })?;
+    if let (None, Some(bytes)) = (&found, result) {
+        let unfit =
+            || Halt::Store(format!("the kept result of unit 0 of the phase '{PHASE}' does not fit these cells"));
+        found = Some(read(&bytes).ok_or_else(unfit)?);
+    }
+    units.end(PHASE)?;
+    // A phase that ends has all its results.
+    Ok(found.ok_or(Halt::Shared)?)
 }

@@ -1,6 +1,6 @@
 //! Proofs of tables of plans: lines for what is visible, walks for what is hidden.
 
-use super::{CertifyError, CertifyOptions};
+use super::{CertifyError, CertifyOptions, kept};
 use crate::search::ones;
 use sightlines_cells::{CellGraph, CellId, Exit, Planar};
 use sightlines_certificates::plan::{
@@ -27,7 +27,7 @@ const MOST_DOORS: usize = 1500;
 ///
 /// # Errors
 /// [`CertifyError`] with a [`NetworkError`] for a graph that is not well formed, or one of too large coordinates; or if the observer
-/// cancels.
+/// or the store of units ends the work.
 ///
 /// # Panics
 /// If there is not a row for each cell.
@@ -38,9 +38,19 @@ pub fn certify_plan(
 ) -> Result<PlanProofs, CertifyError<NetworkError>> {
     assert!(rows.n_rows() == graph.n_cells() && rows.n_cols() == graph.n_cells(), "a row for each cell");
     let network = plan_network(graph).map_err(CertifyError::Network)?;
+    let read = |bytes: &[u8]| PlanProofs::from_bytes(bytes).ok().filter(|proofs| proofs.checksum == network.checksum());
+    kept(options.units, || find(graph, rows, &network, options), PlanProofs::to_bytes, read)
+}
+
+fn find(
+    graph: &CellGraph<Planar>,
+    rows: &BitMatrix,
+    network: &PlanNetwork,
+    options: &CertifyOptions<'_>,
+) -> Result<PlanProofs, CertifyError<NetworkError>> {
     // Each cell is visited twice: for lines to what it sees, and for a walk to what it does not see.
     let counter = Counter::new(options.progress, "proofs", 2 * graph.n_cells());
-    let mut maker = PlanMaker::new(&network);
+    let mut maker = PlanMaker::new(network);
     shoot(graph, &mut maker, options.chords);
     for cell in graph.cell_ids() {
         Seeker::new(graph, rows, &mut maker, options.most_steps).seek(cell);

@@ -1,6 +1,6 @@
 //! Proofs of tables of scenes in space: lines for what is visible, pairs of boxes for what is hidden.
 
-use super::{CertifyError, CertifyOptions};
+use super::{CertifyError, CertifyOptions, kept};
 use crate::space::{AtomicBitMatrix, halves_first, on_threads, opaque_without_solid};
 use rayon::prelude::*;
 use sightlines_cells::{Axial, CellGraph};
@@ -50,7 +50,8 @@ pub struct ObjectRows<'a> {
 /// pair needs a line, its own or a shared one.
 ///
 /// # Errors
-/// [`CertifyError`] with a [`BoxNetworkError`] for a graph that is not well formed; or if the observer cancels.
+/// [`CertifyError`] with a [`BoxNetworkError`] for a graph that is not well formed; or if the observer or the store of units ends
+/// the work.
 ///
 /// # Panics
 /// If there is not a row for each cell, or not a list of objects, or an object in a list that has no box.
@@ -66,9 +67,24 @@ pub fn certify_space(
     if let Some(objects) = objects {
         network = network.with_objects(&objects.boxes.iter().map(corners).collect::<Vec<_>>());
     }
+    let read = |bytes: &[u8]| {
+        let proofs = BoxProofs::from_bytes(bytes).ok()?;
+        let are_objects = proofs.objects.is_empty() || proofs.objects_checksum == network.objects_checksum();
+        (are_objects && proofs.checksum == network.checksum()).then_some(proofs)
+    };
+    kept(options.units, || find(graph, rows, objects, &network, options), BoxProofs::to_bytes, read)
+}
+
+fn find(
+    graph: &CellGraph<Axial>,
+    rows: &BitMatrix,
+    objects: Option<ObjectRows<'_>>,
+    network: &BoxNetwork,
+    options: &CertifyOptions<'_>,
+) -> Result<BoxProofs, CertifyError<BoxNetworkError>> {
     let blockers = Blockers::new(opaque_without_solid(graph));
     let rectangles: Vec<Box3> = blockers.rectangles().iter().map(corners).collect();
-    let mut maker = BoxMaker::new(&network, &rectangles);
+    let mut maker = BoxMaker::new(network, &rectangles);
     shoot(graph, &mut maker, options.chords);
     if graph.n_cells() == 0 {
         return Ok(maker.finish());

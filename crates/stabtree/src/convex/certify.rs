@@ -5,7 +5,7 @@ use super::bound;
 use super::gates::Gates;
 use super::pairs::SequenceTracer;
 use super::vector::{Point3, add, cross, dot, scale};
-use crate::certify::{CertifyError, CertifyOptions};
+use crate::certify::{CertifyError, CertifyOptions, kept};
 use sightlines_cells::{CellGraph, Convex, Portal3};
 use sightlines_certificates::convex::{
     ConvexBlock, ConvexCut, ConvexLine, ConvexMaker, ConvexNetwork, ConvexNetworkError, ConvexPlane, ConvexPortal,
@@ -35,7 +35,8 @@ const MULTIPLIERS: [f64; 3] = [120.0, 16_000.0, 2_000_000.0];
 /// a stabbable chain of gates, and through open space these are many.
 ///
 /// # Errors
-/// [`CertifyError`] with a [`ConvexNetworkError`] for a graph that is not well formed; or if the observer cancels.
+/// [`CertifyError`] with a [`ConvexNetworkError`] for a graph that is not well formed; or if the observer or the store of units ends
+/// the work.
 ///
 /// # Panics
 /// If there is not a row for each cell.
@@ -46,12 +47,23 @@ pub fn certify_convex(
 ) -> Result<ConvexProofs, CertifyError<ConvexNetworkError>> {
     assert!(rows.n_rows() == graph.n_cells() && rows.n_cols() == graph.n_cells(), "a row for each cell");
     let network = convex_network(graph).map_err(CertifyError::Network)?;
+    let read =
+        |bytes: &[u8]| ConvexProofs::from_bytes(bytes).ok().filter(|proofs| proofs.checksum == network.checksum());
+    kept(options.units, || find(graph, rows, &network, options), ConvexProofs::to_bytes, read)
+}
+
+fn find(
+    graph: &CellGraph<Convex>,
+    rows: &BitMatrix,
+    network: &ConvexNetwork,
+    options: &CertifyOptions<'_>,
+) -> Result<ConvexProofs, CertifyError<ConvexNetworkError>> {
     let gates = Gates::new(graph);
     let seeks = options.most_steps > 0;
     // Lines are sought from each gate and each cell, then walks from each cell.
     let n_seeks = if seeks { gates.len() + graph.n_cells() } else { 0 };
     let counter = Counter::new(options.progress, "proofs", n_seeks + graph.n_cells());
-    let mut maker = ConvexMaker::new(&network);
+    let mut maker = ConvexMaker::new(network);
     shoot(&gates, &mut maker, options.chords);
     if seeks {
         seek(&gates, rows, &mut maker, &counter)?;
@@ -63,7 +75,7 @@ pub fn certify_convex(
     }
     let mut order: Vec<u32> = (0..graph.n_cells() as u32).collect();
     order.sort_by_key(|&cell| (rows.count_row(cell as usize), cell));
-    let mut guide = Guide::new(&gates, &network);
+    let mut guide = Guide::new(&gates, network);
     let mut left = options.most_steps_in_all / STEPS_EACH;
     for source in order {
         let most = options.most_steps / STEPS_EACH;
