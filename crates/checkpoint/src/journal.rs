@@ -3,7 +3,6 @@
 use crate::error::StateError;
 use crate::index::Results;
 use crate::key::Key;
-use crate::meter::KnownStore;
 use crate::records::{Owner, Place, record};
 use sightlines_formats::process_mark;
 use sightlines_progress::{Halt, Phase, UnitStore};
@@ -222,13 +221,5 @@ impl UnitStore for Journal {
 
     fn end(&self, _: &'static str) -> Result<(), Halt> {
         Ok(())
-    }
-}
-
-impl KnownStore for Journal {
-    fn has(&self, phase: &'static str, unit: usize) -> bool {
-        let state = self.lock();
-        state.in_memory.contains_key(&(phase.to_owned(), unit as u64))
-            || state.results.as_ref().is_some_and(|results| results.has(phase, unit as u64))
     }
 }

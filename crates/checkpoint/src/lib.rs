@@ -3,7 +3,7 @@
 //! # Scope
 //!
 //! - **Owns**: stores of units in files: one file beside the output of a bake ([`Journal`]), and a folder that processes share ([`Job`],
-//!   [`JobStore`]); what tells the results of one bake from those of another ([`Key`]); how much of a phase is done, by cost ([`Meter`]).
+//!   [`JobStore`]); what tells the results of one bake from those of another ([`Key`]).
 //! - **Out of scope**: what units are and how they are computed (`bake`), who starts processes (the program).
 //! - **Invariants**: no content of a file causes a panic or more memory than a small multiple of its size; a result is returned only
 //!   if its checksum holds; parts and the manifest of a job appear whole or not at all.
@@ -13,11 +13,9 @@ mod index;
 mod job;
 mod journal;
 mod key;
-mod meter;
 mod records;
 
 pub use error::StateError;
 pub use job::{InputFile, Job, JobError, JobStore, Manifest, Outcome, PhasePlan, Role, ShardPlan, ShardState, cut};
 pub use journal::{Journal, Opening};
 pub use key::{Key, KeyHasher, ParseKeyError};
-pub use meter::{KnownStore, Meter, Metered, Work};

@@ -3,12 +3,10 @@
 use crate::error::{InputError, OutputError};
 use crate::interrupt;
 use crate::plain::plain;
-use crate::progress::Bar;
-use sightlines::checkpoint::{
-    InputFile, Job, JobError, JobStore, Journal, Key, KeyHasher, Meter, Metered, Opening, StateError,
-};
+use sightlines::checkpoint::{InputFile, Job, JobError, JobStore, Journal, Key, KeyHasher, Opening, StateError};
+use sightlines::progress::{UnitStore, Units};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, OnceLock};
+use std::sync::OnceLock;
 use std::time::Duration;
 
 /// The version of the program, which results are of.
@@ -129,7 +127,6 @@ pub(crate) enum Keeping<'a> {
 pub(crate) struct Kept<'a> {
     journal: Option<Journal>,
     job: Option<&'a JobStore>,
-    meter: Arc<Meter>,
     _watch: interrupt::Watch,
 }
 
@@ -164,22 +161,13 @@ impl<'a> Kept<'a> {
             Keeping::Job(open) => (None, Some(open(&identify()?)?)),
             Keeping::Nowhere => (None, None),
         };
-        Ok(Self { journal, job, meter: Arc::default(), _watch: interrupt::watch() })
+        Ok(Self { journal, job, _watch: interrupt::watch() })
     }
 
     /// What to give to a bake.
-    pub(crate) fn store(&self) -> Option<Metered<'_>> {
-        let meter = || Arc::clone(&self.meter);
-        match (&self.journal, self.job) {
-            (Some(journal), _) => Some(Metered::new(journal, meter())),
-            (None, Some(job)) => Some(Metered::new(job, meter())),
-            (None, None) => None,
-        }
-    }
-
-    /// A bar that shows how much is done by what it costs.
-    pub(crate) fn bar(&self, what: &'static str, show: bool) -> Bar {
-        Bar::new(what, show).with_meter(Arc::clone(&self.meter))
+    pub(crate) fn units(&self) -> Units<'_> {
+        let journal = self.journal.as_ref().map(|journal| journal as &dyn UnitStore);
+        Units(journal.or(self.job.map(|job| job as _)))
     }
 
     /// After the end: results are of no use any more if all went well. Otherwise, if the program was interrupted, they are kept; returns what to say of that.

@@ -2,11 +2,10 @@
 
 use crate::interrupt;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use sightlines::checkpoint::Meter;
 use sightlines::progress::{Observer, Progress};
 use std::io::{IsTerminal, Write};
 use std::ops::ControlFlow;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// The environment variable with the seconds between two lines of progress where there is no terminal; 0 is as often as there is news.
@@ -22,8 +21,6 @@ pub(crate) struct Bar {
     bar: ProgressBar,
     what: &'static str,
     shown: Mutex<Shown>,
-    /// Measures the work of phases whose units are kept.
-    meter: Option<Arc<Meter>>,
 }
 
 /// What was shown last.
@@ -77,14 +74,7 @@ impl Bar {
         }
         bar.set_prefix(what);
         bar.set_length(Self::STEPS);
-        Self { bar, what, shown: Mutex::new(Shown { pace: None, lines }), meter: None }
-    }
-
-    /// The same, which shows how much of a phase is done as a store measures it: by the costs of its units, and without those that an earlier run
-    /// did.
-    pub(crate) fn with_meter(mut self, meter: Arc<Meter>) -> Self {
-        self.meter = Some(meter);
-        self
+        Self { bar, what, shown: Mutex::new(Shown { pace: None, lines }) }
     }
 
     /// `done` of `all` are done; from any thread.
@@ -105,8 +95,6 @@ impl Bar {
 
     fn show(&self, progress: Progress) {
         let now = Instant::now();
-        let work = self.meter.as_ref().and_then(|meter| meter.work());
-        let progress = work.map_or(progress, |work| progress.with_share(work.done).with_kept(work.before));
         let Progress { share, phase, .. } = progress;
         let mut shown = self.shown.lock().unwrap_or_else(PoisonError::into_inner);
         let pace = Pace::after(shown.pace, progress, now);

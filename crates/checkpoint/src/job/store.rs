@@ -5,7 +5,6 @@ use super::manifest::PhasePlan;
 use super::{JOURNAL, Job, JobError, ShardState};
 use crate::index::Results;
 use crate::journal::{Journal, Opening};
-use crate::meter::KnownStore;
 use sightlines_formats::process_mark;
 use sightlines_progress::{Halt, Phase, UnitStore};
 use std::path::PathBuf;
@@ -161,11 +160,6 @@ impl State {
         }
         Ok(None)
     }
-
-    fn has(&self, phase: &str, unit: usize) -> bool {
-        let mut of_phase = self.parts.iter().filter(|(name, _)| name == phase).flat_map(|(_, parts)| parts);
-        of_phase.any(|part| part.has(phase, unit as u64))
-    }
 }
 
 impl UnitStore for JobStore {
@@ -243,15 +237,6 @@ impl UnitStore for JobStore {
         let saved = state.job.save_part(own.shard, phase, &results);
         saved.map_err(|error| Halt::Store(error.to_string()))?;
         Err(state.end_with(Outcome::Done))
-    }
-}
-
-impl KnownStore for JobStore {
-    fn has(&self, phase: &'static str, unit: usize) -> bool {
-        match self.own_of(phase) {
-            Some(own) => own.has(unit) && (own.journal.has(phase, unit) || self.lock().has(phase, unit)),
-            None => self.lock().has(phase, unit),
-        }
     }
 }
 

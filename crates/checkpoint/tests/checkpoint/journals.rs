@@ -2,11 +2,10 @@
 
 use crate::toy::{PROGRAM, key, toy};
 use proptest::prelude::*;
-use sightlines_checkpoint::{Journal, KnownStore, Meter, Metered, Opening, StateError};
-use sightlines_progress::{Phase, UnitStore};
+use sightlines_checkpoint::{Journal, Opening, StateError};
+use sightlines_progress::UnitStore;
 use std::fs;
 use std::path::Path;
-use std::sync::Arc;
 use std::time::Duration;
 
 fn open(path: &Path, of: &str, opening: Opening) -> Result<Journal, StateError> {
@@ -63,7 +62,12 @@ fn short_bakes_leave_nothing() {
     let path = folder.path().join("out.state");
     let journal = Journal::open(&path, key("a"), PROGRAM, Opening::Anew, Duration::from_secs(3600)).unwrap();
     toy([4, 4]).bake(Some(&journal)).unwrap();
-    assert!(!path.exists() && !journal.is_in_file() && journal.has("pairs", 3) && !journal.has("pairs", 4));
+    assert!(
+        !path.exists()
+            && !journal.is_in_file()
+            && journal.load("pairs", 3).unwrap().is_some()
+            && journal.load("pairs", 4).unwrap().is_none()
+    );
     journal.flush().unwrap();
     assert!(path.exists() && journal.is_in_file());
     assert_eq!(open(&path, "a", Opening::Resume).unwrap().n_taken_up(), 8);
@@ -105,7 +109,7 @@ fn a_file_that_cannot_be_written_ends_the_bake_or_not() {
     let journal = open(&path, "a", Opening::Anew).unwrap().or_in_memory();
     assert_eq!(toy([2, 2]).bake(Some(&journal)), toy([2, 2]).bake(None));
     assert!(journal.failure().is_some_and(|text| text.contains("cannot be written")));
-    assert!(journal.has("objects", 1) && !journal.is_in_file());
+    assert!(journal.load("objects", 1).unwrap().is_some() && !journal.is_in_file());
 }
 
 /// Two processes that write to one file: each result is a whole record of one of them.
@@ -124,25 +128,4 @@ fn two_writers_do_no_harm() {
         assert_eq!(of.load("pairs", unit).unwrap(), Some(vec![unit as u8; unit]));
     }
     assert_eq!(open(&path, "a", Opening::Resume).unwrap().n_taken_up(), 50);
-}
-
-/// Shares are by cost, and what was taken up counts as done before.
-#[test]
-fn work_is_measured_by_cost() {
-    let folder = tempfile::tempdir().unwrap();
-    let journal = open(&folder.path().join("out.state"), "a", Opening::Anew).unwrap();
-    journal.save("pairs", 0, b"").unwrap();
-    let meter = Arc::new(Meter::default());
-    let metered = Metered::new(&journal, Arc::clone(&meter));
-    assert_eq!(meter.work(), None);
-    metered.begin(&Phase { name: "pairs", costs: &[5.0, 1.0, 4.0] }).unwrap();
-    let share = || meter.work().map(|work| (work.before, work.done));
-    assert_eq!(share(), Some((0.5, 0.5)));
-    metered.save("pairs", 2, b"").unwrap();
-    assert_eq!(share(), Some((0.5, 0.9)));
-    metered.end("pairs").unwrap();
-    assert_eq!(meter.work(), None);
-    metered.begin(&Phase { name: "objects", costs: &[0.0; 4] }).unwrap();
-    metered.save("objects", 0, b"").unwrap();
-    assert_eq!(share(), Some((0.0, 0.25)));
 }

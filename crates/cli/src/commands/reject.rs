@@ -5,11 +5,11 @@ use crate::error::InputError;
 use crate::file_error::{FileError, from_file_error};
 use crate::kept::{Identity, Interrupted, Keeping, Kept, KeptError, ResumeArgs};
 use crate::output::{self, count, percent, seconds};
+use crate::progress::Bar;
 use serde::Serialize;
 use sightlines::bake::{MapOutcome, MapStatus, RejectError, RejectOptions, RejectSummary, reject_wad};
 use sightlines::formats::Wad;
 use sightlines::formats::doom::RmbFile;
-use sightlines::progress::Units;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -79,8 +79,7 @@ pub(crate) fn make(args: &RejectArgs, keeping: Keeping<'_>, show_progress: bool)
     let files: Vec<&Path> = std::iter::once(&args.input).chain(&args.rmb).map(PathBuf::as_path).collect();
     let kept = Kept::open(keeping, &args.output, &files, || args.identity())?;
     let made = || -> Result<Outcome, Error> {
-        let store = kept.store();
-        let bar = kept.bar("visibility of sectors", show_progress);
+        let bar = Bar::new("visibility of sectors", show_progress);
         let options = RejectOptions {
             maps: args.map.clone(),
             force: args.force,
@@ -88,7 +87,7 @@ pub(crate) fn make(args: &RejectArgs, keeping: Keeping<'_>, show_progress: bool)
             rmb: rmb.as_ref(),
             threads: args.threads,
             progress: Some(&bar),
-            units: Units(store.as_ref().map(|store| store as _)),
+            units: kept.units(),
         };
         let outcome = reject_wad(&wad, &options);
         drop(bar);

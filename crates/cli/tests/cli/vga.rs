@@ -148,3 +148,31 @@ fn maps_are_plans() {
     assert!(reply["n_points"].as_u64() > Some(10), "{reply}");
     assert!(folder.refused(&["vga", "maps.wad", "--spacing", "64", "-o", "map.csv"]).contains("choose one with --map"));
 }
+
+/// Killed as soon as there are results, and taken up, an analysis ends with the bytes of one that was left alone.
+#[test]
+fn an_analysis_goes_on_where_it_was_killed() {
+    let folder = with_rooms();
+    let args = ["vga", "rooms.geojson", "--spacing", "0.12", "--measures", "global", "-q", "--save-after", "0"];
+    let with = |out: &'static str, more: &[&'static str]| [&args[..], &["-o", out], more].concat();
+    folder.run(&with("whole.csv", &[])).expect(0);
+    let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_sightlines"))
+        .args(with("out.csv", &[]))
+        .current_dir(folder.path("."))
+        .stdout(std::process::Stdio::null())
+        .spawn()
+        .expect("the program was built");
+    let state = folder.path("out.csv.state");
+    // A header alone is less.
+    while std::fs::metadata(&state).map_or(0, |state| state.len()) < 2000 {
+        assert!(child.try_wait().expect("a child").is_none(), "it was over before it could be killed");
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    child.kill().expect("a child can be killed");
+    child.wait().expect("a child ends");
+    assert!(!folder.path("out.csv").exists() && state.exists());
+    let other = folder.refused(&[&with("out.csv", &["--resume"])[..], &["--radius", "2"]].concat());
+    assert!(other.starts_with("out.csv.state: "), "{other}");
+    folder.run(&with("out.csv", &["--resume"])).expect(0);
+    assert!(folder.read("out.csv") == folder.read("whole.csv") && !state.exists());
+}

@@ -4,6 +4,7 @@ use super::Error;
 use crate::error::OutputError;
 use crate::kept::Kept;
 use crate::output::{self, bytes, count, seconds};
+use crate::progress::Bar;
 use crate::unproven::Unproven;
 use serde::Serialize;
 use sightlines::bake::Baked;
@@ -60,8 +61,13 @@ impl CertifyArgs {
             let found = ProofFindings::without_proofs(&baked.table);
             return Ok(Some(Certified { file: None, unproven: Unproven::new(&baked.table, &found) }));
         }
-        let bar = kept.bar("proofs", show_progress);
-        let made = baked.certify(&CertifyOptions { threads, progress: Some(&bar), ..CertifyOptions::default() });
+        let bar = Bar::new("proofs", show_progress);
+        let made = baked.certify(&CertifyOptions {
+            threads,
+            progress: Some(&bar),
+            units: kept.units(),
+            ..CertifyOptions::default()
+        });
         drop(bar);
         let made = made.map_err(|source| Error::Certify { path: path.to_owned(), source })?;
         let content = made.proofs.to_bytes();

@@ -42,7 +42,6 @@ use sightlines::bake::auto::choose_for;
 use sightlines::bake::methods::BufferOptions;
 use sightlines::bake::{BakeOptions, Bakeable, Baked, Report, SceneMethod};
 use sightlines::formats::Input;
-use sightlines::progress::Units;
 use source::{Source, bake_announced};
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -151,13 +150,12 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
     let files: Vec<&Path> = [Some(path.as_path()), source.portals()].into_iter().flatten().collect();
     let kept = Kept::open(keeping, out, &files, || args.identity(&source, &options))?;
     let made = || -> Result<Built, Error> {
-        let store = kept.store();
-        let units = Units(store.as_ref().map(|store| store as _));
+        let units = kept.units();
         let options = BakeOptions { units, ..options.clone() };
         let plan = announce::Plan::new(&source.content, &options, auto.as_ref(), args.time_limit);
         let is_alone = args.doors.is_empty() && !args.certify.is_given();
         if let Some(file) = packed::of_rows(&source, &options, out, args.class).filter(|_| is_alone) {
-            let outcome = packed::write_rows(path, file, &options, plan, (out, &kept, show_progress))?;
+            let outcome = packed::write_rows(path, file, &options, plan, (out, show_progress))?;
             return Ok(Built {
                 auto: None,
                 outcome: Outcome::Rows(Box::new(outcome)),
@@ -170,7 +168,7 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
                 verbose,
             });
         }
-        let baked = bake_announced(path, (&source.content).into(), &options, plan, Some(&kept), show_progress);
+        let baked = bake_announced(path, (&source.content).into(), &options, plan, show_progress);
         let baked = baked.map_err(|error| source.failed(path, error))?;
         clock.warn(path, &baked.report);
         let (baked, stab) = stab::add(path, baked, args.stab_trees, options.threads, &kept, show_progress)?;

@@ -5,8 +5,8 @@ use super::source::Source;
 use super::{Error, announce};
 use crate::buffers::MethodFailed;
 use crate::facts::Stated;
-use crate::kept::Kept;
 use crate::output::{self, count};
+use crate::progress::Bar;
 use crate::tables::Class;
 use serde::Serialize;
 use sightlines::bake::region::PackRegionsError;
@@ -52,9 +52,9 @@ pub(super) fn write_rows(
     file: &SceneFile,
     options: &BakeOptions<'_>,
     plan: announce::Plan,
-    (out, kept, show_progress): (&Path, &Kept<'_>, bool),
+    (out, show_progress): (&Path, bool),
 ) -> Result<Outcome, Error> {
-    let bar = kept.bar("visibility", show_progress);
+    let bar = Bar::new("visibility", show_progress);
     let announcer = announce::Announcer::new(&bar, &plan, show_progress);
     let options = BakeOptions { progress: Some(&announcer), ..options.clone() };
     // Rows are small in comparison with what it takes to find them.

@@ -6,7 +6,7 @@ use crate::buffers::MethodFailed;
 use crate::clusters::warn_of_repeats;
 use crate::error::InputError;
 use crate::input;
-use crate::kept::{Identity, Kept};
+use crate::kept::Identity;
 use crate::map_portals::{portal_file, portals_for};
 use crate::output;
 use crate::progress::Bar;
@@ -96,7 +96,7 @@ pub(crate) fn bake_visibly(
     options: &BakeOptions<'_>,
     show_progress: bool,
 ) -> Result<Baked, BakeError> {
-    bake_announced(path, input, options, Plan::default(), None, show_progress)
+    bake_announced(path, input, options, Plan::default(), show_progress)
 }
 
 /// The same; says before what is going to be done.
@@ -105,14 +105,13 @@ pub(super) fn bake_announced(
     input: BakeInput<'_>,
     options: &BakeOptions<'_>,
     plan: Plan,
-    kept: Option<&Kept<'_>>,
     show_progress: bool,
 ) -> Result<Baked, BakeError> {
     let what = match input {
         BakeInput::Portals(_) | BakeInput::Map(..) => "visibility of clusters",
         BakeInput::Plan(_) | BakeInput::Scene(..) => "visibility",
     };
-    let bar = kept.map_or_else(|| Bar::new(what, show_progress), |kept| kept.bar(what, show_progress));
+    let bar = Bar::new(what, show_progress);
     let announcer = Announcer::new(&bar, &plan, show_progress);
     let baked = bake(input, &BakeOptions { progress: Some(&announcer), ..options.clone() })?;
     drop(bar);

@@ -4,9 +4,9 @@ use super::Error;
 use crate::facts::StabFacts;
 use crate::kept::Kept;
 use crate::output::{percent, seconds};
+use crate::progress::Bar;
 use serde::Serialize;
 use sightlines::bake::{Baked, StabOptions, StabReport};
-use sightlines::progress::Units;
 use sightlines::pvs::Table;
 use std::fmt;
 use std::path::Path;
@@ -21,10 +21,9 @@ pub(super) fn add(
     show_progress: bool,
 ) -> Result<(Baked, Option<Added>), Error> {
     let Some(max_nodes) = wanted else { return Ok((baked, None)) };
-    let bar = kept.bar("stab trees", show_progress);
+    let bar = Bar::new("stab trees", show_progress);
     let max_nodes = max_nodes.map(|n| n as usize);
-    let store = kept.store();
-    let units = Units(store.as_ref().map(|store| store as _));
+    let units = kept.units();
     let with = baked.with_stab_trees(&StabOptions { max_nodes, threads, progress: Some(&bar), units });
     drop(bar);
     let (baked, report) = with.map_err(|source| Error::Stab { path: path.to_owned(), source })?;

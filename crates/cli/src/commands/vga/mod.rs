@@ -13,6 +13,7 @@ use crate::output;
 use crate::picture::PictureError;
 use crate::place::Point;
 use crate::plans::PlanArgs;
+use crate::progress::Bar;
 use error::Error;
 use outcome::{Outcome, Range};
 use sightlines::bake::Bakeable;
@@ -21,7 +22,6 @@ use sightlines::formats::InputKind;
 use sightlines::formats::scene::SceneReadOptions;
 use sightlines::geometry::{Point2, Segment2};
 use sightlines::isovist::{Touch, WallMesh};
-use sightlines::progress::Units;
 use sightlines::report::{Field, MAX_SIZE, MIN_SIZE, PointColumn, field_png, field_svg, points_csv, points_geojson};
 use sightlines::visibility_graph::{
     Analysis, AnalysisOptions, Effort, Group, Measure, Points, Turns, UNDEFINED, VisibilityGraph,
@@ -264,9 +264,8 @@ fn analyse(
     measures: &[Measure],
     (kept, show_progress): (&Kept<'_>, bool),
 ) -> Result<Analysed, Error> {
-    let bar = kept.bar("visibility graph", show_progress);
-    let store = kept.store();
-    let units = Units(store.as_ref().map(|store| store as _));
+    let bar = Bar::new("visibility graph", show_progress);
+    let units = kept.units();
     let effort = Effort { threads: args.threads, observer: Some(&bar), units };
     let start = Instant::now();
     let graph = graph(args, plan, points, &effort)?;

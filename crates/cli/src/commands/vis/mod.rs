@@ -27,7 +27,7 @@ use sightlines::bake::{PrtBakeError, PrtOptions, vis_map};
 use sightlines::formats::InputKind;
 use sightlines::formats::quake::visibility::check_portals;
 use sightlines::formats::quake::{Bsp, Prt, VisibilityError, graph_of_prt, read_bsp};
-use sightlines::progress::{Observer, Progress, Units};
+use sightlines::progress::{Observer, Progress};
 use sightlines::stabtree::{ConvexOptions, ConvexSearch};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -161,7 +161,7 @@ pub(crate) fn compute(args: &VisArgs, manner: Manner<'_, '_>) -> Result<Outcome,
     let resumed = from.is_some();
     let saves = manner.states != StateUse::Off;
     (manner.begin)(&Beginning { bsp: &bsp, prt: &prt, prt_path: &prt_path, resumed })?;
-    let bar = kept.bar("visibility of clusters", manner.show_progress);
+    let bar = Bar::new("visibility of clusters", manner.show_progress);
     // The state is written before an interrupted search ends.
     let is_saved = AtomicBool::new(false);
     let mut save = |search: &ConvexSearch| {
@@ -175,11 +175,10 @@ pub(crate) fn compute(args: &VisArgs, manner: Manner<'_, '_>) -> Result<Outcome,
     };
     let sounds = sounds::all_but(&args.silence);
     let search = ConvexOptions { fast: args.fast, threads: args.threads };
-    let store = kept.store();
-    let units = Units(store.as_ref().map(|store| store as _));
+    let units = kept.units();
     let options = PrtOptions { search, from, progress: Some(&observer), after_step: Some(&mut save), units, sounds };
     let map = vis_map(&bsp, &prt, options);
-    drop((bar, store));
+    drop(bar);
     if let Some(Interrupted { state }) = kept.finish(map.is_ok()) {
         let state = state.or_else(|| saved.path_if_written());
         return Err(Error::Interrupted(Interrupted { state }));
