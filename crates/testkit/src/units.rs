@@ -61,6 +61,18 @@ impl Memory {
         Self { results: Mutex::new(results.clone()), ..Self::default() }
     }
 
+    /// The same, but it ends the work when so many more results are kept.
+    #[must_use]
+    pub fn stopping_after(self, n_results: usize) -> Self {
+        Self { stop_after: Some(n_results), ..self }
+    }
+
+    /// The same, but of one of `of` processes.
+    #[must_use]
+    pub fn of_part(self, part: usize, of: usize) -> Self {
+        Self { part: Some((part, of)), ..self }
+    }
+
     /// The phases that have begun, each with the costs of its units.
     pub fn phases(&self) -> Vec<(&'static str, Vec<f64>)> {
         self.sizes.lock().unwrap().clone()
@@ -91,14 +103,14 @@ pub fn check_units<E: Display + Debug>(
     let all = whole.into_results();
 
     // Nothing is computed twice where everything is kept.
-    let kept = Memory { stop_after: Some(0), ..Memory::with(&all) };
+    let kept = Memory::with(&all).stopping_after(0);
     assert!(bytes(&kept, 1).unwrap() == plain, "kept results are others");
 
     // Stopped again and again.
     let (mut results, mut n_stops) = (BTreeMap::new(), 0);
     let step = all.len() / 5 + 1;
     let resumed = loop {
-        let store = Memory { stop_after: Some(step), ..Memory::with(&results) };
+        let store = Memory::with(&results).stopping_after(step);
         let answer = bytes(&store, 1 + n_stops % 2);
         results = store.into_results();
         match answer {
@@ -115,13 +127,13 @@ pub fn check_units<E: Display + Debug>(
     let merged = loop {
         let mut found = BTreeMap::new();
         for part in 0..3 {
-            let store = Memory { part: Some((part, 3)), ..Memory::with(&results) };
+            let store = Memory::with(&results).of_part(part, 3);
             let answer = bytes(&store, 1);
             assert!(answer.is_ok() || is_shared(&answer), "{answer:?}");
             found.extend(store.into_results());
         }
         results = found;
-        let store = Memory { part: Some((usize::MAX, usize::MAX)), stop_after: Some(0), ..Memory::with(&results) };
+        let store = Memory::with(&results).of_part(usize::MAX, usize::MAX).stopping_after(0);
         match bytes(&store, 1) {
             Ok(bytes) => break bytes,
             answer => assert!(is_shared(&answer), "{answer:?}"),

@@ -164,10 +164,10 @@ fn proofs_of_tables() {
         assert_eq!(proofs(&store).unwrap(), plain);
         assert_eq!(store.phases(), [("proofs", vec![1.0])]);
         let results = store.into_results();
-        assert_eq!(proofs(&Memory { stop_after: Some(0), ..Memory::with(&results) }).unwrap(), plain);
-        let stopped = proofs(&Memory { stop_after: Some(0), ..Memory::default() });
+        assert_eq!(proofs(&Memory::with(&results).stopping_after(0)).unwrap(), plain);
+        let stopped = proofs(&Memory::default().stopping_after(0));
         assert!(matches!(stopped, Err(CertifyError::Cancelled(_))), "{stopped:?}");
-        let of_other = proofs(&Memory { part: Some((1, 3)), ..Memory::default() });
+        let of_other = proofs(&Memory::default().of_part(1, 3));
         assert_eq!(of_other, Err(CertifyError::Halted(Halt::Shared)));
         // What is cut short, or of another table, is noticed.
         others.push(plain[..plain.len() / 2].to_vec());
