@@ -126,7 +126,7 @@ fn clusters_of_a_portal_file() {
 /// Stab trees of the cells of a table, in a table.
 fn trees(baked: &Baked<TableGraph, Report>) -> impl Fn(Units<'_>, usize) -> Result<Vec<u8>, StabBakeError> + '_ {
     |units, threads| {
-        let options = StabOptions { max_nodes: Some(30), threads, units, ..StabOptions::default() };
+        let options = StabOptions { max_nodes: Some(12), threads, units, ..StabOptions::default() };
         let made = with_stab_trees(baked.table.clone(), &baked.graph, &options)?;
         assert!(made.report.trees.n_cut_cells > 0 && made.report.trees.n_sequences > 0, "{:?}", made.report);
         let report = format!("{:?}", made.report.trees);
