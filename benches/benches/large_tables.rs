@@ -134,8 +134,9 @@ impl City {
             }
             row.clear();
             let all = blocks.iter().flat_map(|&first| first..first + SIDE * SIDE);
-            let open =
-                |other: u32| other == cell || hash(u64::from(cell) | 1 << 31, u64::from(other) | 1 << 31) % 20 > 0;
+            let open = |other: u32| {
+                other == cell || !hash(u64::from(cell) | 1 << 31, u64::from(other) | 1 << 31).is_multiple_of(20)
+            };
             row.extend(all.filter(|&other| open(other)).map(CellId));
             objects.clear();
             objects.extend(row.iter().map(|other| ObjectId(other.0 / SIDE)));

@@ -1,18 +1,9 @@
 //! The graph: for each point the points that it sees, as runs of consecutive numbers.
 
-use crate::Effort;
 use crate::bytes::Rows;
 use crate::work::Stage;
+use crate::{Effort, Run};
 use sightlines_progress::{Cancelled, Halt};
-
-/// Points with consecutive numbers, from `start` up to but without `end`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Run {
-    /// The first.
-    pub start: u32,
-    /// One more than the last.
-    pub end: u32,
-}
 
 /// Which points see which, without the points themselves: a point is not among those that it sees.
 ///

@@ -19,16 +19,18 @@ mod grid;
 mod local;
 mod paths;
 mod points;
+mod run;
 mod search;
 mod work;
 
 pub use analysis::{Analysis, AnalysisOptions, Group, Measure};
 pub use global::GlobalMeasures;
-pub use graph::{GraphError, Run, VisibilityGraph};
+pub use graph::{GraphError, VisibilityGraph};
 pub use grid::{Grid, GridError, MOST_PIXELS, Pixel};
 pub use local::LocalMeasures;
 pub use paths::{AngularMeasures, MetricMeasures, Turns};
 pub use points::{Points, PointsError};
+pub use run::Run;
 pub use work::Effort;
 
 /// The value of a measure where it has none, as in depthmapX. No measure is negative otherwise.
