@@ -12,6 +12,9 @@ use std::time::Duration;
 /// The version of the program, which results are of.
 pub(crate) const PROGRAM: &str = env!("CARGO_PKG_VERSION");
 
+/// What units are, and what their results mean: to be raised when a bake is divided otherwise, or decides otherwise, between two versions of the program.
+const UNITS: u32 = 1;
+
 /// Whether a bake goes on from an earlier run, and where its results are kept.
 #[derive(Debug, Clone, clap::Args)]
 pub(crate) struct ResumeArgs {
@@ -87,6 +90,7 @@ impl Identity {
     pub(crate) fn new(kind: &str) -> Self {
         let mut hasher = KeyHasher::new(PROGRAM);
         hasher.value("kind", kind.as_bytes());
+        hasher.value("units", &UNITS.to_le_bytes());
         Self { hasher, inputs: Vec::new() }
     }
 

@@ -49,7 +49,7 @@ pub(crate) fn decode(r: &mut Reader<'_>, limit: u32, mut visit: impl FnMut(u32))
         let byte = next_byte.saturating_add(r.varint()?);
         let mut mask = r.take(1)?[0];
         // The bits of the last byte end at the limit.
-        let stray = byte + 1 == n_bytes && !limit.is_multiple_of(8) && mask >> (limit % 8) != 0;
+        let stray = byte < n_bytes && byte + 1 == n_bytes && !limit.is_multiple_of(8) && mask >> (limit % 8) != 0;
         if byte >= n_bytes || mask == 0 || stray {
             return Err(r.fail(Kind::Value { value: byte.saturating_mul(8) }));
         }

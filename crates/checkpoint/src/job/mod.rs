@@ -187,6 +187,16 @@ impl Job {
         })
     }
 
+    /// Whether there is a part of a shard that was read, and cannot be used.
+    ///
+    /// # Errors
+    /// [`JobError::NoShard`].
+    pub fn has_damaged_part(&self, shard: usize) -> Result<bool, JobError> {
+        let (phase, plan) = self.shard(shard)?;
+        let part = self.part(shard, &self.manifest.phases[phase].name, plan);
+        Ok(part.is_err_and(|error| !matches!(error, StateError::Read { .. })))
+    }
+
     fn owner(&self) -> Owner {
         Owner { key: self.key, program: self.manifest.program.clone() }
     }

@@ -225,7 +225,11 @@ impl UnitStore for JobStore {
     }
 
     fn end(&self, phase: &'static str) -> Result<(), Halt> {
-        let Some(own) = self.own_of(phase) else { return Ok(()) };
+        let Some(own) = self.own_of(phase) else {
+            // Nothing of the phase is loaded any more, and open files are few.
+            self.lock().parts.retain(|(name, _)| name != phase);
+            return Ok(());
+        };
         let mut results = Vec::with_capacity(own.end - own.begin);
         for unit in own.begin..own.end {
             match self.load(phase, unit)? {

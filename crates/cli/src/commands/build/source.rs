@@ -61,9 +61,8 @@ impl Source {
         if let Some(portals) = self.portals.as_deref().filter(|portals| *portals != path) {
             identity.file(portals)?;
         }
-        // What such a file names is part of the content too.
-        let extension = path.extension().map(|extension| extension.to_ascii_lowercase());
-        if extension.is_some_and(|extension| extension == "gltf" || extension == "obj") {
+        // Files that a scene names are part of it too.
+        if let Bakeable::Scene(_) = &self.content {
             identity.debug("content", &self.content);
         }
         Ok(())

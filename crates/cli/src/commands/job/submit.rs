@@ -171,7 +171,10 @@ fn states(job: &Job, shards: &[usize]) -> Result<Vec<(usize, ShardState)>, Error
 }
 
 fn remove(job: &Job, missing: &Missing) {
-    for path in missing.shards().iter().map(|&shard| job.part_path(shard)) {
+    // What cannot be read now may be sound, and what was not there may have been written meanwhile.
+    let damaged =
+        missing.shards().into_iter().filter(|&shard| job.has_damaged_part(shard).is_ok_and(|damaged| damaged));
+    for path in damaged.map(|shard| job.part_path(shard)) {
         // If it cannot be removed, it is found to be broken again.
         let _: Result<(), _> = std::fs::remove_file::<&Path>(&path);
     }

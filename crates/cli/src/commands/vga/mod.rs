@@ -218,18 +218,20 @@ pub(crate) fn run(args: &VgaArgs, show_progress: bool) -> Result<Answer, Error> 
         (None, None) => return Err(Error::Side(args.output.clone())),
     };
     let measures = measures(args, kind);
+    let drawn = kind.is_picture().then(|| shown(args, &measures));
 
     let kept = Kept::open(Keeping::File(&args.resume), &args.output, &inputs, || args.identity())?;
     let analysed = analyse(args, &plan, &points, &measures, (&kept, show_progress));
-    if let Some(interrupted) = kept.finish(analysed.is_ok()) {
+    let written = analysed.and_then(|analysed| {
+        let columns = columns_of(&analysed.analysis, &measures);
+        output::save(&args.output, &written(args, kind, &plan, &points, &columns, drawn)?)?;
+        Ok((analysed, columns))
+    });
+    // Results are of use until the output is written.
+    if let Some(interrupted) = kept.finish(written.is_ok()) {
         return Err(Error::Interrupted(interrupted));
     }
-    let Analysed { graph, analysis, graph_seconds, measure_seconds } = analysed?;
-
-    let columns: Vec<(Measure, Vec<f64>)> =
-        measures.iter().map(|&measure| (measure, analysis.values(measure).unwrap_or_default())).collect();
-    let drawn = kind.is_picture().then(|| shown(args, &measures));
-    output::save(&args.output, &written(args, kind, &plan, &points, &columns, drawn)?)?;
+    let (Analysed { graph, graph_seconds, measure_seconds, .. }, columns) = written?;
     let outcome = Outcome {
         plan: args.plan.display().to_string(),
         n_walls: walls(&plan).len(),
@@ -247,6 +249,11 @@ pub(crate) fn run(args: &VgaArgs, show_progress: bool) -> Result<Answer, Error> 
     };
     output::print(args.json, &outcome)?;
     Ok(Answer::Yes)
+}
+
+/// The values of measures.
+fn columns_of(analysis: &Analysis, measures: &[Measure]) -> Vec<(Measure, Vec<f64>)> {
+    measures.iter().map(|&measure| (measure, analysis.values(measure).unwrap_or_default())).collect()
 }
 
 /// What was found.

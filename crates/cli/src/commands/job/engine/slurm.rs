@@ -15,6 +15,8 @@ const POLL: Duration = Duration::from_millis(500);
 const PATIENCE: usize = 60;
 /// How often it has to know nothing of a job before that counts as gone.
 const GONE: usize = 4;
+/// How often all parts have to be there while the merge still waits before nobody waits for it: a node that died may keep tasks that are over.
+const WHOLE: usize = 20;
 
 /// Slurm, as the environment configures it.
 pub(in crate::commands::job) struct Slurm<'a> {
@@ -109,8 +111,14 @@ impl Engine for Slurm<'_> {
         let shards = self.sbatch(&files.shards, None)?;
         let merge = self.sbatch(&files.merge, Some(&shards))?;
         let shown = Shown::new(round, self.show_progress);
-        let mut n_gone = 0;
+        let (mut n_gone, mut n_whole) = (0, 0);
         while n_gone < GONE && !files.end.exists() {
+            let is_whole = round.shards.iter().all(|&shard| round.job.part_path(shard).exists());
+            n_whole = if is_whole && is_pending(&merge)? { n_whole + 1 } else { 0 };
+            if n_whole > WHOLE {
+                let _ = Command::new("scancel").args([&merge, &shards]).stdin(Stdio::null()).output();
+                return Ok(false);
+            }
             if interrupt::requested() {
                 // Otherwise the cluster would go on with what nobody waits for.
                 let _ = Command::new("scancel").args([&shards, &merge]).stdin(Stdio::null()).output();
@@ -134,6 +142,13 @@ fn is_gone(jobs: &[&str]) -> Result<bool, Error> {
         true => asked.stdout.iter().all(u8::is_ascii_whitespace),
         false => said.contains("Invalid job id"),
     })
+}
+
+/// Whether Slurm says that a job waits.
+fn is_pending(job: &str) -> Result<bool, Error> {
+    let asked = Command::new("squeue").args(["-h", "-o", "%T", "-j", job]).stdin(Stdio::null()).output();
+    let asked = asked.map_err(|source| Error::Start { program: "squeue".to_owned(), source })?;
+    Ok(asked.status.success() && asked.stdout.trim_ascii() == b"PENDING")
 }
 
 /// Whether a message is about a controller that does not answer.
