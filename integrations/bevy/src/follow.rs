@@ -25,6 +25,7 @@ pub(crate) trait Follow: Send {
 /// A walk, and the places of the cells for what moves.
 pub(crate) struct Follower<R, S, P>
 where
+    R: CoarseVisibility,
     S: CellSource<Error: Send + 'static> + Send + 'static,
 {
     walk: Walkthrough<R, S>,
@@ -44,7 +45,7 @@ where
 
 impl<R, S, P> Follow for Follower<R, S, P>
 where
-    R: CoarseVisibility + Send,
+    R: CoarseVisibility<PlaceError: Send + std::fmt::Display> + Send,
     S: CellSource<Error: Send + std::fmt::Display + 'static> + Send + 'static,
     P: CellLocator + Send,
 {
@@ -65,6 +66,7 @@ where
     }
 
     fn take_error(&mut self) -> Option<String> {
-        self.walk.take_error().map(|(cell, error)| format!("cell {cell}: {error}"))
+        let of_cell = self.walk.take_error().map(|(cell, error)| format!("cell {cell}: {error}"));
+        of_cell.or_else(|| self.walk.take_place_error().map(|error| format!("locating the eye: {error}")))
     }
 }
