@@ -4,7 +4,7 @@
 //! it. Sightlines find the same in another way, for the cells of a k-d tree ([`bake_scene`](crate::bake_scene)) or for
 //! given boxes ([`box_visibility`]). What either proves hidden is hidden, so the two can be combined. For given boxes the
 //! method comes first, and sightlines decide the pairs that neither it nor a ray has decided. Rays are traced in doubles:
-//! what one seems to reach through the crack between two surfaces is left visible.
+//! what one seems to reach through the crack between two surfaces is left visible, unless the method hides a group of cells that it is in.
 
 mod boxes;
 mod limited;
