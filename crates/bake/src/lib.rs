@@ -11,7 +11,7 @@
 //!   ([`auto`]); the frame of a scene that does not stand along the axes of its file ([`Framed`]); cells for scenes without
 //!   walls along axes ([`places`]); the REJECT lumps of a WAD ([`reject_wad`]), the visibility of Quake maps and the state of an interrupted
 //!   search ([`quake`]), the table of a changing scene ([`live`]), lines of sight for the pairs of a table ([`lines`]);
-//!   the floor plan of a scene at a height ([`floor_cut`]).
+//!   the floor plan of a scene at a height ([`floor_cut`]); one tile of a world that is too large for one table ([`tile`]).
 //! - **Out of scope**: paths, the command line, pictures.
 //! - **Invariants**: the same scene and options give the same table, byte for byte, with any number of
 //!   threads; every approximation on the way errs towards visible.
@@ -49,6 +49,7 @@ mod sectors;
 mod stab;
 mod subdivide;
 mod table;
+pub mod tile;
 
 pub use backs::Backs;
 pub use bakeable::{Bakeable, BakeableError};

@@ -78,7 +78,7 @@ fn by_regions(scene: &Scene, options: &BakeOptions<'_>, file: Option<&SceneInfo>
 }
 
 /// Calls `then` with the options of a bake by regions.
-fn with_regions<T, E: From<BakeError>>(
+pub(crate) fn with_regions<T, E: From<BakeError>>(
     scene: &Scene,
     options: &BakeOptions<'_>,
     file: Option<&SceneInfo>,

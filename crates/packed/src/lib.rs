@@ -19,6 +19,7 @@
 
 #![forbid(unsafe_code)]
 
+pub mod across;
 mod blocks;
 mod bytes;
 mod cache;

@@ -29,7 +29,7 @@ use parts::Start;
 pub(crate) use parts::upright;
 use sightlines_cells::{ANYWHERE, Scene};
 use sightlines_formats::{SceneInfo, ViewCells};
-use sightlines_geometry::{Aabb, BoxTree, Point3};
+use sightlines_geometry::{Aabb, Point3};
 use sightlines_kdtree::{KdError, SceneOptions, subdivide_scene};
 use sightlines_multifocal::{Effort, FromRegion, Occludees, RaySampler, Split, Volume};
 use sightlines_progress::{Allowance, Observer, Units};
@@ -143,8 +143,37 @@ impl fmt::Debug for RegionBakeOptions<'_> {
 /// # Errors
 /// [`BakeError`]: for scenes that cannot be cut, cells that are not volumes, and methods that fail.
 pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<BakedRegions, BakeError> {
+    let Decided { graph, mut parts, objects, mut report } = decide(scene, &[], options)?;
     let start = Instant::now();
-    let boxes = extents(scene);
+    parts.objects_seen = Some(objects);
+    let table = Table::new(parts)?;
+    report.time += start.elapsed();
+    Ok(Baked { graph, table, report })
+}
+
+/// What the cells of a scene may see.
+pub(crate) struct Decided {
+    pub(crate) graph: TableGraph,
+    /// Those of the table, but for what is visible of objects.
+    pub(crate) parts: TableParts,
+    /// Cells by objects, and by regions behind them.
+    pub(crate) objects: BitMatrix,
+    pub(crate) report: RegionReport,
+}
+
+/// Decides what the cells of a scene see.
+///
+/// * `regions`: boxes elsewhere, of which is decided as well which cells see anything in them; only for cells without portals
+pub(crate) fn decide(
+    scene: &Scene,
+    regions: &[Aabb<3>],
+    options: &RegionBakeOptions<'_>,
+) -> Result<Decided, BakeError> {
+    let start = Instant::now();
+    let n_objects = scene.objects().len();
+    // Regions come behind the objects.
+    let mut boxes = extents(scene);
+    boxes.extend(regions);
     let mut by_sightlines = options.sightlines || options.method.is_none();
     let (mut n_assumed, mut summary, mut left, mut cut_time) = (0, None, None, None);
     let Start { graph, mut parts, cells, rows, objects } = match options.cells {
@@ -179,9 +208,8 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
         Some(make) => {
             let made = make();
             let method = (made.name(), made.only_in_air());
-            let (occludees, witness) = targets_of(scene, &boxes);
-            let tree = BoxTree::build(&cells, 1);
-            let scene = see::Targets { occludees: &occludees, witness: &witness, volumes: &volumes, tree };
+            let (occludees, witness) = targets_of(scene, &boxes[..n_objects]);
+            let scene = see::Targets::new((&occludees, &witness), &volumes, regions);
             let takes_turns = by_sightlines && matches!(graph, TableGraph::Boxes(_));
             let allowance = if takes_turns { options.budget.part(1.0 - SIGHTLINES) } else { options.budget };
             let seen = see::see(&scene, make, options, allowance, rows, objects)?;
@@ -218,8 +246,11 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
     let (n_visible_pairs, n_objects_seen) = ((rows.count_ones() - n as u64) / 2, objects.count_ones());
     parts.rows = rows;
     parts.doors = doors::records(scene, &doors);
-    parts.cell_objects = object_lists(touching);
-    parts.objects_seen = Some(objects);
+    let of_objects = |mut list: Vec<u32>| {
+        list.truncate(list.partition_point(|&object| (object as usize) < n_objects));
+        list
+    };
+    parts.cell_objects = object_lists(touching.into_iter().map(of_objects).collect());
     if parts.objects.is_empty() {
         state_objects(&mut parts, scene, &boxes);
     }
@@ -247,8 +278,6 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
     state_file(&mut parts, options.file);
     // Those of a k-d tree have them.
     parts.digest.get_or_insert_with(|| scene.digest());
-    let table = Table::new(parts)?;
-    let time = start.elapsed();
     let report = RegionReport {
         places: summary,
         n_assumed,
@@ -259,9 +288,9 @@ pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<Ba
         n_objects_seen,
         limit,
         cut_time,
-        time,
+        time: start.elapsed(),
     };
-    Ok(Baked { graph, table, report })
+    Ok(Decided { graph, parts, objects, report })
 }
 
 /// Cells without portals, with what is known of them.
@@ -322,7 +351,10 @@ fn past_walls(
     objects: &[Aabb<3>],
     doubt: &PairMask,
 ) -> Result<BoxVisibility, BakeError> {
-    let ends = [scene.bounds().min, scene.bounds().max].into_iter().chain(cells.iter().flat_map(|b| [b.min, b.max]));
+    // What may be anywhere touches every cell, and is not in doubt.
+    let is_somewhere = |b: &&Aabb<3>| !b.is_empty() && **b != ANYWHERE;
+    let around = cells.iter().chain(objects.iter().filter(is_somewhere)).flat_map(|b| [b.min, b.max]);
+    let ends = [scene.bounds().min, scene.bounds().max].into_iter().chain(around);
     // The limit of places is not one of the cells that sightlines need.
     let max_cells = options.cut.max_cells.max(SceneOptions::default().max_cells);
     let max_cells = if matches!(options.cells, CellsFrom::Places(_)) { max_cells } else { options.cut.max_cells };

@@ -10,6 +10,7 @@ use sightlines_multifocal::{BackendError, Effort, FromRegion, Occludees, RaySamp
 use sightlines_progress::{Allowance, Counter, Halt, Phase, Shares, Work, scattered, shares_of};
 use sightlines_pvs::BitMatrix;
 use sightlines_stabtree::PairMask;
+use std::ops::Range;
 
 /// Rays to a cell before its query: most pairs of cells that see each other do so along many lines.
 const RAYS_TO_A_CELL: u32 = 24;
@@ -22,13 +23,38 @@ pub(super) struct Targets<'a> {
     pub(super) occludees: &'a Occludees,
     pub(super) witness: &'a RaySampler,
     pub(super) volumes: &'a [Volume],
-    /// Of the volumes; a leaf for each.
+    /// Boxes elsewhere, of which is asked as of cells.
+    pub(super) regions: &'a [Aabb<3>],
+    /// Of the volumes, and behind them the regions; a leaf for each.
     pub(super) tree: BoxTree<3>,
+}
+
+impl<'a> Targets<'a> {
+    pub(super) fn new(
+        (occludees, witness): (&'a Occludees, &'a RaySampler),
+        volumes: &'a [Volume],
+        regions: &'a [Aabb<3>],
+    ) -> Self {
+        let boxes: Vec<Aabb<3>> =
+            volumes.iter().map(|volume| *volume.bounds()).chain(regions.iter().copied()).collect();
+        Self { occludees, witness, volumes, regions, tree: BoxTree::build(&boxes, 1) }
+    }
+
+    /// How many cells and regions there are.
+    fn n_boxes(&self) -> usize {
+        self.volumes.len() + self.regions.len()
+    }
+
+    /// A cell, or a region behind them.
+    fn target(&self, k: usize) -> &Aabb<3> {
+        self.volumes.get(k).map_or_else(|| &self.regions[k - self.volumes.len()], Volume::bounds)
+    }
 }
 
 /// What is left visible, and which of it a ray proves.
 pub(super) struct RegionVisibility {
     pub(super) rows: BitMatrix,
+    /// Cells by objects, and regions behind them; so are those of the other fields.
     pub(super) objects: BitMatrix,
     pub(super) proven: PairMask,
     /// What was not decided because the allowance was over; where the method was stopped, also some of what it would have left visible.
@@ -44,6 +70,8 @@ const PHASE: &str = "cells";
 
 /// Clears what the method proves hidden of what is still visible in `rows` and `objects`.
 ///
+/// * `objects`: cells by objects, and by regions behind them
+///
 /// With a limited `allowance` each cell has a fair share of it; what the others do not need goes to those that were not done.
 pub(super) fn see(
     scene: &Targets<'_>,
@@ -54,12 +82,13 @@ pub(super) fn see(
     objects: BitMatrix,
 ) -> Result<RegionVisibility, BakeError> {
     let n = scene.volumes.len();
+    let n_things = scene.occludees.len() + scene.regions.len();
+    let none = || PairMask { boxes: BitMatrix::new(n, n), objects: BitMatrix::new(n, n_things) };
     let n_objects = scene.occludees.len();
-    let none = || PairMask { boxes: BitMatrix::new(n, n), objects: BitMatrix::new(n, n_objects) };
     let mut known = RegionVisibility { rows, objects, proven: none(), left: none(), effort: Effort::default() };
     if !allowance.is_limited() {
         let found = see_all(scene, make, options, Some(&known))?;
-        found.into_iter().enumerate().for_each(|(cell, row)| known.add(cell, &row));
+        found.into_iter().enumerate().for_each(|(cell, row)| known.add(cell, &row, n_objects));
         return Ok(known);
     }
     let counter = Counter::new(options.progress, "cells", n).of(Work::Deciding);
@@ -79,7 +108,7 @@ pub(super) fn see(
         let found: Vec<(usize, CellRow)> =
             pool.install(|| cells.par_iter().map_init(make, one).collect::<Result<_, BakeError>>())?;
         cells = found.iter().filter(|(_, row)| row.left.iter().any(|left| !left.is_empty())).map(|f| f.0).collect();
-        found.into_iter().for_each(|(cell, row)| known.add(cell, &row));
+        found.into_iter().for_each(|(cell, row)| known.add(cell, &row, n_objects));
         if cells.is_empty() || allowance.is_over() {
             break;
         }
@@ -96,7 +125,7 @@ pub(super) fn see_all(
     known: Option<&RegionVisibility>,
 ) -> Result<Vec<CellRow>, BakeError> {
     let n = scene.volumes.len();
-    let sizes = [n as u32, scene.occludees.len() as u32];
+    let sizes = [scene.n_boxes() as u32, scene.occludees.len() as u32];
     let costs = costs_of(scene, options.units.are_kept());
     let shares_of_time = shares_of(&costs);
     options.units.begin(&Phase { name: PHASE, costs: &costs })?;
@@ -156,25 +185,43 @@ const RAYS_TO_PREDICT: u32 = 64;
 
 impl RegionVisibility {
     /// Adds what the last turn of a cell has found.
-    fn add(&mut self, a: usize, row: &CellRow) {
+    fn add(&mut self, a: usize, row: &CellRow, n_objects: usize) {
         self.effort = self.effort + row.effort;
-        // Sight is symmetric: either of the two may have found that there is none.
-        let (n, n_objects) = (self.rows.n_cols() as u32, self.objects.n_cols() as u32);
-        for b in gaps(&row.cells, n).flatten().map(|b| b as usize).filter(|&b| a != b) {
-            self.rows.set(a, b, false);
-            self.rows.set(b, a, false);
+        let n = self.rows.n_cols();
+        let n_boxes = n + self.objects.n_cols() - n_objects;
+        // Regions are columns behind the objects.
+        let column = |region: usize| n_objects + region - n;
+        for b in gaps(&row.cells, n_boxes as u32).flatten().map(|b| b as usize).filter(|&b| a != b) {
+            if b < n {
+                // Sight is symmetric: either of the two may have found that there is none.
+                self.rows.set(a, b, false);
+                self.rows.set(b, a, false);
+            } else {
+                self.objects.set(a, column(b), false);
+            }
         }
-        gaps(&row.objects, n_objects).flatten().for_each(|o| self.objects.set(a, o as usize, false));
-        let [cells, things] = &row.proven;
-        for b in cells.iter().cloned().flatten().map(|b| b as usize) {
-            self.proven.boxes.set(a, b, true);
-            self.proven.boxes.set(b, a, true);
+        gaps(&row.objects, n_objects as u32).flatten().for_each(|o| self.objects.set(a, o as usize, false));
+        let [boxes, things] = &row.proven;
+        for b in boxes.iter().cloned().flatten().map(|b| b as usize) {
+            if b < n {
+                self.proven.boxes.set(a, b, true);
+                self.proven.boxes.set(b, a, true);
+            } else {
+                self.proven.objects.set(a, column(b), true);
+            }
         }
         things.iter().cloned().flatten().for_each(|o| self.proven.objects.set(a, o as usize, true));
-        for (left, of_row) in [(&mut self.left.boxes, &row.left[0]), (&mut self.left.objects, &row.left[1])] {
-            left.row_mut(a).fill(0);
-            of_row.iter().cloned().flatten().for_each(|k| left.set(a, k as usize, true));
+        self.left.boxes.row_mut(a).fill(0);
+        self.left.objects.row_mut(a).fill(0);
+        let [boxes, things] = &row.left;
+        for b in boxes.iter().cloned().flatten().map(|b| b as usize) {
+            if b < n {
+                self.left.boxes.set(a, b, true);
+            } else {
+                self.left.objects.set(a, column(b), true);
+            }
         }
+        things.iter().cloned().flatten().for_each(|o| self.left.objects.set(a, o as usize, true));
     }
 
     /// What is hidden or proven visible was decided, whichever of two cells it was.
@@ -203,14 +250,20 @@ fn see_from(
     unit: Allowance<'_>,
 ) -> Result<CellRow, BackendError> {
     let volume = &scene.volumes[cell];
-    let (n, n_objects) = (scene.volumes.len(), scene.occludees.len());
-    let bits = |of: fn(&RegionVisibility) -> &BitMatrix, size: usize, unknown: bool| -> Vec<bool> {
-        known.map_or_else(|| vec![unknown; size], |known| (0..size).map(|k| of(known).get(cell, k)).collect())
+    let (n_boxes, n_objects) = (scene.n_boxes(), scene.occludees.len());
+    let split = |cells: &BitMatrix, objects: &BitMatrix| -> [Vec<bool>; 2] {
+        let of_row = |matrix: &BitMatrix, columns: Range<usize>| columns.map(|k| matrix.get(cell, k)).collect();
+        let mut of_cells: Vec<bool> = of_row(cells, 0..cells.n_cols());
+        let mut of_objects: Vec<bool> = of_row(objects, 0..objects.n_cols());
+        of_cells.extend(of_objects.drain(n_objects..));
+        [of_cells, of_objects]
     };
-    let mut of_objects = bits(|known| &known.objects, n_objects, true);
-    let mut of_cells = bits(|known| &known.rows, n, true);
-    let mut objects_reached = bits(|known| &known.proven.objects, n_objects, false);
-    let mut cells_reached = bits(|known| &known.proven.boxes, n, false);
+    let [mut of_cells, mut of_objects] =
+        known.map_or_else(|| [n_boxes, n_objects].map(|n| vec![true; n]), |known| split(&known.rows, &known.objects));
+    let [mut cells_reached, mut objects_reached] = known.map_or_else(
+        || [n_boxes, n_objects].map(|n| vec![false; n]),
+        |known| split(&known.proven.boxes, &known.proven.objects),
+    );
     if unit.is_over() {
         let left = [not_proven(&of_cells, &cells_reached), not_proven(&of_objects, &objects_reached)];
         return Ok(CellRow::new([of_cells, of_objects], [cells_reached, objects_reached], left, Effort::default()));
@@ -221,7 +274,7 @@ fn see_from(
         // Objects have half of what there is.
         limit.set(unit.part(0.5));
         // Groups of cells first: what hides the box of a group hides all of it.
-        let mut pending = if n == 0 { Vec::new() } else { vec![0u32] };
+        let mut pending = if n_boxes == 0 { Vec::new() } else { vec![0u32] };
         while let Some(k) = pending.pop() {
             let node = &scene.tree.nodes()[k as usize];
             let members = &scene.tree.order()[node.start as usize..node.end as usize];
@@ -244,7 +297,7 @@ fn see_from(
                 if !of_cells[other] {
                     continue;
                 }
-                let target = scene.volumes[other].bounds();
+                let target = scene.target(other);
                 limit.take_refused();
                 let reached =
                     cells_reached[other] || !limit.refuses() && scene.witness.sees(volume, target, RAYS_TO_A_CELL);

@@ -7,7 +7,6 @@ use crate::reports::RegionReport;
 use crate::scene::extents;
 use crate::table::state_file;
 use sightlines_cells::Scene;
-use sightlines_geometry::BoxTree;
 use sightlines_multifocal::Effort;
 use sightlines_packed::{PackReport, PackWriter, StreamError, StreamOptions};
 use sightlines_pvs::{CellId, ObjectId, SceneMethods, TableKind, TableParts};
@@ -60,8 +59,7 @@ pub fn pack_regions<W: Write>(
     let (method, only_in_air) = (made.name(), made.only_in_air());
     drop(made);
     let (occludees, witness) = targets_of(scene, &boxes);
-    let tree = BoxTree::build(&cells, 1);
-    let targets = see::Targets { occludees: &occludees, witness: &witness, volumes: &volumes, tree };
+    let targets = see::Targets::new((&occludees, &witness), &volumes, &[]);
     let rows = see::see_all(&targets, make, options, None)?;
     state_objects(&mut parts, scene, &boxes);
     parts.cell_objects = touching.iter().map(|list| list.iter().copied().map(ObjectId).collect()).collect();

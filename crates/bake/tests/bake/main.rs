@@ -16,4 +16,5 @@ mod reject_text;
 mod reject_units;
 mod space;
 mod stab;
+mod tile;
 mod units;
