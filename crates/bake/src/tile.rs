@@ -1,16 +1,16 @@
 //! One tile of a world that is too large for one table.
 //!
-//! A world is cut into tiles, each a scene with cells of its own. The table of a tile says what its cells see of it. Of tiles nearby its
-//! rows across say which cells and objects its cells see; of those farther away, whether they see anything of them. What a tile and those
-//! nearby contain hides; what is farther away hides nothing. So a tile depends on those nearby, and on the boxes around the others, and is
-//! baked without reading the rest of the world; what it shows is a superset of what a bake of the whole world would show.
+//! A world is cut into tiles, each a scene with cells of its own. The table of a tile says what its cells see of it. Beside it stands which cells and
+//! objects of tiles nearby they see, and whether they see anything of those farther away. What a tile and those nearby contain hides; what is
+//! farther away hides nothing. So a tile depends on those nearby, and on the boxes around the others, and is
+//! baked without reading the rest of the world. Far tiles that it does not know of count as visible.
 
 use crate::auto::choose_for;
 use crate::error::BakeError;
 use crate::graph::TableGraph;
 use crate::options::{BakeOptions, SceneMethod};
 use crate::places::{PlacesError, observed_places};
-use crate::region::{CellsFrom, Decided, decide};
+use crate::region::{CellsFrom, Decided, Wanted, decide};
 use crate::reports::RegionReport;
 use crate::run::with_regions;
 use crate::scene::extents;
@@ -47,14 +47,18 @@ pub struct Tile<'a> {
     pub far: &'a [Aabb<3>],
 }
 
+/// For each cell what it may see, as runs of columns.
+pub type Columns = Vec<Vec<Range<u32>>>;
+
 /// A tile, baked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BakedTile {
     /// The table of its cells and objects.
     pub table: Table,
-    /// For each cell what it may see of other tiles, as runs of columns: the cells of the first tile nearby, its objects, those of the
-    /// second, and so on, then those farther away, one each.
-    pub across: Vec<Vec<Range<u32>>>,
+    /// What it may see of tiles nearby: columns are the cells of the first, its objects, the cells of the second, and so on.
+    pub near: Columns,
+    /// Of which tiles farther away it may see anything: a column each.
+    pub far: Columns,
     /// What was done.
     pub report: RegionReport,
 }
@@ -70,7 +74,14 @@ pub fn tile_cells(scene: &Scene, viewers: &Aabb<3>, options: &BakeOptions<'_>) -
     Ok(match &options.cells {
         CellsFrom::KdTree => {
             let cut = subdivide_scene(scene, &cut)?;
-            cut.graph.cells().iter().map(|cell| nameless(cell.bounds)).collect()
+            // Its cells may reach out of the box.
+            let within = |b: &Aabb<3>| Aabb {
+                min: std::array::from_fn(|k| b.min[k].max(viewers.min[k])),
+                max: std::array::from_fn(|k| b.max[k].min(viewers.max[k])),
+            };
+            let has_room = |b: &Aabb<3>| (0..3).all(|k| b.min[k] < b.max[k]);
+            let cells = cut.graph.cells().iter().map(|cell| within(&cell.bounds));
+            cells.filter(has_room).map(nameless).collect()
         }
         CellsFrom::Grid(n) => grid::grid(viewers, *n)?.cells.into_iter().map(|cell| nameless(cell.bounds)).collect(),
         CellsFrom::Places(how) => {
@@ -101,18 +112,9 @@ pub fn tile_extent(scene: &Scene, cells: &[ViewCell]) -> Aabb<3> {
 /// # Errors
 /// [`BakeError`]: cells that are not volumes, and methods that fail.
 pub fn bake_tile(tile: &Tile<'_>, options: &BakeOptions<'_>) -> Result<BakedTile, BakeError> {
-    let scene = merged(tile);
-    let cells = CellsFrom::Boxes(ViewCells { cells: tile.cells.to_vec(), axes: None });
-    let mut options = BakeOptions { cells, ..options.clone() };
-    if options.method == SceneMethod::Auto {
-        options = choose_for(&BakeInput::Scene(&scene, None), &options).1;
-    }
-    let near_cells = tile.near.iter().flat_map(|near| near.cells.iter().map(|cell| cell.bounds));
-    let regions: Vec<Aabb<3>> = near_cells.chain(tile.far.iter().copied()).collect();
-    let Decided { graph, mut parts, objects, mut report } =
-        with_regions(&scene, &options, tile.file, |how| decide(&scene, &regions, how))?;
+    let Decided { graph, mut parts, objects, mut report } = decided(tile, Wanted::All, options)?;
     debug_assert!(matches!(graph, TableGraph::Boxes(_)), "tiles have boxes as cells");
-    let across = across(tile, &objects);
+    let (near, far) = (near_columns(tile, &objects), far_columns(tile, &objects));
     let n_objects = tile.scene.objects().len();
     let mut own = BitMatrix::new(objects.n_rows(), n_objects);
     for row in 0..objects.n_rows() {
@@ -130,7 +132,27 @@ pub fn bake_tile(tile: &Tile<'_>, options: &BakeOptions<'_>) -> Result<BakedTile
     if tile.cells.iter().all(|cell| cell.id.is_empty()) {
         parts.cell_names.clear();
     }
-    Ok(BakedTile { table: Table::new(parts)?, across, report })
+    Ok(BakedTile { table: Table::new(parts)?, near, far, report })
+}
+
+/// Decides again what a tile sees of those farther away, and nothing else: [`BakedTile::far`], in less time. After tiles were added far away, or
+/// the boxes around them changed.
+///
+/// # Errors
+/// As [`bake_tile`].
+pub fn bake_far(tile: &Tile<'_>, options: &BakeOptions<'_>) -> Result<Columns, BakeError> {
+    Ok(far_columns(tile, &decided(tile, Wanted::LastRegions, options)?.objects))
+}
+
+fn decided(tile: &Tile<'_>, wanted: Wanted, options: &BakeOptions<'_>) -> Result<Decided, BakeError> {
+    let scene = merged(tile);
+    let cells = CellsFrom::Boxes(ViewCells { cells: tile.cells.to_vec(), axes: None });
+    let mut options = BakeOptions { cells, ..options.clone() };
+    if options.method == SceneMethod::Auto {
+        options = choose_for(&BakeInput::Scene(&scene, None), &options).1;
+    }
+    let near: Vec<Aabb<3>> = tile.near.iter().flat_map(|near| near.cells.iter().map(|cell| cell.bounds)).collect();
+    with_regions(&scene, &options, tile.file, |how| decide(&scene, &[&near, tile.far], wanted, how))
 }
 
 /// The scene of a tile and those nearby: its objects come first, those of each other follow in their order, without names.
@@ -152,22 +174,38 @@ fn merged(tile: &Tile<'_>) -> Scene {
     merge().expect("what is right in its scene is right in one of several")
 }
 
-/// The columns of other tiles that each cell may see.
-fn across(tile: &Tile<'_>, objects: &BitMatrix) -> Vec<Vec<Range<u32>>> {
-    let sizes = tile.near.iter().map(|near| (near.cells.len(), near.scene.objects().len()));
-    let mut objects_at = tile.scene.objects().len();
-    let mut regions_at = objects_at + sizes.clone().map(|(_, n)| n).sum::<usize>();
-    // For each column of other tiles that of the matrix.
+/// Where the columns of objects, of cells nearby, and of tiles farther away begin in what was decided.
+fn starts(tile: &Tile<'_>) -> [usize; 3] {
+    let n_objects: usize = tile.near.iter().map(|near| near.scene.objects().len()).sum();
+    let n_cells: usize = tile.near.iter().map(|near| near.cells.len()).sum();
+    let own = tile.scene.objects().len();
+    [own, own + n_objects, own + n_objects + n_cells]
+}
+
+/// What each cell sees of cells and objects nearby.
+fn near_columns(tile: &Tile<'_>, seen: &BitMatrix) -> Columns {
+    let [mut objects_at, mut cells_at, _] = starts(tile);
     let mut columns: Vec<Range<usize>> = Vec::new();
-    for (n_cells, n_objects) in sizes {
-        columns.extend([regions_at..regions_at + n_cells, objects_at..objects_at + n_objects]);
-        regions_at += n_cells;
+    for near in tile.near {
+        let (n_cells, n_objects) = (near.cells.len(), near.scene.objects().len());
+        columns.extend([cells_at..cells_at + n_cells, objects_at..objects_at + n_objects]);
+        cells_at += n_cells;
         objects_at += n_objects;
     }
-    columns.push(regions_at..regions_at + tile.far.len());
+    rows(seen, columns.into_iter().flatten())
+}
+
+/// Of which tiles farther away each cell sees anything.
+fn far_columns(tile: &Tile<'_>, seen: &BitMatrix) -> Columns {
+    let [_, _, at] = starts(tile);
+    rows(seen, at..at + tile.far.len())
+}
+
+/// The runs of bits in these columns, which are numbered through.
+fn rows(seen: &BitMatrix, columns: impl Iterator<Item = usize> + Clone) -> Columns {
     let row = |row: usize| {
-        let seen = (0u32..).zip(columns.iter().cloned().flatten());
-        runs_of(seen.filter(|(_, column)| objects.get(row, *column)).map(|(column, _)| column))
+        let columns = (0u32..).zip(columns.clone());
+        runs_of(columns.filter(|(_, column)| seen.get(row, *column)).map(|(k, _)| k))
     };
-    (0..objects.n_rows()).map(row).collect()
+    (0..seen.n_rows()).map(row).collect()
 }

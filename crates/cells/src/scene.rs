@@ -178,6 +178,28 @@ impl Scene {
         }
     }
 
+    /// The same scene, moved: each coordinate is rounded once. Boxes of what moves are widened to contain what was in them.
+    ///
+    /// # Errors
+    /// [`SceneError::Vertex`], [`SceneError::Motion`] if a coordinate becomes too large.
+    pub fn translated(&self, by: Point3) -> Result<Self, SceneError> {
+        if by == [0.0; 3] {
+            return Ok(self.clone());
+        }
+        let moved = |p: Point3| -> Point3 { std::array::from_fn(|k| p[k] + by[k]) };
+        let objects = self.objects.iter().map(|object| SceneObject {
+            vertices: object.vertices.iter().copied().map(moved).collect(),
+            ..object.clone()
+        });
+        let around = |b: Aabb<3>| Aabb { min: moved(b.min).map(f64::next_down), max: moved(b.max).map(f64::next_up) };
+        let motion = |m: &MovingObject| MovingObject {
+            object: m.object,
+            within: m.within.map(|within| if within.is_empty() { within } else { around(within) }),
+        };
+        let moving = self.moving.iter().map(motion).collect();
+        Self { moving: Vec::new(), objects: Self::new(objects.collect())?.objects, ..self.clone() }.with_moving(moving)
+    }
+
     /// The objects that are mirrors, ascending.
     pub fn mirrors(&self) -> &[u32] {
         &self.mirrors

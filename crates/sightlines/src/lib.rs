@@ -62,6 +62,8 @@ pub use sightlines_sightline as sightline;
 pub use sightlines_simplify as simplify;
 #[cfg(feature = "stabtree")]
 pub use sightlines_stabtree as stabtree;
+#[cfg(feature = "tiles")]
+pub use sightlines_tiles as tiles;
 #[cfg(feature = "triangulation")]
 pub use sightlines_triangulation as triangulation;
 #[cfg(feature = "verify")]

@@ -27,6 +27,7 @@ use crate::scene::{PortalMode, SceneBakeOptions, extents, merge_portals, n_trian
 use crate::table::{object_record, state_file};
 use parts::Start;
 pub(crate) use parts::upright;
+pub(crate) use see::Regions;
 use sightlines_cells::{ANYWHERE, Scene};
 use sightlines_formats::{SceneInfo, ViewCells};
 use sightlines_geometry::{Aabb, Point3};
@@ -143,7 +144,7 @@ impl fmt::Debug for RegionBakeOptions<'_> {
 /// # Errors
 /// [`BakeError`]: for scenes that cannot be cut, cells that are not volumes, and methods that fail.
 pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<BakedRegions, BakeError> {
-    let Decided { graph, mut parts, objects, mut report } = decide(scene, &[], options)?;
+    let Decided { graph, mut parts, objects, mut report } = decide(scene, &[], Wanted::All, options)?;
     let start = Instant::now();
     parts.objects_seen = Some(objects);
     let table = Table::new(parts)?;
@@ -161,19 +162,31 @@ pub(crate) struct Decided {
     pub(crate) report: RegionReport,
 }
 
+/// What is decided.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Wanted {
+    All,
+    /// Only what is seen of the last list of regions, which is the same as with [`Wanted::All`]; only for cells without portals.
+    LastRegions,
+}
+
 /// Decides what the cells of a scene see.
 ///
 /// * `regions`: boxes elsewhere, of which is decided as well which cells see anything in them; only for cells without portals
 pub(crate) fn decide(
     scene: &Scene,
-    regions: &[Aabb<3>],
+    regions: &Regions<'_>,
+    wanted: Wanted,
     options: &RegionBakeOptions<'_>,
 ) -> Result<Decided, BakeError> {
     let start = Instant::now();
+    // Rays find objects.
+    let n_rays = if wanted == Wanted::All { options.split.n_rays } else { 0 };
+    let options = &RegionBakeOptions { split: Split { n_rays, ..options.split }, ..*options };
     let n_objects = scene.objects().len();
     // Regions come behind the objects.
     let mut boxes = extents(scene);
-    boxes.extend(regions);
+    boxes.extend(regions.iter().copied().flatten());
     let mut by_sightlines = options.sightlines || options.method.is_none();
     let (mut n_assumed, mut summary, mut left, mut cut_time) = (0, None, None, None);
     let Start { graph, mut parts, cells, rows, objects } = match options.cells {
@@ -190,7 +203,11 @@ pub(crate) fn decide(
         alone => {
             let cut = cells_alone(scene, options, alone)?;
             summary = cut.places;
-            parts::of_alone((cut.cells, cut.parts), boxes.len())
+            let n_wanted = match wanted {
+                Wanted::All => None,
+                Wanted::LastRegions => regions.last().map(|last| last.len()),
+            };
+            parts::of_alone((cut.cells, cut.parts), boxes.len(), n_wanted)
         }
     };
     let volumes = volumes(&cells)?;

@@ -71,9 +71,14 @@ pub(super) fn places_alone(cells: Vec<Aabb<3>>) -> (Vec<Aabb<3>>, TableParts) {
     (cells, parts)
 }
 
-/// Cells without portals, of which everything may see everything.
-pub(super) fn of_alone((cells, parts): (Vec<Aabb<3>>, TableParts), n_objects: usize) -> Start {
-    all_visible(TableGraph::Boxes(cells.clone()), parts, cells, n_objects)
+/// Cells without portals, of which everything may see everything; with a number of objects, each only that many of the last ones.
+pub(super) fn of_alone((cells, parts): (Vec<Aabb<3>>, TableParts), n_objects: usize, n_wanted: Option<usize>) -> Start {
+    let graph = TableGraph::Boxes(cells.clone());
+    let Some(n_wanted) = n_wanted else { return all_visible(graph, parts, cells, n_objects) };
+    let n = cells.len();
+    let mut objects = BitMatrix::new(n, n_objects);
+    (0..n).for_each(|row| (n_objects - n_wanted..n_objects).for_each(|column| objects.set(row, column, true)));
+    Start { graph, parts, cells, rows: BitMatrix::identity(n), objects }
 }
 
 fn parts_of(cells: &[Aabb<3>], kind: TableKind) -> TableParts {

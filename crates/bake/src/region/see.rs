@@ -5,7 +5,7 @@ use super::row::{CellRow, gaps};
 use super::{MakeMethod, RegionBakeOptions};
 use crate::error::BakeError;
 use rayon::prelude::*;
-use sightlines_geometry::{Aabb, BoxTree};
+use sightlines_geometry::{Aabb, BoxNode, BoxTree};
 use sightlines_multifocal::{BackendError, Effort, FromRegion, Occludees, RaySampler, Umbra, Volume, adaptive};
 use sightlines_progress::{Allowance, Counter, Halt, Phase, Shares, Work, scattered, shares_of};
 use sightlines_pvs::BitMatrix;
@@ -23,31 +23,36 @@ pub(super) struct Targets<'a> {
     pub(super) occludees: &'a Occludees,
     pub(super) witness: &'a RaySampler,
     pub(super) volumes: &'a [Volume],
-    /// Boxes elsewhere, of which is asked as of cells.
-    pub(super) regions: &'a [Aabb<3>],
-    /// Of the volumes, and behind them the regions; a leaf for each.
-    pub(super) tree: BoxTree<3>,
+    /// Boxes elsewhere, of which is asked as of cells; they come behind these, list by list.
+    pub(super) regions: &'a Regions<'a>,
+    /// Of the volumes, and of each list of regions, with the first of their boxes; a leaf for each box. What is found about the boxes of one
+    /// does not depend on the others.
+    trees: Vec<(usize, BoxTree<3>)>,
 }
+
+/// Lists of boxes elsewhere.
+pub(crate) type Regions<'a> = [&'a [Aabb<3>]];
 
 impl<'a> Targets<'a> {
     pub(super) fn new(
         (occludees, witness): (&'a Occludees, &'a RaySampler),
         volumes: &'a [Volume],
-        regions: &'a [Aabb<3>],
+        regions: &'a Regions<'a>,
     ) -> Self {
-        let boxes: Vec<Aabb<3>> =
-            volumes.iter().map(|volume| *volume.bounds()).chain(regions.iter().copied()).collect();
-        Self { occludees, witness, volumes, regions, tree: BoxTree::build(&boxes, 1) }
+        let cells: Vec<Aabb<3>> = volumes.iter().map(|volume| *volume.bounds()).collect();
+        let mut first = 0;
+        let trees = std::iter::once(&cells[..]).chain(regions.iter().copied()).map(|boxes| {
+            let at = first;
+            first += boxes.len();
+            (at, BoxTree::build(boxes, 1))
+        });
+        let trees = trees.collect();
+        Self { occludees, witness, volumes, regions, trees }
     }
 
     /// How many cells and regions there are.
     fn n_boxes(&self) -> usize {
-        self.volumes.len() + self.regions.len()
-    }
-
-    /// A cell, or a region behind them.
-    fn target(&self, k: usize) -> &Aabb<3> {
-        self.volumes.get(k).map_or_else(|| &self.regions[k - self.volumes.len()], Volume::bounds)
+        self.volumes.len() + self.regions.iter().map(|list| list.len()).sum::<usize>()
     }
 }
 
@@ -82,7 +87,7 @@ pub(super) fn see(
     objects: BitMatrix,
 ) -> Result<RegionVisibility, BakeError> {
     let n = scene.volumes.len();
-    let n_things = scene.occludees.len() + scene.regions.len();
+    let n_things = scene.occludees.len() + scene.n_boxes() - n;
     let none = || PairMask { boxes: BitMatrix::new(n, n), objects: BitMatrix::new(n, n_things) };
     let n_objects = scene.occludees.len();
     let mut known = RegionVisibility { rows, objects, proven: none(), left: none(), effort: Effort::default() };
@@ -273,37 +278,38 @@ fn see_from(
     let mut see_cells = |umbra: &mut dyn Umbra| {
         // Objects have half of what there is.
         limit.set(unit.part(0.5));
-        // Groups of cells first: what hides the box of a group hides all of it.
-        let mut pending = if n_boxes == 0 { Vec::new() } else { vec![0u32] };
-        while let Some(k) = pending.pop() {
-            let node = &scene.tree.nodes()[k as usize];
-            let members = &scene.tree.order()[node.start as usize..node.end as usize];
-            if members.iter().all(|&other| !of_cells[other as usize]) {
-                continue;
-            }
-            if !node.is_leaf() {
-                let may_be_hidden = apart(volume.bounds(), &node.bounds)
-                    && !limit.refuses()
-                    && !members.iter().any(|&other| cells_reached[other as usize])
-                    && !scene.witness.sees(volume, &node.bounds, RAYS_TO_A_GROUP);
-                if may_be_hidden && umbra.hides(&node.bounds) {
-                    members.iter().for_each(|&other| of_cells[other as usize] = false);
-                } else {
-                    pending.extend(scene.tree.children(k));
-                }
-                continue;
-            }
-            for other in members.iter().map(|&other| other as usize) {
-                if !of_cells[other] {
+        for (first, tree) in scene.trees.iter().filter(|(_, tree)| !tree.order().is_empty()) {
+            let members = |node: &BoxNode<3>| {
+                tree.order()[node.start as usize..node.end as usize].iter().map(|&member| first + member as usize)
+            };
+            // Groups of cells first: what hides the box of a group hides all of it.
+            let mut pending = vec![0u32];
+            while let Some(k) = pending.pop() {
+                let node = &tree.nodes()[k as usize];
+                if members(node).all(|other| !of_cells[other]) {
                     continue;
                 }
-                let target = scene.target(other);
-                limit.take_refused();
-                let reached =
-                    cells_reached[other] || !limit.refuses() && scene.witness.sees(volume, target, RAYS_TO_A_CELL);
-                let visible = reached || !umbra.hides(target);
-                left_cells[other] = visible && !reached && other != cell && limit.take_refused();
-                (cells_reached[other], of_cells[other]) = (reached, visible);
+                if !node.is_leaf() {
+                    let may_be_hidden = apart(volume.bounds(), &node.bounds)
+                        && !limit.refuses()
+                        && !members(node).any(|other| cells_reached[other])
+                        && !scene.witness.sees(volume, &node.bounds, RAYS_TO_A_GROUP);
+                    if may_be_hidden && umbra.hides(&node.bounds) {
+                        members(node).for_each(|other| of_cells[other] = false);
+                    } else {
+                        pending.extend(tree.children(k));
+                    }
+                    continue;
+                }
+                // A leaf has one box, its own.
+                for other in members(node) {
+                    limit.take_refused();
+                    let reached = cells_reached[other]
+                        || !limit.refuses() && scene.witness.sees(volume, &node.bounds, RAYS_TO_A_CELL);
+                    let visible = reached || !umbra.hides(&node.bounds);
+                    left_cells[other] = visible && !reached && other != cell && limit.take_refused();
+                    (cells_reached[other], of_cells[other]) = (reached, visible);
+                }
             }
         }
         limit.set(unit);

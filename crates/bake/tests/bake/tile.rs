@@ -1,7 +1,7 @@
 //! Tiles of a world: together they say what a bake of the whole world says, as far as they look.
 
 use sightlines_bake::methods::{BufferOptions, OcclusionMethod};
-use sightlines_bake::tile::{BakedTile, NearTile, Tile, bake_tile, tile_cells, tile_extent};
+use sightlines_bake::tile::{BakedTile, Columns, NearTile, Tile, bake_far, bake_tile, tile_cells, tile_extent};
 use sightlines_bake::{BakeOptions, CellsFrom, SceneMethod, bake};
 use sightlines_cells::{MovingObject, Scene, SceneObject};
 use sightlines_formats::{ViewCell, ViewCells};
@@ -79,17 +79,14 @@ impl Baked {
         };
         let mut what = Vec::new();
         for &k in &self.near {
-            what.extend((0..blocks[k].cells.len()).map(|c| (0, k, c)));
-            what.extend((0..blocks[k].scene.objects().len()).map(|o| (1, k, o)));
+            what.extend((0..blocks[k].cells.len()).map(|c| (true, (k, c))));
+            what.extend((0..blocks[k].scene.objects().len()).map(|o| (false, (k, o))));
         }
-        what.extend(self.far.iter().map(|&k| (2, k, 0)));
-        for column in self.baked.across[cell].iter().cloned().flatten() {
-            match what[column as usize] {
-                (0, k, c) => seen.cells.insert((k, c)),
-                (1, k, o) => seen.objects.insert((k, o)),
-                (_, k, _) => seen.whole.insert(k),
-            };
+        for column in self.baked.near[cell].iter().cloned().flatten() {
+            let (is_cell, which) = what[column as usize];
+            if is_cell { &mut seen.cells } else { &mut seen.objects }.insert(which);
         }
+        seen.whole.extend(self.baked.far[cell].iter().cloned().flatten().map(|k| self.far[k as usize]));
         seen
     }
 }
@@ -197,6 +194,32 @@ fn tiles_show_what_rays_hit_and_little_more_than_the_whole_table() {
     }
 }
 
+/// What is far away is decided alone as with all the rest, whatever else there is.
+#[test]
+fn far_tiles_alone_are_as_in_a_whole_bake() {
+    let blocks = blocks();
+    for method in [SceneMethod::Sightlines, SceneMethod::FromRegion(OcclusionMethod::LineSpace), SceneMethod::Both] {
+        let options = by(method);
+        let mut n_seen = [0, 0];
+        for tile in [0, 13] {
+            let (near, far) = around(tile, 1);
+            let of_near: Vec<NearTile<'_>> =
+                near.iter().map(|&k| NearTile { scene: &blocks[k].scene, cells: &blocks[k].cells }).collect();
+            let of_far: Vec<Aabb<3>> = far.iter().map(|&k| blocks[k].extent).collect();
+            let Block { scene, cells, .. } = &blocks[tile];
+            let tile = Tile { scene, file: None, cells, near: &of_near, far: &of_far };
+            let whole = bake_tile(&tile, &options).unwrap();
+            assert_eq!(bake_far(&tile, &options).unwrap(), whole.far, "{method}");
+            // Those nearby are the same without any far away.
+            let alone = bake_tile(&Tile { far: &[], ..tile }, &options).unwrap();
+            assert_eq!((&alone.near, alone.table.to_bytes()), (&whole.near, whole.table.to_bytes()), "{method}");
+            let count = |rows: &Columns| rows.iter().flatten().map(|run| run.len()).sum::<usize>();
+            n_seen = [n_seen[0] + count(&whole.near), n_seen[1] + count(&whole.far)];
+        }
+        assert!(n_seen[0] > 50 && n_seen[1] > 0, "{method}: {n_seen:?}");
+    }
+}
+
 /// A tile that forgets one that it sees is noticed.
 #[test]
 fn lost_tiles_are_noticed() {
@@ -258,11 +281,11 @@ fn surfaces_keep_their_meaning_in_other_tiles() {
         let tile = Tile { scene: &own, file: None, cells: std::slice::from_ref(&eye), near: &near, far: &far };
         let baked = bake_tile(&tile, &options).unwrap();
         assert_eq!(objects_of(&baked.table, 0), [0]);
-        baked.across[0].iter().cloned().flatten().collect::<Vec<_>>()
+        [baked.near, baked.far].map(|rows| rows[0].iter().cloned().flatten().collect::<Vec<_>>())
     };
-    // The screen; the picture, what moves behind it, what is anywhere; a box behind, and one that is everywhere.
-    assert_eq!(seen(&screen), [0, 3, 5]);
-    assert_eq!(seen(&glass), [0, 1, 2, 3, 4, 5]);
+    // The screen; the picture, what moves behind it, what is anywhere. Then a box behind, and one that is everywhere.
+    assert_eq!(seen(&screen), [vec![0, 3], vec![1]]);
+    assert_eq!(seen(&glass), [vec![0, 1, 2, 3], vec![0, 1]]);
 }
 
 /// Cells are those of the tile alone, and the same options cut them in each of the ways.

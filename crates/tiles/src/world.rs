@@ -1,0 +1,135 @@
+//! A baked world in a folder.
+
+use crate::error::WorldError;
+use crate::index::{INDEX_NAME, TileEntry, TilePart, WorldIndex};
+use crate::tables::TileTables;
+use sightlines_geometry::{Aabb, BoxTree};
+use sightlines_packed::Packed;
+use sightlines_packed::across::Across;
+use std::collections::HashMap;
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+
+/// A tile, by its place in the index.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct TileId(pub u32);
+
+/// The key under which the information of a table has that of the bake.
+pub(crate) const KEY: &str = "tile";
+
+/// A baked world: its index is in memory, tables are opened tile by tile.
+#[derive(Debug)]
+pub struct World {
+    folder: PathBuf,
+    index: WorldIndex,
+    by_name: HashMap<String, TileId>,
+    /// Of the boxes of viewers.
+    tree: BoxTree<3>,
+}
+
+impl World {
+    /// The name, and the value, of what the information of the table of a tile states: from which bake it is.
+    pub fn stated(key: [u8; 16]) -> (String, String) {
+        (KEY.to_owned(), format!("{:032x}", u128::from_be_bytes(key)))
+    }
+
+    /// Opens a folder that was baked. Memory in proportion to the index.
+    ///
+    /// # Errors
+    /// [`WorldError::Io`], and those of [`WorldIndex::parse`].
+    pub fn open(folder: &Path) -> Result<Self, WorldError> {
+        let path = folder.join(INDEX_NAME);
+        let text = fs::read(&path).map_err(|source| WorldError::Io { path, source })?;
+        let index = WorldIndex::parse(&text)?;
+        let viewers: Vec<Aabb<3>> = index.tiles.iter().map(|tile| tile.bounds.viewers).collect();
+        let by_name = (0..).zip(&index.tiles).map(|(k, tile)| (tile.name.clone(), TileId(k))).collect();
+        Ok(Self { folder: folder.to_owned(), by_name, tree: BoxTree::build(&viewers, 4), index })
+    }
+
+    /// The index.
+    pub fn index(&self) -> &WorldIndex {
+        &self.index
+    }
+
+    /// What the index states of a tile.
+    pub fn tile(&self, tile: TileId) -> Option<&TileEntry> {
+        self.index.tiles.get(tile.0 as usize)
+    }
+
+    /// The tile of a name.
+    pub fn named(&self, name: &str) -> Option<TileId> {
+        self.by_name.get(name).copied()
+    }
+
+    /// All tiles.
+    pub fn tiles(&self) -> impl Iterator<Item = TileId> + use<> {
+        (0..self.index.tiles.len() as u32).map(TileId)
+    }
+
+    /// The tiles whose viewers can be at a point, borders included; ascending.
+    pub fn tiles_at(&self, eye: [f64; 3], out: &mut Vec<TileId>) {
+        out.clear();
+        self.tree.visit(
+            |b| b.contains(eye),
+            |tile| {
+                if self.index.tiles[tile as usize].bounds.viewers.contains(eye) {
+                    out.push(TileId(tile));
+                }
+            },
+        );
+        out.sort_unstable();
+    }
+
+    /// Calls `show` with tiles whose viewers are at most so far from a point along each axis, in any order.
+    pub(crate) fn visit_within(&self, eye: [f64; 3], distance: f64, mut show: impl FnMut(TileId)) {
+        let near = |b: &Aabb<3>| (0..3).all(|k| b.min[k] - distance <= eye[k] && eye[k] <= b.max[k] + distance);
+        self.tree.visit(near, |tile| {
+            if near(&self.index.tiles[tile as usize].bounds.viewers) {
+                show(TileId(tile));
+            }
+        });
+    }
+
+    /// Opens the files of a tile. At most `cache_bytes` of unpacked blocks of its table are kept.
+    ///
+    /// # Errors
+    /// [`WorldError::Io`], [`WorldError::Table`], [`WorldError::Across`]; [`WorldError::Mixed`] if the files are not those of the index.
+    ///
+    /// # Panics
+    /// If there is no such tile.
+    pub fn load(&self, tile: TileId, cache_bytes: usize) -> Result<TileTables, WorldError> {
+        let entry = &self.index.tiles[tile.0 as usize];
+        let open = |part: TilePart| {
+            let path = self.folder.join(entry.file_name(part));
+            match File::open(&path) {
+                Ok(file) => Ok((file, path)),
+                Err(source) => Err(WorldError::Io { path, source }),
+            }
+        };
+        let (file, path) = open(TilePart::Table)?;
+        let table = match Packed::open(file, cache_bytes) {
+            Ok(table) => table,
+            Err(source) => return Err(WorldError::Table { path, source }),
+        };
+        let is_of = table.info().contains(&Self::stated(entry.key)) && table.n_objects() == entry.n_objects as usize;
+        if !is_of || table.n_cells() != entry.n_cells as usize {
+            return Err(WorldError::Mixed { path });
+        }
+        let across = |part: TilePart| {
+            let (file, path) = open(part)?;
+            let key = if part == TilePart::Far { entry.far_key } else { entry.key };
+            match Across::open(file) {
+                Ok(across) if across.columns().key == key && across.n_rows() == table.n_cells() => Ok(across),
+                Ok(_) => Err(WorldError::Mixed { path }),
+                Err(source) => Err(WorldError::Across { path, source }),
+            }
+        };
+        let (near, far) = (across(TilePart::Near)?, across(TilePart::Far)?);
+        TileTables::new(self, tile, table, near, far).ok_or(WorldError::Mixed { path })
+    }
+
+    /// The path of a file of a tile.
+    pub(crate) fn path(&self, tile: TileId, part: TilePart) -> PathBuf {
+        self.folder.join(self.index.tiles[tile.0 as usize].file_name(part))
+    }
+}
