@@ -10,7 +10,7 @@ use crate::error::BakeError;
 use crate::graph::TableGraph;
 use crate::options::{BakeOptions, SceneMethod};
 use crate::places::{PlacesError, observed_places};
-use crate::region::{CellsFrom, Decided, Wanted, decide};
+use crate::region::{CellsFrom, Decided, Wanted, decide, upright};
 use crate::reports::RegionReport;
 use crate::run::with_regions;
 use crate::scene::extents;
@@ -91,8 +91,13 @@ pub fn tile_cells(scene: &Scene, viewers: &Aabb<3>, options: &BakeOptions<'_>) -
             })?;
             found.cells.into_iter().map(nameless).collect()
         }
-        CellsFrom::Boxes(given) => crate::region::upright(given),
+        CellsFrom::Boxes(given) => upright(given),
     })
+}
+
+/// View cells as boxes along the axes of the scene, around those that stand along others; rounded outwards.
+pub fn upright_cells(cells: &ViewCells) -> Vec<ViewCell> {
+    upright(cells)
 }
 
 /// The box around all that a tile shows, wherever it moves, and around its cells.

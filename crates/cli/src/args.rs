@@ -20,6 +20,7 @@ use crate::commands::{
     reject::RejectArgs,
     render::RenderArgs,
     simplify::SimplifyArgs,
+    tiles::TilesArgs,
     verify::VerifyArgs,
     vga::VgaArgs,
     view::ViewArgs,
@@ -65,6 +66,8 @@ pub(crate) enum Command {
     Plan(PlanCommandArgs),
     /// Share a build among processes and machines: plan its shards, do one, merge them, or have all of it done
     Job(JobArgs),
+    /// A world that is too large for one table: bake its tiles, look into it
+    Tiles(TilesArgs),
     /// Check a table, or the visibility in a Quake or Doom map, against its scene; exit code 1 for a violation
     Verify(VerifyArgs),
     /// Write what is seen from points of a floor plan: polygons, measures, a picture

@@ -13,7 +13,7 @@ use std::time::Duration;
 pub(crate) const PROGRAM: &str = env!("CARGO_PKG_VERSION");
 
 /// What units are, and what their results mean: to be raised when a bake is divided otherwise, or decides otherwise, between two versions of the program.
-const UNITS: u32 = 1;
+pub(crate) const UNITS: u32 = 1;
 
 /// Whether a bake goes on from an earlier run, and where its results are kept.
 #[derive(Debug, Clone, clap::Args)]

@@ -115,6 +115,7 @@ fn run(arguments: &Arguments) -> Result<Answer, Box<dyn Error>> {
         Command::Reject(args) => commands::reject::run(args, show_progress)?,
         Command::Job(args) => commands::job::run(args, show_progress, arguments.verbose > 0)?,
         Command::Vis(args) => commands::vis::run(args, show_progress, arguments.verbose > 0)?,
+        Command::Tiles(args) => commands::tiles::run(args, show_progress)?,
         Command::Verify(args) => commands::verify::run(args, show_progress)?,
         Command::Plan(args) => commands::plan::run(args)?,
         Command::Portals(args) => commands::portals::run(args)?,

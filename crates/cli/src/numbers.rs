@@ -19,6 +19,14 @@ pub(crate) fn share(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A length in scene units.
+pub(crate) fn size(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if x.is_finite() && x >= 0.0 => Ok(x),
+        _ => Err("not a number from 0 on".to_owned()),
+    }
+}
+
 /// A duration: a number of seconds, or one with the unit s, m or h.
 pub(crate) fn duration(text: &str) -> Result<Duration, String> {
     let (number, unit) = match text.trim() {

@@ -37,7 +37,7 @@ impl Seen {
     }
 
     /// Sorts, and removes what is there twice.
-    pub(crate) fn tidy(&mut self) {
+    pub fn sort(&mut self) {
         self.cells.sort_unstable();
         self.cells.dedup();
         self.objects.sort_unstable();

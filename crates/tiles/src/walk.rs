@@ -97,7 +97,7 @@ impl TileWalk {
         self.wish(eye);
         let answer = self.see(eye);
         if answer == Answer::Full {
-            self.seen.tidy();
+            self.seen.sort();
         } else {
             self.seen.set_everything(&self.world);
         }

@@ -300,7 +300,7 @@ fn cells_are_cut_in_the_box_of_viewers() {
     let places = sightlines_bake::places::PlaceOptions { n_cells, cell_size: None };
     for (how, most) in [(CellsFrom::KdTree, 200), (CellsFrom::Grid([3, 1, 3]), 9), (CellsFrom::Places(places), 20)] {
         let cells = cut(how.clone());
-        assert!((3..=most).contains(&cells.len()), "{how:?}: {}", cells.len());
+        assert!((2..=most).contains(&cells.len()), "{how:?}: {}", cells.len());
         let is_in = |b: &Aabb<3>| (0..3).all(|k| viewers.min[k] <= b.min[k] && b.max[k] <= viewers.max[k]);
         assert!(cells.iter().all(|cell| is_in(&cell.bounds)), "{how:?}");
     }

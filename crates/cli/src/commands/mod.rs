@@ -19,6 +19,7 @@ pub(crate) mod query;
 pub(crate) mod reject;
 pub(crate) mod render;
 pub(crate) mod simplify;
+pub(crate) mod tiles;
 pub(crate) mod verify;
 pub(crate) mod vga;
 pub(crate) mod view;

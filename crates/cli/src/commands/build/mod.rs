@@ -13,7 +13,7 @@ mod packed;
 pub(crate) mod plan;
 mod portals;
 mod quake;
-mod region;
+pub(crate) mod region;
 mod source;
 pub(crate) mod space;
 mod stab;

@@ -3,7 +3,7 @@
 use crate::error::InputError;
 use crate::input::refuse;
 use crate::named::one_of;
-use crate::numbers::share;
+use crate::numbers::{share, size};
 use crate::region::Region;
 use sightlines::bake::{BakeOptions, Gap, PortalMode, Subdivide};
 use sightlines::kdtree::SceneOptions;
@@ -48,13 +48,6 @@ pub(crate) struct BakeArgs {
     /// Number of threads; 0 uses every core
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::numbers::threads)]
     pub(crate) threads: usize,
-}
-
-fn size(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(x) if x.is_finite() && x >= 0.0 => Ok(x),
-        _ => Err("not a number from 0 on".to_owned()),
-    }
 }
 
 impl BakeArgs {

@@ -70,7 +70,7 @@ impl RegionArgs {
     ///
     /// # Errors
     /// [`ReadError`] with the file's name and the place in it.
-    pub(super) fn apply(&self, options: &mut BakeOptions<'_>) -> Result<(), ReadError> {
+    pub(crate) fn apply(&self, options: &mut BakeOptions<'_>) -> Result<(), ReadError> {
         options.method = self.method.unwrap_or_default();
         options.cells = match (self.cells.read()?, self.grid) {
             (Some(cells), _) => CellsFrom::Boxes(cells),
@@ -83,6 +83,21 @@ impl RegionArgs {
         options.buffers = self.buffers.options();
         options.split.depth = self.split;
         Ok(())
+    }
+
+    /// Whether a file of view cells was given.
+    pub(crate) fn names_a_file(&self) -> bool {
+        self.cells.is_given()
+    }
+
+    /// Whether a method was named.
+    pub(crate) fn names_a_method(&self) -> bool {
+        self.method.is_some()
+    }
+
+    /// Whether it was said how cells are cut.
+    pub(crate) fn names_cells(&self) -> bool {
+        self.grid.is_some() || self.n_cells.is_some() || self.cell_size.is_some()
     }
 
     /// Chooses the cells of a scene for which none are named, and without a method also that: scenes with few axis-aligned

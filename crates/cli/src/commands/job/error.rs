@@ -1,6 +1,6 @@
 //! Why `job` fails.
 
-use crate::commands::{build, reject, vis};
+use crate::commands::{build, reject, tiles, vis};
 use crate::file_error::{FileError, from_file_error};
 use crate::kept::KeptError;
 use sightlines::checkpoint::JobError;
@@ -28,6 +28,9 @@ pub(crate) enum Error {
     /// As `reject` fails.
     #[error(transparent)]
     Reject(#[from] reject::Error),
+    /// As `tiles` fails.
+    #[error(transparent)]
+    Tiles(#[from] tiles::Error),
     /// A command that cannot be shared, or is none.
     #[error("{0}")]
     Command(String),

@@ -15,7 +15,9 @@ const SHARDS: usize = 64;
 
 /// Arguments of `job plan`.
 #[derive(Debug, clap::Args)]
-#[command(override_usage = "sightlines job plan [OPTIONS] -o JOB build|vis|reject IN [OPTIONS OF THE COMMAND]...")]
+#[command(
+    override_usage = "sightlines job plan [OPTIONS] -o JOB build|vis|reject|tiles IN [OPTIONS OF THE COMMAND]..."
+)]
 pub(crate) struct PlanArgs {
     /// Shards that each phase of the work is cut into, at most; 8 to 32 for each worker let all end at about the same time
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = SHARDS, value_parser = shards)]

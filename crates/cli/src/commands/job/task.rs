@@ -1,7 +1,8 @@
 //! The command that a job shares.
 
 use super::Error;
-use crate::commands::{build, reject, vis};
+use crate::commands::tiles::TilesCommand;
+use crate::commands::{build, reject, tiles, vis};
 use crate::kept::{Keeping, KeptError};
 use clap::{Parser, Subcommand};
 use sightlines::checkpoint::Job;
@@ -26,17 +27,19 @@ struct Line {
 enum Command {
     Build(Box<build::BuildArgs>),
     Reject(reject::RejectArgs),
+    Tiles(tiles::TilesArgs),
     Vis(vis::VisArgs),
 }
 
 /// Their names.
-const NAMES: [&str; 3] = ["build", "reject", "vis"];
+const NAMES: [&str; 4] = ["build", "reject", "tiles", "vis"];
 
 /// The command that a job shares, with its arguments.
 #[derive(Debug)]
 pub(super) enum Task {
     Build(Box<build::BuildArgs>),
     Reject(reject::RejectArgs),
+    Tiles(Box<tiles::TilesBuildArgs>),
     Vis(vis::VisArgs),
 }
 
@@ -45,6 +48,7 @@ pub(super) enum Task {
 pub(super) enum Made {
     Build(Box<build::Built>),
     Reject(reject::Outcome),
+    Tiles(tiles::Outcome),
     Vis(Box<vis::Outcome>),
 }
 
@@ -53,6 +57,7 @@ impl fmt::Display for Made {
         match self {
             Self::Build(outcome) => outcome.fmt(f),
             Self::Reject(outcome) => outcome.fmt(f),
+            Self::Tiles(outcome) => outcome.fmt(f),
             Self::Vis(outcome) => outcome.fmt(f),
         }
     }
@@ -63,7 +68,7 @@ impl Task {
     pub(super) fn parse(words: &[String]) -> Result<Self, Error> {
         let name = words.first().map_or("", String::as_str);
         if !NAMES.contains(&name) {
-            return Err(Error::Command(format!("{name}: only build, vis and reject can be shared")));
+            return Err(Error::Command(format!("{name}: only build, vis, reject and tiles build can be shared")));
         }
         let line = std::iter::once("sightlines").chain(words.iter().map(String::as_str));
         let parsed = Line::try_parse_from(line).map_err(|error| Error::Command(plain(&error)))?;
@@ -75,6 +80,10 @@ impl Task {
             Command::Vis(args) if args.resume => refuse("--resume"),
             Command::Build(args) => Ok(Self::Build(args)),
             Command::Reject(args) => Ok(Self::Reject(args)),
+            Command::Tiles(args) => match args.what {
+                TilesCommand::Build(args) => Ok(Self::Tiles(args)),
+                _ => Err(Error::Command("of tiles, only tiles build can be shared".to_owned())),
+            },
             Command::Vis(args) => Ok(Self::Vis(args)),
         }
     }
@@ -106,6 +115,7 @@ impl Task {
         let own = match &mut self {
             Self::Build(args) => &mut args.bake.threads,
             Self::Reject(args) => &mut args.threads,
+            Self::Tiles(args) => &mut args.threads,
             Self::Vis(args) => &mut args.threads,
         };
         *own = threads.unwrap_or(*own);
@@ -118,6 +128,7 @@ impl Task {
             match &mut self {
                 Self::Build(args) => args.output = output.to_owned(),
                 Self::Reject(args) => args.output = output.to_owned(),
+                Self::Tiles(args) => args.output = output.to_owned(),
                 Self::Vis(args) => args.output = Some(output.to_owned()),
             }
         }
@@ -129,6 +140,7 @@ impl Task {
         match self {
             Self::Build(args) => &args.output,
             Self::Reject(args) => &args.output,
+            Self::Tiles(args) => &args.output,
             Self::Vis(args) => args.output.as_ref().unwrap_or(&args.map),
         }
     }
@@ -138,6 +150,7 @@ impl Task {
         Ok(match self {
             Self::Build(args) => Made::Build(Box::new(build::make(args, keeping, show_progress, verbose)?)),
             Self::Reject(args) => Made::Reject(reject::make(args, keeping, show_progress)?),
+            Self::Tiles(args) => Made::Tiles(tiles::make(args, keeping, show_progress)?),
             Self::Vis(args) => Made::Vis(Box::new(vis::make(args, keeping, show_progress)?)),
         })
     }

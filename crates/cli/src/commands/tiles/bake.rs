@@ -1,0 +1,147 @@
+//! One tile of a world: what decides it, and its files.
+
+use super::Error;
+use super::input::TileInput;
+use super::scenes::{Ready, Scenes};
+use crate::buffers::MethodFailed;
+use sightlines::bake::methods::BufferOptions;
+use sightlines::bake::tile::{NearTile, Tile, bake_far, bake_tile};
+use sightlines::bake::{BakeError, BakeOptions};
+use sightlines::checkpoint::KeyHasher;
+use sightlines::geometry::Aabb;
+use sightlines::tiles::{TileFileError, TilePart, far_bytes, near_bytes, table_bytes};
+use std::sync::Arc;
+
+/// The keys of a tile, and what they are of.
+#[derive(Debug)]
+pub(super) struct TileKeys {
+    pub(super) near: Vec<u32>,
+    pub(super) key: [u8; 16],
+    pub(super) far_key: [u8; 16],
+}
+
+/// Adds all that decides what is baked, but for tiles.
+pub(super) fn hash_options(hasher: &mut KeyHasher, options: &BakeOptions<'_>, are_cells_named: bool) {
+    // What changes nothing but the time is left out, and the address of a function with `buffers.warn`.
+    let BakeOptions {
+        cut,
+        portals,
+        method,
+        cells,
+        buffers,
+        split,
+        subdivide: _,
+        chords: _,
+        gap: _,
+        frame: _,
+        digest: _,
+        fast: _,
+        threads: _,
+        progress: _,
+        budget: _,
+        units: _,
+    } = options;
+    let BufferOptions { measure, planes, texels, occluders, carry, sheets, line_space, backend, warn: _ } = buffers;
+    hasher.debug("cells", &(cut, cells, are_cells_named));
+    hasher.debug("method", &(portals, method, split));
+    hasher.debug("buffers", &(measure, planes, texels, occluders, carry, sheets, line_space, backend));
+}
+
+/// The keys of all tiles.
+pub(super) fn keys(inputs: &[TileInput], near: Vec<Vec<u32>>, options: &KeyHasher) -> Vec<TileKeys> {
+    let of = |(tile, near): (usize, Vec<u32>)| {
+        let mut hasher = options.clone();
+        hasher.value("tile", &inputs[tile].key.0);
+        for &other in &near {
+            hasher.value("near", inputs[other as usize].plan.name.as_bytes());
+            hasher.value("near", &inputs[other as usize].key.0);
+        }
+        let key = hasher.finish().0;
+        for other in far(tile, &near, inputs.len()) {
+            let Aabb { min, max } = inputs[other].bounds.extent;
+            hasher.value("far", inputs[other].plan.name.as_bytes());
+            min.into_iter().chain(max).for_each(|x| hasher.value("far", &x.to_le_bytes()));
+        }
+        TileKeys { near, key, far_key: hasher.finish().0 }
+    };
+    near.into_iter().enumerate().map(of).collect()
+}
+
+/// The tiles that are neither the tile nor near it.
+fn far(tile: usize, near: &[u32], n: usize) -> impl Iterator<Item = usize> + '_ {
+    (0..n).filter(move |&other| other != tile && near.binary_search(&(other as u32)).is_err())
+}
+
+/// The files of a tile that were made: all, or the last one alone.
+pub(super) struct Files(Vec<(TilePart, Vec<u8>)>);
+
+impl Files {
+    /// Each with what it is.
+    pub(super) fn iter(&self) -> impl Iterator<Item = (TilePart, &[u8])> {
+        self.0.iter().map(|(part, bytes)| (*part, &**bytes))
+    }
+
+    /// As bytes, for a store: of each file the place in the list of parts, the length and the content.
+    pub(super) fn to_bytes(&self) -> Vec<u8> {
+        let mut out = Vec::new();
+        for (part, bytes) in &self.0 {
+            let place = TilePart::ALL.iter().position(|other| other == part).unwrap_or_default();
+            out.push(place as u8);
+            out.extend((bytes.len() as u64).to_le_bytes());
+            out.extend(bytes);
+        }
+        out
+    }
+
+    /// `None` if these are no bytes of files.
+    pub(super) fn from_bytes(mut bytes: &[u8]) -> Option<Self> {
+        let mut files = Vec::new();
+        while let Some((&place, rest)) = bytes.split_first() {
+            let (n, rest) = rest.split_first_chunk()?;
+            let (content, rest) = rest.split_at_checked(usize::try_from(u64::from_le_bytes(*n)).ok()?)?;
+            files.push((*TilePart::ALL.get(usize::from(place))?, content.to_vec()));
+            bytes = rest;
+        }
+        Some(Self(files))
+    }
+}
+
+/// Bakes a tile; only what it sees far away, if that is all that is missing.
+pub(super) fn bake(
+    tile: usize,
+    (inputs, keys): (&[TileInput], &TileKeys),
+    scenes: &Scenes<'_>,
+    options: &BakeOptions<'_>,
+    only_far: bool,
+) -> Result<Files, Error> {
+    let input = &inputs[tile];
+    let own = scenes.get(tile)?;
+    let near: Vec<Arc<Ready>> = keys.near.iter().map(|&k| scenes.get(k as usize)).collect::<Result<_, _>>()?;
+    let of_near: Vec<NearTile<'_>> =
+        near.iter().map(|near| NearTile { scene: &near.loaded.scene, cells: &near.cells }).collect();
+    let far: Vec<usize> = far(tile, &keys.near, inputs.len()).collect();
+    let of_far: Vec<Aabb<3>> = far.iter().map(|&k| inputs[k].bounds.extent).collect();
+    let (scene, file) = (&own.loaded.scene, Some(&own.loaded.info));
+    let parts = Tile { scene, file, cells: &own.cells, near: &of_near, far: &of_far };
+    let failed = |source: BakeError| match source {
+        BakeError::Cancelled(cancelled) => cancelled.into(),
+        BakeError::Method(source) => MethodFailed { path: input.scene.clone(), source }.into(),
+        source => Error::Bake { path: input.scene.clone(), source },
+    };
+    let names = || far.iter().map(|&k| inputs[k].plan.name.clone()).collect();
+    let write = |source: TileFileError| Error::Write { tile: input.plan.name.clone(), source };
+    if only_far {
+        let rows = bake_far(&parts, options).map_err(failed)?;
+        return Ok(Files(vec![(TilePart::Far, far_bytes(keys.far_key, names(), &rows).map_err(write)?)]));
+    }
+    let baked = bake_tile(&parts, options).map_err(failed)?;
+    let sizes = keys.near.iter().zip(&near).map(|(&k, near)| {
+        let n_objects = near.loaded.scene.objects().len();
+        (inputs[k as usize].plan.name.clone(), [near.cells.len() as u32, n_objects as u32])
+    });
+    Ok(Files(vec![
+        (TilePart::Table, table_bytes(baked.table, keys.key).map_err(write)?),
+        (TilePart::Near, near_bytes(keys.key, sizes, &baked.near).map_err(write)?),
+        (TilePart::Far, far_bytes(keys.far_key, names(), &baked.far).map_err(write)?),
+    ]))
+}

@@ -1,0 +1,343 @@
+//! `tiles build`: bakes the tiles of a world that are not baked yet.
+
+use super::Error;
+use super::bake::{Files, TileKeys, bake, hash_options, keys};
+use super::input::{self, TileInput};
+use super::outcome::Outcome;
+use super::scenes::Scenes;
+use crate::commands::build::region::RegionArgs;
+use crate::error::{InputError, OutputError};
+use crate::kept::{Identity, Keeping, Kept, PROGRAM, UNITS};
+use crate::output;
+use crate::progress::Bar;
+use crate::surfaces::SurfaceArgs;
+use crate::{Answer, interrupt};
+use sightlines::bake::{BakeOptions, SceneMethod};
+use sightlines::checkpoint::KeyHasher;
+use sightlines::formats::scene::SceneReadOptions;
+use sightlines::geometry::{Aabb, BoxTree};
+use sightlines::packed::Packed;
+use sightlines::progress::{Cancelled, Counter, Halt, Observer, Phase, Progress, Units, Work, shares_of};
+use sightlines::tiles::{INDEX_NAME, TileEntry, TilePart, WorldIndex, near_tiles};
+use std::collections::BTreeSet;
+use std::fs::{self, File};
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
+use std::sync::{Mutex, PoisonError};
+use std::thread;
+use std::time::Instant;
+
+/// Arguments of `tiles build`.
+#[derive(Debug, clap::Args)]
+#[command(
+    after_help = "The plan of a world: {\"sightlines_world\": 1, \"border\": 20, \"tiles\": [{\"name\": \"market\", \
+                  \"scene\": \"market.glb\", \"at\": [100, 0, 0], \"viewers\": {\"min\": [100, 0, 0], \"max\": [200, 30, 100]}}]}. \
+                  Files are beside the plan. `at` moves a scene to its place; `viewers` is where eyes can be, or `cells` a file of \
+                  view cells. Tiles at most `border` away from a tile's viewers hide for it, and what they see of it is told apart; of \
+                  others is only known whether anything is seen of them. A tile is baked again if something in it or nearby has changed."
+)]
+pub(crate) struct TilesBuildArgs {
+    /// The plan of the world, as JSON
+    #[arg(value_name = "WORLD.json")]
+    pub(crate) world: PathBuf,
+    #[command(flatten)]
+    surfaces: SurfaceArgs,
+    #[command(flatten, next_help_heading = "Method")]
+    region: RegionArgs,
+    /// Objects smaller than this in every direction, in scene units, are not used as occluders by sightlines [default: chosen from
+    /// the scene]
+    #[arg(long, help_heading = "Method", value_name = "SIZE", value_parser = crate::numbers::size, allow_hyphen_values = true)]
+    detail_below: Option<f64>,
+    /// Number of threads; 0 uses every core
+    #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::numbers::threads)]
+    pub(crate) threads: usize,
+    /// The folder of the world: a new one, or that of an earlier bake, from which tiles that have not changed are kept
+    #[arg(short, long, help_heading = "Output", value_name = "FOLDER")]
+    pub(crate) output: PathBuf,
+    /// Print the result as JSON
+    #[arg(long, help_heading = "Output")]
+    json: bool,
+}
+
+pub(crate) fn run(args: &TilesBuildArgs, show_progress: bool) -> Result<Answer, Error> {
+    let outcome = make(args, Keeping::Nowhere, show_progress)?;
+    output::print(args.json, &outcome)?;
+    Ok(Answer::Yes)
+}
+
+/// The phase of units of work: one for each tile.
+const PHASE: &str = "tiles";
+
+/// Ends what is under way once the program is interrupted.
+struct Quiet;
+
+impl Observer for Quiet {
+    fn report(&self, _: Progress) -> ControlFlow<()> {
+        if interrupt::requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+}
+
+/// Reads, bakes and writes. Prints nothing but progress and warnings.
+pub(crate) fn make(args: &TilesBuildArgs, keeping: Keeping<'_>, show_progress: bool) -> Result<Outcome, Error> {
+    let start = Instant::now();
+    if args.region.names_a_file() {
+        return Err(Error::Cells(args.world.clone()));
+    }
+    let mut options = BakeOptions { progress: Some(&Quiet), ..BakeOptions::default() };
+    options.cut.detail_below = args.detail_below;
+    args.region.apply(&mut options)?;
+    if !args.region.names_a_method() {
+        options.method = SceneMethod::Auto;
+    }
+    let are_cells_named = args.region.names_cells();
+    let reading = args.surfaces.options();
+    let plan = input::plan(&args.world)?;
+    let threads = if args.threads == 0 { thread::available_parallelism().map_or(1, usize::from) } else { args.threads };
+    let looked = on_threads(threads, plan.tiles.len(), |tile| {
+        if interrupt::requested() {
+            return Err(Cancelled.into());
+        }
+        input::look(&args.world, (tile, plan.tiles[tile].clone()), &reading)
+    });
+    let inputs: Vec<TileInput> = looked.into_iter().collect::<Result<_, _>>()?;
+    check_axes(&inputs)?;
+    let bounds: Vec<_> = inputs.iter().map(|tile| tile.bounds).collect();
+    let mut hasher = KeyHasher::new(PROGRAM);
+    hasher.value("units", &UNITS.to_le_bytes());
+    hash_options(&mut hasher, &options, are_cells_named);
+    let keys = keys(&inputs, near_tiles(&bounds, plan.border), &hasher);
+    let identify = || identity(&args.world, &inputs, &keys);
+    let files: Vec<&Path> = vec![&args.world];
+    let kept = Kept::open(keeping, &args.output, &files, identify)?;
+    let mut world = World { args, border: plan.border, inputs: &inputs, keys: &keys, missing: Vec::new() };
+    world.find()?;
+    let made = world.bake((&options, are_cells_named), (&reading, threads), kept.units(), show_progress);
+    let made = made.and_then(|()| world.finish(start));
+    match kept.finish(made.is_ok()) {
+        Some(_) => {
+            world.find()?;
+            let n = inputs.len();
+            Err(Error::Interrupted { n_done: n - world.missing.iter().flatten().count(), n })
+        }
+        None => made,
+    }
+}
+
+/// What decides the results of units.
+fn identity(world: &Path, inputs: &[TileInput], keys: &[TileKeys]) -> Result<Identity, InputError> {
+    let mut identity = Identity::new("tiles");
+    identity.file(world)?;
+    for tile in inputs {
+        identity.file(&tile.scene)?;
+        tile.cells.iter().try_for_each(|cells| identity.file(cells))?;
+    }
+    keys.iter().for_each(|keys| identity.debug("tile", &(keys.key, keys.far_key)));
+    Ok(identity)
+}
+
+/// Refuses scenes with other axes or units than the first.
+fn check_axes(inputs: &[TileInput]) -> Result<(), Error> {
+    let first = &inputs[0];
+    match inputs.iter().find(|tile| tile.axes != first.axes) {
+        None => Ok(()),
+        Some(other) => Err(Error::Axes {
+            path: other.scene.clone(),
+            first: first.scene.clone(),
+            found: other.axes.clone(),
+            expected: first.axes.clone(),
+        }),
+    }
+}
+
+/// Calls `make` for each number below `n`, on so many threads; the results in order.
+fn on_threads<T: Send>(threads: usize, n: usize, make: impl Fn(usize) -> T + Sync) -> Vec<T> {
+    let (next, done) = (AtomicUsize::new(0), Mutex::new(Vec::with_capacity(n)));
+    thread::scope(|scope| {
+        for _ in 0..threads.min(n).max(1) {
+            scope.spawn(|| {
+                loop {
+                    let k = next.fetch_add(1, Relaxed);
+                    if k >= n {
+                        return;
+                    }
+                    let made = make(k);
+                    done.lock().unwrap_or_else(PoisonError::into_inner).push((k, made));
+                }
+            });
+        }
+    });
+    let mut done = done.into_inner().unwrap_or_else(PoisonError::into_inner);
+    done.sort_by_key(|(k, _)| *k);
+    done.into_iter().map(|(_, made)| made).collect()
+}
+
+/// What is missing of a tile.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Missing {
+    All,
+    Far,
+}
+
+/// A world that is baked.
+struct World<'a> {
+    args: &'a TilesBuildArgs,
+    border: f64,
+    inputs: &'a [TileInput],
+    keys: &'a [TileKeys],
+    /// What is to be made of each tile.
+    missing: Vec<Option<Missing>>,
+}
+
+impl World<'_> {
+    fn path(&self, tile: usize, part: TilePart) -> PathBuf {
+        let TileKeys { key, far_key, .. } = self.keys[tile];
+        let key = if part == TilePart::Far { far_key } else { key };
+        self.args.output.join(TileEntry::file_name_of(&self.inputs[tile].plan.name, part, key))
+    }
+
+    /// Finds which tiles have their files.
+    fn find(&mut self) -> Result<(), Error> {
+        let out = &self.args.output;
+        let failed = |source| OutputError::Folder { path: out.clone(), source };
+        fs::create_dir_all(out).map_err(failed)?;
+        output::check_writable(&out.join(INDEX_NAME))?;
+        let has = |tile: usize, part: TilePart| self.path(tile, part).is_file();
+        let missing = |tile: usize| {
+            let is_whole = has(tile, TilePart::Table) && has(tile, TilePart::Near);
+            if !is_whole {
+                Some(Missing::All)
+            } else if has(tile, TilePart::Far) {
+                None
+            } else {
+                Some(Missing::Far)
+            }
+        };
+        self.missing = (0..self.inputs.len()).map(missing).collect();
+        Ok(())
+    }
+
+    /// Bakes what is missing, and writes it.
+    fn bake(
+        &self,
+        (options, are_cells_named): (&BakeOptions<'_>, bool),
+        (reading, threads): (&SceneReadOptions, usize),
+        units: Units<'_>,
+        show_progress: bool,
+    ) -> Result<(), Error> {
+        // Tiles that are near each other need the same scenes, so they follow each other.
+        let viewers: Vec<Aabb<3>> = self.inputs.iter().map(|tile| tile.bounds.viewers).collect();
+        let order: Vec<usize> = BoxTree::build(&viewers, 1).order().iter().map(|&tile| tile as usize).collect();
+        let n_to_do = self.missing.iter().flatten().count();
+        // A few tiles have all threads for each; of many, each has one.
+        let (at_once, threads) = if n_to_do >= 2 * threads { (threads, 1) } else { (1, threads) };
+        let options = &BakeOptions { threads, ..options.clone() };
+        let most_near = self.keys.iter().map(|keys| keys.near.len()).max().unwrap_or(0);
+        let scenes = Scenes::new(self.inputs, reading, (options, are_cells_named), 2 * (most_near + 1) * at_once + 32);
+        let n_triangles = |tile: usize| self.inputs[tile].n_triangles as f64;
+        let cost = |&tile: &usize| match self.missing[tile] {
+            None => 0.0,
+            // A tenth of the rest, about.
+            Some(missing) => {
+                let near: f64 = self.keys[tile].near.iter().map(|&near| n_triangles(near as usize)).sum();
+                let share = if missing == Missing::Far { 0.1 } else { 1.0 };
+                share * (1.0 + n_triangles(tile)) * (1000.0 + n_triangles(tile) + near).sqrt()
+            }
+        };
+        let costs: Vec<f64> = order.iter().map(cost).collect();
+        let shares = shares_of(&costs);
+        units.begin(&Phase { name: PHASE, costs: &costs })?;
+        let bar = Bar::new("tiles", show_progress);
+        let counter = Counter::new(Some(&bar), PHASE, order.len()).of(Work::Deciding);
+        let one = |unit: usize| -> Result<(), Error> {
+            let tile = order[unit];
+            counter.check()?;
+            let mut is_made = false;
+            let result = units.get(PHASE, unit, || -> Result<Vec<u8>, Error> {
+                let Some(missing) = self.missing[tile] else { return Ok(Vec::new()) };
+                is_made = true;
+                let files = bake(tile, (self.inputs, &self.keys[tile]), &scenes, options, missing == Missing::Far)?;
+                if units.are_kept() {
+                    return Ok(files.to_bytes());
+                }
+                self.save(tile, &files)?;
+                Ok(Vec::new())
+            });
+            // What comes from a store is of a job, or of a shard that goes on.
+            if let Some(bytes) = result?.filter(|_| units.are_kept() && !is_made) {
+                let files = Files::from_bytes(&bytes);
+                let files = files.ok_or_else(|| Halt::Store(format!("the kept result of tile {tile} does not fit")))?;
+                self.save(tile, &files)?;
+            }
+            Ok(counter.step_by(shares[unit], !is_made)?)
+        };
+        let is_failed = AtomicBool::new(false);
+        let done = on_threads(at_once, order.len(), |unit| {
+            if is_failed.load(Relaxed) {
+                return Ok(());
+            }
+            one(unit).inspect_err(|_| is_failed.store(true, Relaxed))
+        });
+        done.into_iter().collect::<Result<(), Error>>()?;
+        // If others have tiles to do, this ends the bake.
+        Ok(units.end(PHASE)?)
+    }
+
+    fn save(&self, tile: usize, files: &Files) -> Result<(), Error> {
+        Ok(files.iter().try_for_each(|(part, bytes)| output::save(&self.path(tile, part), bytes))?)
+    }
+
+    /// Writes the index, and removes files of tiles that are no longer in it.
+    fn finish(&self, start: Instant) -> Result<Outcome, Error> {
+        let out = &self.args.output;
+        let mut outcome = Outcome::new(&self.args.world, out);
+        let mut index = WorldIndex { border: self.border, tiles: Vec::new() };
+        for (tile, (input, keys)) in self.inputs.iter().zip(self.keys).enumerate() {
+            let path = self.path(tile, TilePart::Table);
+            let open = |source| InputError::Open { path: path.clone(), source };
+            let table = Packed::open(File::open(&path).map_err(open)?, 0);
+            let table = table.map_err(|source| InputError::Packed { path: path.clone(), source })?;
+            let TileKeys { key, far_key, .. } = *keys;
+            index.tiles.push(TileEntry {
+                name: input.plan.name.clone(),
+                bounds: input.bounds,
+                key,
+                far_key,
+                n_cells: table.n_cells() as u32,
+                n_objects: table.n_objects() as u32,
+            });
+            outcome
+                .count(self.missing[tile].map(|missing| missing == Missing::All), (table.n_cells(), table.n_objects()));
+            for part in TilePart::ALL {
+                let path = self.path(tile, part);
+                outcome.n_bytes += fs::metadata(&path).map_err(|source| InputError::Open { path, source })?.len();
+            }
+        }
+        let index_path = out.join(INDEX_NAME);
+        let old = fs::read(&index_path).ok().and_then(|text| WorldIndex::parse(&text).ok());
+        output::save(&index_path, index.to_json().as_bytes())?;
+        outcome.n_removed = remove_others(out, &index, old.as_ref());
+        outcome.seconds = start.elapsed().as_secs_f64();
+        Ok(outcome)
+    }
+}
+
+/// Removes files in a folder that were of tiles, and are not any more; returns of how many tables. What cannot be removed stays.
+fn remove_others(folder: &Path, index: &WorldIndex, old: Option<&WorldIndex>) -> usize {
+    let Ok(entries) = fs::read_dir(folder) else { return 0 };
+    let current: BTreeSet<String> =
+        index.tiles.iter().flat_map(|tile| TilePart::ALL.map(|part| tile.file_name(part))).collect();
+    let names: BTreeSet<&str> =
+        old.into_iter().chain([index]).flat_map(|index| &index.tiles).map(|tile| &*tile.name).collect();
+    let mut n_removed = 0;
+    for entry in entries.flatten() {
+        let Ok(name) = entry.file_name().into_string() else { continue };
+        // A key and an end behind the name of the tile.
+        let of_tile = name.rsplit_once('-').map(|(tile, _)| tile).filter(|tile| names.contains(tile));
+        let is_ours = of_tile.is_some_and(|tile| TileEntry::is_file_of(tile, &name));
+        if is_ours && !current.contains(&name) && fs::remove_file(entry.path()).is_ok() && name.ends_with(".pvz") {
+            n_removed += 1;
+        }
+    }
+    n_removed
+}

@@ -1,0 +1,60 @@
+//! `tiles check`: whether the files of a baked world are whole and belong together.
+
+use super::Error;
+use crate::Answer;
+use crate::output::{self, bytes, count};
+use crate::progress::Bar;
+use serde::Serialize;
+use sightlines::tiles::World;
+use std::fmt;
+use std::path::PathBuf;
+
+/// Arguments of `tiles check`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct TilesCheckArgs {
+    /// The folder of the world
+    #[arg(value_name = "FOLDER")]
+    world: PathBuf,
+    /// Print the result as JSON
+    #[arg(long, help_heading = "Output")]
+    json: bool,
+}
+
+/// What was read.
+#[derive(Debug, Serialize)]
+struct Checked {
+    world: String,
+    n_tiles: usize,
+    n_cells: usize,
+    n_objects: usize,
+    /// What all tiles take in memory without blocks that are kept.
+    n_resident_bytes: usize,
+}
+
+pub(super) fn run(args: &TilesCheckArgs, show_progress: bool) -> Result<Answer, Error> {
+    let world = World::open(&args.world).map_err(Error::Tables)?;
+    let n_tiles = world.index().tiles.len();
+    let mut checked =
+        Checked { world: args.world.display().to_string(), n_tiles, n_cells: 0, n_objects: 0, n_resident_bytes: 0 };
+    let bar = Bar::new("tiles", show_progress);
+    for (k, tile) in world.tiles().enumerate() {
+        let tables = world.load(tile, 0).map_err(Error::Tables)?;
+        tables.verify().map_err(Error::Tables)?;
+        checked.n_cells += tables.table().n_cells();
+        checked.n_objects += tables.table().n_objects();
+        checked.n_resident_bytes += tables.n_bytes();
+        bar.set(k + 1, n_tiles);
+    }
+    drop(bar);
+    output::print(args.json, &checked)?;
+    Ok(Answer::Yes)
+}
+
+impl fmt::Display for Checked {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [tiles, cells, objects] = [(self.n_tiles, "tile"), (self.n_cells, "cell"), (self.n_objects, "object")]
+            .map(|(n, noun)| count(n as u64, noun));
+        writeln!(f, "{}: {tiles} with {cells} and {objects} are whole and of one bake", self.world)?;
+        writeln!(f, "in memory      {}, if all were loaded", bytes(self.n_resident_bytes as u64))
+    }
+}

@@ -1,0 +1,151 @@
+//! What a world consists of: its plan, and what is known of each tile before any is baked.
+
+use super::Error;
+use crate::error::InputError;
+use crate::surfaces;
+use sightlines::bake::tile::{tile_cells, tile_extent};
+use sightlines::bake::{BakeError, BakeOptions, CellsFrom, auto::own_cells};
+use sightlines::cells::Scene;
+use sightlines::checkpoint::{Key, KeyHasher};
+use sightlines::formats::scene::{SceneReadOptions, read_scene_with};
+use sightlines::formats::view_cells::read_view_cells;
+use sightlines::formats::{ReadError, SceneInfo, ViewCell, ViewCells};
+use sightlines::geometry::Aabb;
+use sightlines::tiles::{TileBounds, TilePlan, WorldError, WorldPlan};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// A tile, with what is known of it before its cells are cut.
+#[derive(Debug)]
+pub(super) struct TileInput {
+    pub(super) plan: TilePlan,
+    pub(super) scene: PathBuf,
+    pub(super) cells: Option<PathBuf>,
+    pub(super) bounds: TileBounds,
+    /// Of all that it is: what it contains in the world, and where eyes can be.
+    pub(super) key: Key,
+    /// About how much work its own cells are, seen from itself.
+    pub(super) n_triangles: usize,
+    /// Axes and units, in words.
+    pub(super) axes: String,
+}
+
+/// A tile that was read.
+#[derive(Debug)]
+pub(super) struct Loaded {
+    pub(super) scene: Scene,
+    pub(super) info: SceneInfo,
+    /// As given, moved.
+    given: Option<ViewCells>,
+    viewers: Aabb<3>,
+}
+
+/// The plan of a world.
+pub(super) fn plan(path: &Path) -> Result<WorldPlan, Error> {
+    let text = fs::read(path).map_err(|source| InputError::Open { path: path.to_owned(), source })?;
+    WorldPlan::parse(&text).map_err(|source| Error::World { path: path.to_owned(), source })
+}
+
+/// The tile of a plan, `tile` in it; warns of what a user should hear of its file.
+pub(super) fn look(
+    world: &Path,
+    (tile, plan): (usize, TilePlan),
+    reading: &SceneReadOptions,
+) -> Result<TileInput, Error> {
+    let beside = |name: &str| world.parent().unwrap_or(Path::new("")).join(name);
+    let (scene, cells) = (beside(&plan.scene), plan.cells.as_deref().map(beside));
+    let loaded = load(&scene, cells.as_deref(), &plan, reading, true)?;
+    let extent = tile_extent(&loaded.scene, &[ViewCell { id: String::new(), bounds: loaded.viewers }]);
+    let is_flat = (0..3).any(|k| loaded.viewers.min[k] >= loaded.viewers.max[k]);
+    if is_flat {
+        let what =
+            format!("{}: there is no room for viewers in the box of the scene; name \"viewers\"", scene.display());
+        return Err(Error::World { path: world.to_owned(), source: WorldError::Tile { tile, what } });
+    }
+    let bounds = TileBounds { viewers: loaded.viewers, extent };
+    let axes = format!("{:?}, {:?}", loaded.info.up, loaded.info.unit);
+    let (key, n_triangles) = (loaded.key(), loaded.scene.n_triangles());
+    Ok(TileInput { plan, scene, cells, bounds, key, n_triangles, axes })
+}
+
+impl TileInput {
+    /// Reads it again. Refuses what has changed meanwhile.
+    pub(super) fn load(&self, reading: &SceneReadOptions) -> Result<Loaded, Error> {
+        let loaded = load(&self.scene, self.cells.as_deref(), &self.plan, reading, false)?;
+        if loaded.key() == self.key { Ok(loaded) } else { Err(Error::Changed(self.scene.clone())) }
+    }
+
+    /// Its cells, cut as the options say; as fits what it contains, if they do not.
+    pub(super) fn cut(
+        &self,
+        loaded: &Loaded,
+        options: &BakeOptions<'_>,
+        are_named: bool,
+    ) -> Result<Vec<ViewCell>, Error> {
+        let cells = match &loaded.given {
+            Some(given) => CellsFrom::Boxes(given.clone()),
+            None if are_named => options.cells.clone(),
+            None => own_cells(&loaded.scene),
+        };
+        let failed = |source: BakeError| match source {
+            BakeError::Cancelled(cancelled) => cancelled.into(),
+            source => Error::Bake { path: self.scene.clone(), source },
+        };
+        let options = BakeOptions { cells, ..options.clone() };
+        let cells = tile_cells(&loaded.scene, &loaded.viewers, &options).map_err(failed)?;
+        if cells.is_empty() {
+            return Err(Error::NoCells { path: self.scene.clone(), tile: self.plan.name.clone() });
+        }
+        Ok(cells)
+    }
+}
+
+impl Loaded {
+    fn key(&self) -> Key {
+        let mut hasher = KeyHasher::new("");
+        hasher.debug("scene", &(&self.scene, &self.info));
+        hasher.debug("viewers", &(&self.given, self.viewers));
+        hasher.finish()
+    }
+}
+
+fn load(
+    scene: &Path,
+    cells: Option<&Path>,
+    plan: &TilePlan,
+    reading: &SceneReadOptions,
+    warn: bool,
+) -> Result<Loaded, Error> {
+    let file = read_scene_with(scene, reading).map_err(ReadError::from)?;
+    crate::input::check_occluder(scene, &file)?;
+    if warn {
+        surfaces::warn(scene, &file);
+    }
+    let moved = |source| Error::Moved { path: scene.to_owned(), source };
+    let (scene, info) = (file.scene.translated(plan.at).map_err(moved)?, file.info);
+    let given = cells.map(read_view_cells).transpose()?.map(|given| moved_cells(given, plan.at));
+    let of_cells = |given: &ViewCells| {
+        let boxes = sightlines::bake::tile::upright_cells(given);
+        Aabb::around(boxes.iter().flat_map(|cell| [cell.bounds.min, cell.bounds.max]))
+    };
+    let viewers = given.as_ref().map(of_cells).or(plan.viewers).unwrap_or_else(|| {
+        let stated = info.view_region().map(|b| moved_box(b, plan.at));
+        stated.unwrap_or_else(|| scene.bounds())
+    });
+    Ok(Loaded { scene, info, given, viewers })
+}
+
+fn moved_box(b: Aabb<3>, by: [f64; 3]) -> Aabb<3> {
+    let moved = |p: [f64; 3]| std::array::from_fn(|k| p[k] + by[k]);
+    Aabb { min: moved(b.min), max: moved(b.max) }
+}
+
+/// View cells, moved. With axes of their own they are widened by the rounding, as boxes of the world.
+fn moved_cells(given: ViewCells, by: [f64; 3]) -> ViewCells {
+    if by == [0.0; 3] {
+        return given;
+    }
+    let boxes = sightlines::bake::tile::upright_cells(&given);
+    let cells = boxes.into_iter().map(|cell| ViewCell { bounds: moved_box(cell.bounds, by), id: cell.id });
+    ViewCells { cells: cells.collect(), axes: None }
+}

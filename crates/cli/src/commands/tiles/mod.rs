@@ -1,0 +1,43 @@
+//! `tiles`: a world that is too large for one table.
+
+mod bake;
+mod build;
+mod check;
+mod error;
+mod input;
+mod outcome;
+mod query;
+mod scenes;
+
+pub(crate) use build::{TilesBuildArgs, make};
+pub(crate) use error::Error;
+pub(crate) use outcome::Outcome;
+
+use crate::Answer;
+use clap::Subcommand;
+
+/// Arguments of `tiles`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct TilesArgs {
+    #[command(subcommand)]
+    pub(crate) what: TilesCommand,
+}
+
+/// What to do with a world.
+#[derive(Debug, Subcommand)]
+pub(crate) enum TilesCommand {
+    /// Bake the tiles of a world that are not baked yet, or that something nearby has changed for
+    Build(Box<TilesBuildArgs>),
+    /// List what may be seen from a point of a baked world
+    Query(query::TilesQueryArgs),
+    /// Read all files of a baked world, and check that they belong together
+    Check(check::TilesCheckArgs),
+}
+
+pub(crate) fn run(args: &TilesArgs, show_progress: bool) -> Result<Answer, Error> {
+    match &args.what {
+        TilesCommand::Build(args) => build::run(args, show_progress),
+        TilesCommand::Query(args) => query::run(args),
+        TilesCommand::Check(args) => check::run(args, show_progress),
+    }
+}

@@ -1,0 +1,91 @@
+//! `tiles query`: what may be seen from a point of a baked world.
+
+use super::Error;
+use crate::output::{self, count};
+use crate::{Answer, place::Point};
+use serde::Serialize;
+use sightlines::tiles::{Seen, TileId, TileScratch, World};
+use std::collections::BTreeMap;
+use std::fmt;
+use std::path::PathBuf;
+
+/// Bytes of blocks of a table that a query keeps.
+const CACHE: usize = 16 << 20;
+
+/// Arguments of `tiles query`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct TilesQueryArgs {
+    /// The folder of the world
+    #[arg(value_name = "FOLDER")]
+    world: PathBuf,
+    /// The eye, in scene units; exit code 1 outside every cell, where everything may be visible
+    #[arg(long, help_heading = "Viewer", value_name = "X,Y,Z", allow_hyphen_values = true)]
+    eye: Point,
+    /// Print the result as JSON
+    #[arg(long, help_heading = "Output")]
+    json: bool,
+}
+
+/// What is seen of a tile.
+#[derive(Debug, Default, Serialize)]
+struct OfTile {
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    cells: Vec<u32>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    objects: Vec<u32>,
+    /// Whether anything of it may be seen, and no more is known.
+    whole: bool,
+}
+
+/// What is seen.
+#[derive(Debug, Serialize)]
+struct Found {
+    eye: [f64; 3],
+    /// The tiles in which the eye is in a cell.
+    tiles: Vec<String>,
+    /// Tile by tile; nothing outside of every cell.
+    seen: BTreeMap<String, OfTile>,
+    n_tiles: usize,
+}
+
+pub(super) fn run(args: &TilesQueryArgs) -> Result<Answer, Error> {
+    let world = World::open(&args.world).map_err(Error::Tables)?;
+    let eye = args.eye.coordinates(3, &args.world)?;
+    let eye = [eye[0], eye[1], eye[2]];
+    let (mut at, mut inside, mut seen, mut scratch) = (Vec::new(), Vec::new(), Seen::default(), TileScratch::default());
+    world.tiles_at(eye, &mut at);
+    for &tile in &at {
+        let tables = world.load(tile, CACHE).map_err(Error::Tables)?;
+        if tables.see(eye, &mut seen, &mut scratch).map_err(Error::Tables)? {
+            inside.push(tile);
+        }
+    }
+    seen.sort();
+    let name = |tile: TileId| world.tile(tile).map(|entry| entry.name.clone()).unwrap_or_default();
+    let mut of: BTreeMap<String, OfTile> = BTreeMap::new();
+    seen.cells.iter().for_each(|&(tile, cell)| of.entry(name(tile)).or_default().cells.push(cell.0));
+    seen.objects.iter().for_each(|&(tile, object)| of.entry(name(tile)).or_default().objects.push(object.0));
+    seen.tiles.iter().for_each(|&tile| of.entry(name(tile)).or_default().whole = true);
+    let found =
+        Found { eye, tiles: inside.into_iter().map(name).collect(), seen: of, n_tiles: world.index().tiles.len() };
+    output::print(args.json, &found)?;
+    Ok(if found.tiles.is_empty() { Answer::No } else { Answer::Yes })
+}
+
+impl fmt::Display for Found {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [x, y, z] = self.eye;
+        if self.tiles.is_empty() {
+            return writeln!(f, "{x},{y},{z} is outside every cell: everything may be visible");
+        }
+        writeln!(f, "{x},{y},{z} is in {}", self.tiles.join(", "))?;
+        let (whole, parts): (Vec<_>, Vec<_>) = self.seen.iter().partition(|(_, of)| of.whole);
+        for (tile, of) in parts {
+            let [cells, objects] =
+                [(of.cells.len(), "cell"), (of.objects.len(), "object")].map(|(n, noun)| count(n as u64, noun));
+            writeln!(f, "{tile:<14} {cells}, {objects}")?;
+        }
+        let names: Vec<&str> = whole.into_iter().map(|(tile, _)| &**tile).collect();
+        writeln!(f, "far away       something of {} of {} tiles: {}", names.len(), self.n_tiles, names.join(", "))
+    }
+}
