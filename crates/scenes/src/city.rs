@@ -84,6 +84,59 @@ pub fn city_crossings(options: CityOptions) -> Result<Vec<Aabb<3>>, SceneError> 
     Ok((1..n_z).flat_map(|z| (1..n_x).map(move |x| at(x, z))).collect())
 }
 
+/// A part of a city.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CityTile {
+    /// `0_0`, `1_0` and so on: its place along x and along z.
+    pub name: String,
+    /// Its houses, and the ground below them.
+    pub scene: Scene,
+    /// Boxes of a bay where eyes can be, in its streets: block by block.
+    pub cells: Vec<Aabb<3>>,
+}
+
+/// The city that [`city`] makes from the same options, in tiles of so many blocks along each side, along x first. Its ground is cut along the tiles, and has
+/// no margin.
+///
+/// # Errors
+/// As [`city`]; [`SceneError::OutOfRange`] for no blocks in a tile.
+pub fn city_tiles(options: CityOptions, per_tile: u32) -> Result<Vec<CityTile>, SceneError> {
+    let [n_x, n_z, _] = checked(&options)?;
+    let per_tile = i32::try_from(check_range("per_tile", per_tile, 1, 64)?).expect("a small number");
+    let mut houses = city(options)?.objects()[1..].to_vec().into_iter();
+    let mut of_blocks: BTreeMap<[i32; 2], Vec<SceneObject>> = BTreeMap::new();
+    for (z, x) in (0..n_z).flat_map(|z| (0..n_x).map(move |x| (z, x))) {
+        of_blocks.insert([z, x], houses.by_ref().take(4).collect());
+    }
+    let mut tile = |z: i32, x: i32| {
+        let [x0, z0] = [x, z].map(|k| k * per_tile);
+        let [x1, z1] = [(x0 + per_tile).min(n_x), (z0 + per_tile).min(n_z)];
+        let size = [(x1 - x0) * PITCH, 1, (z1 - z0) * PITCH];
+        let mut objects = vec![cuboid("ground".to_owned(), [x0 * PITCH, -1, z0 * PITCH], size, [1; 3])];
+        let mut cells = Vec::new();
+        for block in (z0..z1).flat_map(|z| (x0..x1).map(move |x| [z, x])) {
+            objects.append(of_blocks.get_mut(&block).expect("a block of the city"));
+            // The street beyond the second lot, on both sides.
+            for (i, j) in (0..PITCH).flat_map(|j| (0..PITCH).map(move |i| (i, j))) {
+                if i >= 2 * LOT || j >= 2 * LOT {
+                    let at = |k: i32, block: i32| f64::from((block * PITCH + k) * BAY);
+                    let [x, z] = [at(i, block[1]), at(j, block[0])];
+                    let side = f64::from(BAY);
+                    cells.push(Aabb { min: [x, EYES[0], z], max: [x + side, EYES[1], z + side] });
+                }
+            }
+        }
+        let scene = Scene::new(objects).expect("corners of bays make a scene");
+        CityTile { name: format!("{x}_{z}"), scene, cells }
+    };
+    let n = |blocks: i32| (blocks + per_tile - 1) / per_tile;
+    let mut tiles = Vec::new();
+    for (z, x) in (0..n(n_z)).flat_map(|z| (0..n(n_x)).map(move |x| (z, x))) {
+        tiles.push(tile(z, x));
+    }
+    Ok(tiles)
+}
+
 fn checked(options: &CityOptions) -> Result<[i32; 3], SceneError> {
     let x = check_range("blocks_x", options.blocks_x, 1, 64)?;
     let z = check_range("blocks_z", options.blocks_z, 1, 64)?;

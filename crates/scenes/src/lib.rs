@@ -26,7 +26,7 @@ pub mod surfaces;
 pub mod tower;
 pub mod world;
 
-pub use city::{CityOptions, city, city_crossings};
+pub use city::{CityOptions, CityTile, city, city_crossings, city_tiles};
 pub use doom_like::{DoomLike, DoomLikeLine, doom_like};
 pub use error::SceneError;
 pub use hall::{pillared_hall, turned_pillared_hall};

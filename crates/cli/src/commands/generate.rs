@@ -1,13 +1,17 @@
 //! `generate`: scenes to try things on.
 
 use crate::Answer;
+use crate::error::OutputError;
 use crate::file_error::{FileError, from_file_error};
 use crate::glb::{self, GlbError, save_glb};
 use crate::output::{self, bytes, count};
 use serde::Serialize;
+use sightlines::geometry::Aabb;
 use sightlines::scenes::SceneError;
-use sightlines::scenes::{TowerOptions, tower, tower_rooms};
+use sightlines::scenes::{CityOptions, CityTile, TowerOptions, city_tiles, tower, tower_rooms};
+use sightlines::tiles::{TilePlan, WorldPlan};
 use std::fmt;
+use std::fs;
 use std::path::PathBuf;
 
 /// Why `generate` fails; exit code 2.
@@ -38,6 +42,34 @@ pub(crate) struct GenerateArgs {
 enum What {
     /// A furnished office tower in metres, y up, as GLB
     Tower(TowerArgs),
+    /// A city in metres, y up, in tiles: a folder with the plan world.json, and for each tile a GLB and a file of view cells
+    World(WorldArgs),
+}
+
+/// Arguments of `generate world`.
+#[derive(Debug, clap::Args)]
+struct WorldArgs {
+    /// Seed of the generator
+    #[arg(long, help_heading = "World", value_name = "N", default_value_t = CityOptions::default().seed)]
+    seed: u64,
+    /// Blocks of four houses along each side, 1 to 64
+    #[arg(long, help_heading = "World", value_name = "N", default_value_t = CityOptions::default().blocks_x)]
+    blocks: u32,
+    /// Blocks along each side of a tile, from 1 on
+    #[arg(long, help_heading = "World", value_name = "N", default_value_t = 2)]
+    per_tile: u32,
+    /// Cuts of a bay of 4 metres and of a storey along each side, 1 to 8
+    #[arg(long, help_heading = "World", value_name = "N", default_value_t = CityOptions::default().detail)]
+    detail: u32,
+    /// What is at most so far from a tile, in metres, is near it
+    #[arg(long, help_heading = "World", value_name = "UNITS", default_value_t = 20.0, value_parser = crate::numbers::size)]
+    border: f64,
+    /// The folder to write, which is made
+    #[arg(short, long, help_heading = "Output", value_name = "FOLDER")]
+    output: PathBuf,
+    /// Print the result as JSON
+    #[arg(long, help_heading = "Output")]
+    json: bool,
 }
 
 /// Arguments of `generate tower`.
@@ -74,7 +106,59 @@ struct TowerArgs {
 }
 
 pub(crate) fn run(args: &GenerateArgs) -> Result<Answer, Error> {
-    let What::Tower(args) = &args.what;
+    match &args.what {
+        What::Tower(args) => write_tower(args),
+        What::World(args) => write_world(args),
+    }
+}
+
+fn write_world(args: &WorldArgs) -> Result<Answer, Error> {
+    let WorldArgs { seed, blocks, per_tile, detail, border, ref output, json } = *args;
+    let options = CityOptions { seed, blocks_x: blocks, blocks_z: blocks, detail };
+    let tiles = city_tiles(options, per_tile)?;
+    fs::create_dir_all(output).map_err(|source| OutputError::Folder { path: output.clone(), source })?;
+    let mut plan = WorldPlan { border, tiles: Vec::new() };
+    let mut outcome =
+        WorldOutcome { out: output.display().to_string(), seed, n_tiles: tiles.len(), ..WorldOutcome::default() };
+    for CityTile { name, scene, cells } in tiles {
+        let [scene_name, cells_name] = [format!("{name}.glb"), format!("{name}.cells.json")];
+        save_glb(&output.join(&scene_name), &scene)?;
+        let cell = |(k, b): (usize, &Aabb<3>)| serde_json::json!({"id": k.to_string(), "min": b.min, "max": b.max});
+        let cells_text = serde_json::json!({"cells": cells.iter().enumerate().map(cell).collect::<Vec<_>>()});
+        output::save(&output.join(&cells_name), cells_text.to_string().as_bytes())?;
+        outcome.n_cells += cells.len();
+        outcome.n_objects += scene.objects().len();
+        outcome.n_triangles += scene.n_triangles();
+        plan.tiles.push(TilePlan { name, scene: scene_name, at: [0.0; 3], viewers: None, cells: Some(cells_name) });
+    }
+    output::save(&output.join("world.json"), plan.to_json().as_bytes())?;
+    output::print(json, &outcome)?;
+    Ok(Answer::Yes)
+}
+
+/// What was written of a world.
+#[derive(Debug, Default, Serialize)]
+struct WorldOutcome {
+    out: String,
+    seed: u64,
+    n_tiles: usize,
+    n_cells: usize,
+    n_objects: usize,
+    n_triangles: usize,
+}
+
+impl fmt::Display for WorldOutcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "wrote {}: a city of {} (seed {})", self.out, count(self.n_tiles as u64, "tile"), self.seed)?;
+        writeln!(
+            f,
+            "view cells     {}\nobjects        {}\ntriangles      {}",
+            self.n_cells, self.n_objects, self.n_triangles
+        )
+    }
+}
+
+fn write_tower(args: &TowerArgs) -> Result<Answer, Error> {
     glb::check_name(&args.output)?;
     output::check(&[], &[&args.output])?;
     let options = TowerOptions {

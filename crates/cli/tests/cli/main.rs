@@ -40,6 +40,7 @@ mod space;
 mod space_errors;
 mod stab_trees;
 mod tables;
+mod tiles;
 mod udmf;
 mod verify;
 mod vga;

@@ -94,3 +94,27 @@ fn city_options_are_checked() {
     assert_eq!(error(CityOptions { detail: 9, ..SMALL }), "detail is 9, but must be from 1 to 8");
     assert!(city_crossings(CityOptions { detail: 0, ..SMALL }).is_err());
 }
+
+/// Tiles share out the houses of the city, and their cells lie in streets.
+#[test]
+fn city_tiles_are_the_city() {
+    let whole = city(SMALL).unwrap();
+    for (per_tile, n_tiles) in [(1, 6), (2, 2), (3, 1)] {
+        let tiles = city_tiles(SMALL, per_tile).unwrap();
+        assert_eq!(tiles.len(), n_tiles);
+        let houses: BTreeSet<&str> =
+            tiles.iter().flat_map(|tile| &tile.scene.objects()[1..]).map(|o| &*o.name).collect();
+        let expected: BTreeSet<&str> = whole.objects()[1..].iter().map(|o| &*o.name).collect();
+        assert_eq!(houses, expected);
+        for tile in &tiles {
+            let ground = tile.scene.objects()[0].bounds();
+            let solid: Vec<Aabb<3>> = tile.scene.objects().iter().map(SceneObject::bounds).collect();
+            for cell in &tile.cells {
+                assert!((0..3).step_by(2).all(|k| ground.min[k] <= cell.min[k] && cell.max[k] <= ground.max[k]));
+                assert!(solid.iter().all(|house| !overlap(house, cell)), "{}", tile.name);
+            }
+        }
+        assert_eq!(tiles.iter().map(|tile| tile.cells.len()).sum::<usize>(), 6 * 69);
+    }
+    assert!(city_tiles(SMALL, 0).is_err());
+}
