@@ -167,7 +167,7 @@ fn worlds_are_shared() {
     build(&folder, "whole");
     let plan = ["job", "plan", "-o", "job", "--shards", "5", "--json"];
     let planned = folder.run(&[&plan[..], &BUILD, &["out"]].concat()).expect(0).json();
-    assert_eq!(planned["next"]["name"], json!("tiles"), "{planned}");
+    assert_eq!(planned["phase"], json!("tiles"), "{planned}");
     folder.run(&["job", "shard", "job", "3"]).expect(0);
     folder.run(&["job", "merge", "job"]).expect(3);
     folder.run(&["job", "submit", "job", "--workers", "2"]).expect(0);

@@ -256,7 +256,9 @@ impl World<'_> {
             let result = units.get(PHASE, unit, || -> Result<Vec<u8>, Error> {
                 let Some(missing) = self.missing[tile] else { return Ok(Vec::new()) };
                 is_made = true;
+                let begin = Instant::now();
                 let files = bake(tile, (self.inputs, &self.keys[tile]), &scenes, options, missing == Missing::Far)?;
+                tracing::info!("tile {}: {:.3} s", self.inputs[tile].plan.name, begin.elapsed().as_secs_f64());
                 if units.are_kept() {
                     return Ok(files.to_bytes());
                 }

@@ -188,6 +188,11 @@ fn scenes(all: &mut Results) {
     let mut add = |heading, line: &str| all.line(&folder, heading, line);
     let least = "--floors 1 --rooms-x 1 --rooms-y 1 --furniture 0";
     add("generate tower", &format!("generate tower -o least.glb {least}"));
+    add("generate world", "generate world --blocks 2 --per-tile 1 -o city");
+    add("tiles build", "tiles build city/world.json --method shafts --grid 2,1,2 -o tiles");
+    add("tiles query", "tiles query tiles --eye 42,1.7,44");
+    add("tiles query", "tiles query tiles --eye -100,0,0");
+    add("tiles check", "tiles check tiles");
     add("plan", "plan tower.glb --height 1.2 -o tower.geojson");
     add("isovist of a scene", "isovist tower.glb --at 3,1.5,3 --rays 200 -o tower.csv");
     add("build of a scene", "build least.glb -o least.pvs --door all=-99,-99,-99,99,99,99");

@@ -213,6 +213,7 @@ fn every_command_with_json_is_on_the_page() {
         let args = match *command {
             "generate" => &["generate", "tower", "--help"][..],
             "job" => &["job", "plan", "--help"],
+            "tiles" => &["tiles", "build", "--help"],
             command => &[command, "--help"],
         };
         folder.run(args).expect(0).out.contains("--json")

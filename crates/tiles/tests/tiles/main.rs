@@ -1,0 +1,192 @@
+//! A baked world: what is seen across tiles, and walking through it.
+
+use sightlines_bake::methods::OcclusionMethod;
+use sightlines_bake::tile::{NearTile, Tile, bake_tile, tile_extent};
+use sightlines_bake::{BakeOptions, SceneMethod};
+use sightlines_formats::ViewCell;
+use sightlines_geometry::{Aabb, Random};
+use sightlines_pvs::CellId;
+use sightlines_scenes::{CityOptions, CityTile, city_tiles};
+use sightlines_tiles::{
+    INDEX_NAME, Seen, TileBounds, TileEntry, TileId, TilePart, TileScratch, TileWalk, TileWalkOptions, World,
+    WorldError, WorldIndex, far_bytes, near_bytes, near_tiles, table_bytes,
+};
+use sightlines_walkthrough::Answer;
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+use std::sync::{Arc, OnceLock};
+
+/// Blocks along each side, each a tile.
+const N: u32 = 5;
+
+/// A world in a folder, baked once.
+fn folder() -> &'static Path {
+    static FOLDER: OnceLock<tempfile::TempDir> = OnceLock::new();
+    FOLDER.get_or_init(|| {
+        let folder = tempfile::tempdir().unwrap();
+        bake(folder.path());
+        folder
+    });
+    FOLDER.get().unwrap().path()
+}
+
+fn bake(folder: &Path) {
+    let tiles = city_tiles(CityOptions { blocks_x: N, blocks_z: N, ..CityOptions::default() }, 1).unwrap();
+    let cells_of = |tile: &CityTile| -> Vec<ViewCell> {
+        tile.cells.iter().step_by(7).map(|b| ViewCell { id: String::new(), bounds: *b }).collect()
+    };
+    let cells: Vec<Vec<ViewCell>> = tiles.iter().map(cells_of).collect();
+    let bounds: Vec<TileBounds> = tiles
+        .iter()
+        .zip(&cells)
+        .map(|(tile, cells)| TileBounds {
+            viewers: Aabb::around(cells.iter().flat_map(|cell| [cell.bounds.min, cell.bounds.max])),
+            extent: tile_extent(&tile.scene, cells),
+        })
+        .collect();
+    let near_of = near_tiles(&bounds, 20.0);
+    let options = BakeOptions { method: SceneMethod::FromRegion(OcclusionMethod::Shafts), ..BakeOptions::default() };
+    let mut index = WorldIndex { border: 20.0, tiles: Vec::new() };
+    for (k, tile) in tiles.iter().enumerate() {
+        let near: Vec<usize> = near_of[k].iter().map(|&near| near as usize).collect();
+        let far: Vec<usize> = (0..tiles.len()).filter(|other| *other != k && !near.contains(other)).collect();
+        let scenes: Vec<NearTile<'_>> =
+            near.iter().map(|&near| NearTile { scene: &tiles[near].scene, cells: &cells[near] }).collect();
+        let boxes: Vec<Aabb<3>> = far.iter().map(|&far| bounds[far].extent).collect();
+        let parts = Tile { scene: &tile.scene, file: None, cells: &cells[k], near: &scenes, far: &boxes };
+        let baked = bake_tile(&parts, &options).unwrap();
+        let entry = TileEntry {
+            name: tile.name.clone(),
+            bounds: bounds[k],
+            key: [k as u8; 16],
+            far_key: [100 + k as u8; 16],
+            n_cells: cells[k].len() as u32,
+            n_objects: tile.scene.objects().len() as u32,
+        };
+        let sizes = near.iter().map(|&near| {
+            (tiles[near].name.clone(), [cells[near].len() as u32, tiles[near].scene.objects().len() as u32])
+        });
+        let names = far.iter().map(|&far| tiles[far].name.clone()).collect();
+        let files = [
+            (TilePart::Table, table_bytes(baked.table, entry.key).unwrap()),
+            (TilePart::Near, near_bytes(entry.key, sizes, &baked.near).unwrap()),
+            (TilePart::Far, far_bytes(entry.far_key, names, &baked.far).unwrap()),
+        ];
+        for (part, bytes) in files {
+            fs::write(folder.join(entry.file_name(part)), bytes).unwrap();
+        }
+        index.tiles.push(entry);
+    }
+    fs::write(folder.join(INDEX_NAME), index.to_json()).unwrap();
+}
+
+/// What an eye sees, by a loop over all tiles and all of their cells; none if it is in none.
+fn by_loops(world: &World, eye: [f64; 3]) -> Option<Seen> {
+    let (mut seen, mut scratch, mut is_inside) = (Seen::default(), TileScratch::default(), false);
+    for tile in world.tiles() {
+        let tables = world.load(tile, 0).unwrap();
+        for cell in (0..tables.table().n_cells() as u32).map(CellId) {
+            let (min, max) = tables.table().cell_box(cell).unwrap();
+            if (Aabb { min, max }).contains(eye) {
+                is_inside = true;
+                tables.see_from(cell, &mut seen, &mut scratch).unwrap();
+            }
+        }
+    }
+    seen.sort();
+    is_inside.then_some(seen)
+}
+
+#[test]
+fn a_walk_sees_what_the_tables_say() {
+    let world = Arc::new(World::open(folder()).unwrap());
+    let options = TileWalkOptions { has_thread: false, ..TileWalkOptions::default() };
+    let mut walk = TileWalk::new(Arc::clone(&world), options);
+    let mut random = Random::new(7);
+    let [mut n_inside, mut n_outside] = [0, 0];
+    let mut distinct: BTreeSet<usize> = BTreeSet::new();
+    for _ in 0..120 {
+        // Some eyes are on borders of cells.
+        let mut eye = random.point(&Aabb { min: [0.0, 1.0, 0.0], max: [270.0, 2.5, 270.0] });
+        if random.unit() < 0.5 {
+            eye = [(eye[0] / 4.0).round() * 4.0, eye[1], eye[2]];
+        }
+        let expected = by_loops(&world, eye);
+        let frame = walk.frame(eye);
+        match expected {
+            Some(expected) => {
+                assert_eq!((frame.answer, frame.seen), (Answer::Full, &expected), "{eye:?}");
+                distinct.insert(expected.objects.len());
+                assert!(expected.tiles.len() < world.index().tiles.len());
+                n_inside += 1;
+            }
+            None => {
+                assert_eq!((frame.answer, frame.seen.tiles.len()), (Answer::Outside, 25), "{eye:?}");
+                n_outside += 1;
+            }
+        }
+        assert!(walk.take_error().is_none());
+    }
+    assert!(n_inside >= 5 && n_outside >= 5 && distinct.len() > 3, "{n_inside} {n_outside} {distinct:?}");
+}
+
+/// With a thread a frame never waits: until the tile has arrived, all of the world is seen.
+#[test]
+fn a_frame_does_not_wait_for_a_tile() {
+    let world = Arc::new(World::open(folder()).unwrap());
+    let mut walk = TileWalk::new(Arc::clone(&world), TileWalkOptions { budget: 1, ..TileWalkOptions::default() });
+    let eye = world.index().tiles[12].bounds.viewers;
+    let eye = [eye.min[0] + 0.5, 1.7, eye.min[2] + 0.5];
+    let mut answers = Vec::new();
+    for _ in 0..2_000 {
+        let frame = walk.frame(eye);
+        if answers.last() != Some(&frame.answer) {
+            answers.push(frame.answer);
+        }
+        assert!(frame.answer != Answer::Late || frame.seen.tiles.len() == 25);
+        if frame.answer != Answer::Late {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    assert!(matches!(answers.as_slice(), [Answer::Late, _] | [Answer::Full | Answer::Outside]), "{answers:?}");
+    // The budget is less than a tile: that of the eye stays, and others go.
+    while !walk.is_idle() {
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    walk.frame(eye);
+    let (n_kept, n_loaded, _) = walk.counts();
+    assert!(n_kept <= 3 && n_loaded >= 2, "{n_kept} of {n_loaded}");
+}
+
+/// A tile that the others do not know of is seen as a whole; one that is gone makes their tables those of another bake.
+#[test]
+fn tiles_that_are_not_known_are_seen() {
+    let copy = tempfile::tempdir().unwrap();
+    for entry in fs::read_dir(folder()).unwrap() {
+        let entry = entry.unwrap();
+        fs::copy(entry.path(), copy.path().join(entry.file_name())).unwrap();
+    }
+    let text = fs::read(folder().join(INDEX_NAME)).unwrap();
+    let index = WorldIndex::parse(&text).unwrap();
+    let mut more = index.clone();
+    more.tiles.push(TileEntry { name: "new".to_owned(), ..index.tiles[0].clone() });
+    fs::write(copy.path().join(INDEX_NAME), more.to_json()).unwrap();
+    let world = World::open(copy.path()).unwrap();
+    let (mut seen, mut scratch) = (Seen::default(), TileScratch::default());
+    world.load(TileId(12), 0).unwrap().see_from(CellId(0), &mut seen, &mut scratch).unwrap();
+    assert!(seen.tiles.contains(&TileId(25)));
+
+    let mut fewer = index.clone();
+    fewer.tiles.pop();
+    fs::write(copy.path().join(INDEX_NAME), fewer.to_json()).unwrap();
+    assert!(matches!(World::open(copy.path()).unwrap().load(TileId(0), 0), Err(WorldError::Mixed { .. })));
+    let mut other = index.clone();
+    other.tiles[13].n_cells += 1;
+    fs::write(copy.path().join(INDEX_NAME), other.to_json()).unwrap();
+    let world = World::open(copy.path()).unwrap();
+    // Its own table has another number, and to those nearby it is another tile.
+    assert!([12, 13].iter().all(|&tile| matches!(world.load(TileId(tile), 0), Err(WorldError::Mixed { .. }))));
+    assert!(world.load(TileId(0), 0).is_ok());
+}
