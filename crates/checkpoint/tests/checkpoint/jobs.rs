@@ -42,7 +42,7 @@ proptest! {
                     let by = order.rotate_left(n_rounds * 9);
                     todo.sort_by_key(|&shard| (by.wrapping_mul(shard as u64 * 2 + 1) >> 7, shard));
                     for shard in todo {
-                        prop_assert_eq!(run(&folder, n, Role::Shard(shard)), Err(Outcome::Done));
+                        prop_assert_eq!(run(&folder, n, Role::shard(shard)), Err(Outcome::Done));
                     }
                 }
                 Err(other) => prop_assert!(false, "{:?}", other),
@@ -66,7 +66,7 @@ pub(crate) fn first_phase(folder: &Path) -> Job {
     plan(folder, "a", 3).unwrap();
     assert_eq!(run(folder, [6, 4], Role::Merge), Err(Outcome::Planned { phase: 0, shards: 0..3 }));
     for shard in 0..3 {
-        assert_eq!(run(folder, [6, 4], Role::Shard(shard)), Err(Outcome::Done));
+        assert_eq!(run(folder, [6, 4], Role::shard(shard)), Err(Outcome::Done));
     }
     Job::open(folder, PROGRAM).unwrap()
 }
@@ -110,12 +110,12 @@ fn what_is_missing_or_broken_is_named() {
     let other = all.path().join("other");
     plan(&other, "b", 3).unwrap();
     assert!(matches!(run(&other, [6, 4], Role::Merge), Err(Outcome::Planned { .. })));
-    assert_eq!(run(&other, [6, 4], Role::Shard(1)), Err(Outcome::Done));
+    assert_eq!(run(&other, [6, 4], Role::shard(1)), Err(Outcome::Done));
     fs::copy(Job::open(&other, PROGRAM).unwrap().part_path(1), job.part_path(1)).unwrap();
     let text = format!("{name}: the results are of another input or of other options");
     missing(&[(1, ShardState::Broken(text))]);
     // A process that does the shard replaces what is broken.
-    assert_eq!(run(&folder, [6, 4], Role::Shard(1)), Err(Outcome::Done));
+    assert_eq!(run(&folder, [6, 4], Role::shard(1)), Err(Outcome::Done));
     assert_eq!(fs::read(job.part_path(1)).unwrap(), parts[1]);
     assert!(matches!(run(&folder, [6, 4], Role::Merge), Err(Outcome::Planned { phase: 1, .. })));
 }
@@ -128,7 +128,7 @@ fn shards_go_on_and_may_be_done_at_once() {
     let job = first_phase(&folder);
     let part = fs::read(job.part_path(1)).unwrap();
     fs::remove_file(job.part_path(1)).unwrap();
-    let store = |job: &Job| JobStore::new(job.clone(), Role::Shard(1), Duration::ZERO).unwrap();
+    let store = |job: &Job| JobStore::new(job.clone(), Role::shard(1), Duration::ZERO).unwrap();
     let mut stopped = toy([6, 4]);
     stopped.stop_after = 1;
     assert_eq!(stopped.bake(Some(&store(&job))), Err(Halt::Store("killed".to_owned())));
@@ -148,7 +148,7 @@ fn shards_go_on_and_may_be_done_at_once() {
     assert_eq!(fs::read(job.part_path(1)).unwrap(), part);
     std::thread::scope(|scope| {
         for _ in 0..4 {
-            scope.spawn(|| assert_eq!(run(&folder, [6, 4], Role::Shard(2)), Err(Outcome::Done)));
+            scope.spawn(|| assert_eq!(run(&folder, [6, 4], Role::shard(2)), Err(Outcome::Done)));
         }
     });
     assert_eq!(job.state(2).unwrap(), ShardState::Done);
@@ -167,11 +167,11 @@ fn other_inputs_and_programs_are_refused() {
         "{error}"
     );
     // A bake with other units than were planned.
-    let store = JobStore::new(job.clone(), Role::Shard(1), Duration::ZERO).unwrap();
+    let store = JobStore::new(job.clone(), Role::shard(1), Duration::ZERO).unwrap();
     let Err(Halt::Store(text)) = toy([7, 4]).bake(Some(&store)) else { panic!("it went on") };
     assert!(text.starts_with("the job was planned with 6 units of phase pairs, and there are 7"), "{text}");
     assert!(matches!(
-        JobStore::new(job, Role::Shard(3), Duration::ZERO),
+        JobStore::new(job, Role::shard(3), Duration::ZERO),
         Err(JobError::NoShard { shard: 3, n: 3, .. })
     ));
     let stranger = JobStore::new(Job::open(&folder, PROGRAM).unwrap(), Role::Merge, Duration::ZERO).unwrap();
