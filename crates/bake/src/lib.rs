@@ -49,6 +49,7 @@ mod sectors;
 mod stab;
 mod subdivide;
 mod table;
+mod threads;
 
 pub use backs::Backs;
 pub use bakeable::{Bakeable, BakeableError};

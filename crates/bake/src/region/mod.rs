@@ -25,6 +25,7 @@ use crate::places::{PlaceOptions, PlaceSummary, PlacesError, observed_places};
 use crate::reports::RegionReport;
 use crate::scene::{PortalMode, SceneBakeOptions, extents, merge_portals, n_triangles, see_scene};
 use crate::table::{object_record, state_file};
+use crate::threads;
 use parts::Start;
 pub(crate) use parts::upright;
 use sightlines_cells::{ANYWHERE, Scene};
@@ -143,6 +144,11 @@ impl fmt::Debug for RegionBakeOptions<'_> {
 /// # Errors
 /// [`BakeError`]: for scenes that cannot be cut, cells that are not volumes, and methods that fail.
 pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<BakedRegions, BakeError> {
+    threads::on(options.threads, || bake_here(scene, options))
+}
+
+/// The same, on the threads that call it.
+fn bake_here(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<BakedRegions, BakeError> {
     let start = Instant::now();
     let boxes = extents(scene);
     let mut by_sightlines = options.sightlines || options.method.is_none();
