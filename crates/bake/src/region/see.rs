@@ -126,11 +126,7 @@ pub(super) fn see_all(
         Ok((cell, row))
     };
     let found: Vec<(usize, Option<CellRow>)> = threads::on(options.threads, || {
-        cells
-            .par_iter()
-            .with_max_len(1)
-            .map_init(|| None, |method, _| one(method))
-            .collect::<Result<_, BakeError>>()
+        cells.par_iter().with_max_len(1).map_init(|| None, |method, _| one(method)).collect::<Result<_, BakeError>>()
     })?;
     // If others have cells to do, this ends the bake.
     options.units.end(PHASE)?;

@@ -177,3 +177,61 @@ fn other_inputs_and_programs_are_refused() {
     let stranger = JobStore::new(Job::open(&folder, PROGRAM).unwrap(), Role::Merge, Duration::ZERO).unwrap();
     assert!(!stranger.wants("pairs", 0) && stranger.save("pairs", 0, b"").is_err());
 }
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+    /// Invariant: however shards are grouped, each part has the bytes that a process of its own writes, and so has the merge.
+    #[test]
+    fn groups_of_shards_make_the_same_parts(n in [1..16_usize, 1..16_usize], max_shards in 1..8_usize, groups in any::<u64>()) {
+        let all = tempfile::tempdir().unwrap();
+        let folders = ["alone", "together"].map(|name| all.path().join(name));
+        folders.iter().for_each(|folder| drop(plan(folder, "a", max_shards).unwrap()));
+        let mut n_rounds = 0;
+        while let Err(Outcome::Planned { shards, .. }) = run(&folders[0], n, Role::Merge) {
+            prop_assert_eq!(run(&folders[1], n, Role::Merge), Err(Outcome::Planned { phase: n_rounds, shards: shards.clone() }));
+            shards.clone().for_each(|shard| assert_eq!(run(&folders[0], n, Role::shard(shard)), Err(Outcome::Done)));
+            // Four groups, named from the last shard on, some shards twice.
+            for group in 0..4 {
+                let is_of = |shard: &usize| groups.rotate_left(*shard as u32 * 7 + 1) % 4 == group;
+                let mut of: Vec<usize> = shards.clone().rev().filter(is_of).collect();
+                of.extend(of.first().copied());
+                if !of.is_empty() {
+                    prop_assert_eq!(run(&folders[1], n, Role::Shards(of)), Err(Outcome::Done));
+                }
+            }
+            let jobs = [0, 1].map(|k| Job::open(&folders[k], PROGRAM).unwrap());
+            for shard in shards {
+                let [alone, together] = [0, 1].map(|k: usize| fs::read(jobs[k].part_path(shard)).unwrap());
+                prop_assert_eq!(alone, together);
+            }
+            n_rounds += 1;
+        }
+        prop_assert_eq!(run(&folders[1], n, Role::Merge), Ok(toy(n).bake(None).unwrap()));
+    }
+}
+
+/// A process that is stopped in the middle of its shards leaves whole parts of those that were done, and what it knew of the next.
+#[test]
+fn parts_of_a_group_are_written_one_by_one() {
+    let all = tempfile::tempdir().unwrap();
+    let folder = all.path().join("job");
+    plan(&folder, "a", 4).unwrap();
+    assert_eq!(run(&folder, [12, 2], Role::Merge), Err(Outcome::Planned { phase: 0, shards: 0..4 }));
+    let job = Job::open(&folder, PROGRAM).unwrap();
+    let n_units = |shard: usize| job.shard(shard).unwrap().1.end - job.shard(shard).unwrap().1.begin;
+    let mut stopped = toy([12, 2]);
+    stopped.stop_after = n_units(1) + n_units(2) + 1;
+    let store = JobStore::new(job.clone(), Role::Shards(vec![3, 1, 2]), Duration::ZERO).unwrap();
+    assert_eq!(stopped.bake(Some(&store)), Err(Halt::Store("killed".to_owned())));
+    let states = [0, 1, 2, 3].map(|shard| job.state(shard).unwrap());
+    assert_eq!(states, [ShardState::Missing, ShardState::Done, ShardState::Done, ShardState::Partial(1)]);
+    // Who goes on computes what is missing.
+    let going_on = toy([12, 2]);
+    let store = JobStore::new(job.clone(), Role::Shards(vec![0, 3]), Duration::ZERO).unwrap();
+    assert_eq!(going_on.bake(Some(&store)), Err(Halt::Shared));
+    assert_eq!(going_on.n(), n_units(0) + n_units(3) - 1);
+    assert!(matches!(run(&folder, [12, 2], Role::Merge), Err(Outcome::Planned { phase: 1, .. })));
+    // Shards of two phases cannot be done together: the second waits for all of the first.
+    let refused = JobStore::new(Job::open(&folder, PROGRAM).unwrap(), Role::Shards(vec![3, 4]), Duration::ZERO);
+    assert!(matches!(&refused, Err(JobError::TwoPhases { shards: [3, 4], .. })), "{refused:?}");
+}

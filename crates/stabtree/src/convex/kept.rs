@@ -135,6 +135,10 @@ impl ConvexSearch {
         for matrix in [&mut state.visible, &mut state.possible, &mut state.through] {
             (0..matrix.n_rows()).try_for_each(|row| read_row(&mut bytes, matrix, row))?;
         }
+        // What all later phases keep, and what tables of them rely on.
+        if ![&state.visible, &state.possible].iter().all(|matrix| matrix.is_symmetric()) {
+            return None;
+        }
         (state.counters, state.stage, state.done) = (read_counters(&mut bytes)?, stage, 0);
         bytes.is_empty().then_some(())
     }

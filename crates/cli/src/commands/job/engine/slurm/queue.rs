@@ -115,8 +115,13 @@ impl Watch {
 }
 
 /// Why a task waits that nothing will start.
-const NEVER: [&str; 5] =
-    ["launch failed requeued held", "JobHeldAdmin", "job requeued in held state", "BadConstraints", "DependencyNeverSatisfied"];
+const NEVER: [&str; 5] = [
+    "launch failed requeued held",
+    "JobHeldAdmin",
+    "job requeued in held state",
+    "BadConstraints",
+    "DependencyNeverSatisfied",
+];
 
 /// The tasks of an array, if there are any and none of them will end: they are on nodes that do not answer, or nothing will start them.
 ///
@@ -165,7 +170,9 @@ mod tests {
         let all = "7_3|COMPLETING|w2|NonZeroExitCode\n7_1|RUNNING|w3|None\n7_4|PENDING||launch failed requeued held\n";
         assert_eq!(of(all).map(|all| all.len()), Some(3));
         // One that goes on, or may begin, is waited for.
-        for line in ["7_5|RUNNING|w0|None", "7_5|PENDING||Resources", "7_5|PENDING||BeginTime", "7_5|PENDING||JobHeldUser"] {
+        for line in
+            ["7_5|RUNNING|w0|None", "7_5|PENDING||Resources", "7_5|PENDING||BeginTime", "7_5|PENDING||JobHeldUser"]
+        {
             assert_eq!(of(&format!("{all}{line}\n")), None, "{line}");
         }
         // An empty queue, a node that nobody knows, and what is no answer.
