@@ -171,8 +171,8 @@ fn n_parts(folder: &Folder) -> usize {
     names.iter().filter(|name| name.ends_with(".part")).count()
 }
 
-/// With this variable set, the controller and a node are killed too. Now and then Slurm 22.05 then keeps a task of the dead node for ever, which
-/// somebody who looks after the cluster has to cancel; so this is for people who watch.
+/// With this variable set, the controller and a node are killed too. Slurm 22.05 may then keep a task of the dead node for ever, or hold one that it could
+/// not start; the submission gives these up, which takes a while, so this is for people who watch.
 const DAEMONS: &str = "SIGHTLINES_SLURM_FAULTS";
 
 /// With a shard killed in the middle, and the controller and a node too if that is wanted, a job ends with the bytes of a build.
