@@ -49,6 +49,7 @@ mod sectors;
 mod stab;
 mod subdivide;
 mod table;
+mod threads;
 pub mod tile;
 
 pub use backs::Backs;

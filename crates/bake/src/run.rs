@@ -12,6 +12,7 @@ use crate::quake::{PrtOptions, bake_map, bake_prt};
 use crate::region::{PackRegionsError, RegionBakeOptions, bake_regions, pack_regions};
 use crate::reports::RegionReport;
 use crate::scene::{SceneBakeOptions, bake_scene};
+use crate::threads;
 use sightlines_cells::Scene;
 use sightlines_formats::SceneInfo;
 use sightlines_packed::PackReport;
@@ -35,13 +36,18 @@ use std::io::Write;
 /// [`BakeError`]
 pub fn bake<'i>(input: impl Into<BakeInput<'i>>, options: &BakeOptions<'_>) -> Result<Baked, BakeError> {
     let input = input.into();
+    threads::on(options.threads, || bake_here(input, options))
+}
+
+/// The same, on the threads that call it.
+fn bake_here(input: BakeInput<'_>, options: &BakeOptions<'_>) -> Result<Baked, BakeError> {
     if let BakeInput::Scene(scene, file) = input
         && let Some(framed) = Framed::of(scene, file, options)?
     {
-        return bake(framed.input(file), &framed.options(options));
+        return bake_here(framed.input(file), &framed.options(options));
     }
     if options.method == SceneMethod::Auto {
-        return bake(input, &choose_for(&input, options).1);
+        return bake_here(input, &choose_for(&input, options).1);
     }
     let BakeOptions { threads, progress, units, .. } = *options;
     let search = ConvexOptions { fast: options.fast, threads };
@@ -110,7 +116,7 @@ pub(crate) fn with_regions<T, E: From<BakeError>>(
 ///
 /// # Errors
 /// [`PackRegionsError`]
-pub fn bake_packed<W: Write>(
+pub fn bake_packed<W: Write + Send>(
     scene: &Scene,
     file: Option<&SceneInfo>,
     options: &BakeOptions<'_>,

@@ -8,6 +8,7 @@ use crate::mirrors;
 use crate::objects::object_lists;
 use crate::reports::SceneReport;
 use crate::table::{axial_portal_record, box_record, object_record, state_file};
+use crate::threads;
 use sightlines_cells::{Axial, AxialDoor, CellGraph, Portal, Scene, SceneObject};
 use sightlines_formats::SceneInfo;
 use sightlines_geometry::Aabb;
@@ -79,7 +80,7 @@ impl std::fmt::Debug for SceneBakeOptions<'_> {
 /// # Errors
 /// [`BakeError::KdTree`] for scenes without room, options out of range, and too many cells.
 pub fn bake_scene(scene: &Scene, options: &SceneBakeOptions<'_>) -> Result<BakedScene, BakeError> {
-    let (graph, mut parts, mut report, left) = see_scene(scene, options)?;
+    let (graph, mut parts, mut report, left) = threads::on(options.threads, || see_scene(scene, options))?;
     if let (Some(left), Some(objects)) = (left, &parts.objects_seen) {
         let limit = LimitReport::of(&left, objects);
         state_limit(&mut parts, &limit);

@@ -14,6 +14,7 @@ use crate::region::{CellsFrom, Decided, Wanted, decide, upright};
 use crate::reports::RegionReport;
 use crate::run::with_regions;
 use crate::scene::extents;
+use crate::threads;
 use crate::{BakeInput, grid};
 use sightlines_cells::{MovingObject, Scene, SceneError, SceneObject};
 use sightlines_formats::{SceneInfo, ViewCell, ViewCells};
@@ -69,6 +70,11 @@ pub struct BakedTile {
 /// # Errors
 /// [`BakeError`]: a box without room, more cells than the limit.
 pub fn tile_cells(scene: &Scene, viewers: &Aabb<3>, options: &BakeOptions<'_>) -> Result<Vec<ViewCell>, BakeError> {
+    threads::on(options.threads, || cells_here(scene, viewers, options))
+}
+
+/// The same, on the threads that call it.
+fn cells_here(scene: &Scene, viewers: &Aabb<3>, options: &BakeOptions<'_>) -> Result<Vec<ViewCell>, BakeError> {
     let nameless = |bounds: Aabb<3>| ViewCell { id: String::new(), bounds };
     let cut = SceneOptions { view_region: Some(*viewers), ..options.cut };
     Ok(match &options.cells {
@@ -150,6 +156,11 @@ pub fn bake_far(tile: &Tile<'_>, options: &BakeOptions<'_>) -> Result<Columns, B
 }
 
 fn decided(tile: &Tile<'_>, wanted: Wanted, options: &BakeOptions<'_>) -> Result<Decided, BakeError> {
+    threads::on(options.threads, || decided_here(tile, wanted, options))
+}
+
+/// The same, on the threads that call it.
+fn decided_here(tile: &Tile<'_>, wanted: Wanted, options: &BakeOptions<'_>) -> Result<Decided, BakeError> {
     let scene = merged(tile);
     let cells = CellsFrom::Boxes(ViewCells { cells: tile.cells.to_vec(), axes: None });
     let mut options = BakeOptions { cells, ..options.clone() };

@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let job = planner.job();
     for shard in 0..job.manifest().n_shards() {
         println!("shard {shard}: {:?}", job.shard(shard)?.1);
-        let store = JobStore::new(job.clone(), Role::Shard(shard), Duration::ZERO)?;
+        let store = JobStore::new(job.clone(), Role::shard(shard), Duration::ZERO)?;
         assert_eq!(sum(Units(Some(&store))), Err(Halt::Shared));
         assert_eq!(store.outcome(), Some(Outcome::Done));
     }

@@ -40,6 +40,7 @@ mod sight;
 mod simplification;
 mod surfaces;
 mod tables;
+mod threads;
 mod unproven;
 mod view;
 mod vis_program;

@@ -2,6 +2,7 @@
 
 use crate::Cancelled;
 use std::fmt;
+use std::ops::Range;
 
 /// A phase of a bake: units whose results depend on the input, the options and the results of earlier phases, and not on each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,6 +67,17 @@ pub trait UnitStore: Sync {
     /// # Errors
     /// [`Halt::Shared`] if others are missing, which ends the bake; any other [`Halt`] does too.
     fn end(&self, phase: &'static str) -> Result<(), Halt>;
+
+    /// The units of a phase that has begun that this process goes through, as runs, in order. The results of a run may not depend on what the process found
+    /// in another. `None` for all units, in any order.
+    fn runs(&self, _phase: &'static str) -> Option<Vec<Range<usize>>> {
+        None
+    }
+
+    /// Whether the costs of the phase that begins next matter; if not, any finite ones will do.
+    fn needs_costs(&self) -> bool {
+        true
+    }
 }
 
 /// The store of a bake; none keeps nothing, and wants everything.
@@ -89,6 +101,24 @@ impl Units<'_> {
     /// Whether results are kept at all. If not, callers need not encode them.
     pub const fn are_kept(&self) -> bool {
         self.0.is_some()
+    }
+
+    /// As [`UnitStore::needs_costs`]; nobody needs them without a store.
+    pub fn need_costs(&self) -> bool {
+        self.0.is_some_and(UnitStore::needs_costs)
+    }
+
+    /// As [`UnitStore::runs`].
+    pub fn runs(&self, phase: &'static str) -> Option<Vec<Range<usize>>> {
+        self.0?.runs(phase)
+    }
+
+    /// The units that this process goes through: those of its [runs](Self::runs) in their order, or else all of them as `any_order` has them.
+    pub fn in_order(&self, phase: &'static str, any_order: impl Iterator<Item = usize>) -> Vec<usize> {
+        match self.runs(phase) {
+            Some(runs) => runs.into_iter().flatten().collect(),
+            None => any_order.collect(),
+        }
     }
 
     /// As [`UnitStore::begin`].
@@ -182,6 +212,39 @@ mod tests {
         assert_eq!(units.end("numbers"), Err(Halt::Shared));
         [1, 3].iter().for_each(|&unit| store.save("numbers", unit, &[9]).unwrap());
         assert_eq!((units.end("numbers"), get(1)), (Ok(()), Some(vec![9])));
+    }
+
+    #[test]
+    fn runs_decide_the_order() {
+        /// Two runs, the later one first.
+        struct Runs;
+        impl UnitStore for Runs {
+            fn begin(&self, _: &Phase<'_>) -> Result<(), Halt> {
+                Ok(())
+            }
+            fn wants(&self, _: &'static str, _: usize) -> bool {
+                true
+            }
+            fn load(&self, _: &'static str, _: usize) -> Result<Option<Vec<u8>>, Halt> {
+                Ok(None)
+            }
+            fn save(&self, _: &'static str, _: usize, _: &[u8]) -> Result<(), Halt> {
+                Ok(())
+            }
+            fn end(&self, _: &'static str) -> Result<(), Halt> {
+                Ok(())
+            }
+            fn runs(&self, _: &'static str) -> Option<Vec<Range<usize>>> {
+                Some(vec![5..7, 1..3])
+            }
+        }
+        let any = || [3, 1, 2].into_iter();
+        assert_eq!(Units(Some(&Runs)).in_order("numbers", any()), [5, 6, 1, 2]);
+        let even = Even::default();
+        for units in [Units(Some(&even)), Units::default()] {
+            assert_eq!((units.runs("numbers"), units.in_order("numbers", any())), (None, vec![3, 1, 2]));
+        }
+        assert_eq!((Units(Some(&even)).need_costs(), Units::default().need_costs()), (true, false));
     }
 
     #[test]

@@ -25,6 +25,7 @@ use crate::places::{PlaceOptions, PlaceSummary, PlacesError, observed_places};
 use crate::reports::RegionReport;
 use crate::scene::{PortalMode, SceneBakeOptions, extents, merge_portals, n_triangles, see_scene};
 use crate::table::{object_record, state_file};
+use crate::threads;
 use parts::Start;
 pub(crate) use parts::upright;
 pub(crate) use see::Regions;
@@ -144,7 +145,8 @@ impl fmt::Debug for RegionBakeOptions<'_> {
 /// # Errors
 /// [`BakeError`]: for scenes that cannot be cut, cells that are not volumes, and methods that fail.
 pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<BakedRegions, BakeError> {
-    let Decided { graph, mut parts, objects, mut report } = decide(scene, &[], Wanted::All, options)?;
+    let decided = threads::on(options.threads, || decide(scene, &[], Wanted::All, options))?;
+    let Decided { graph, mut parts, objects, mut report } = decided;
     let start = Instant::now();
     parts.objects_seen = Some(objects);
     let table = Table::new(parts)?;

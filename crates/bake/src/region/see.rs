@@ -4,6 +4,7 @@ use super::limited::{Limit, Limited};
 use super::row::{CellRow, gaps};
 use super::{MakeMethod, RegionBakeOptions};
 use crate::error::BakeError;
+use crate::threads;
 use rayon::prelude::*;
 use sightlines_geometry::{Aabb, BoxNode, BoxTree};
 use sightlines_multifocal::{BackendError, Effort, FromRegion, Occludees, RaySampler, Umbra, Volume, adaptive};
@@ -11,6 +12,7 @@ use sightlines_progress::{Allowance, Counter, Halt, Phase, Shares, Work, scatter
 use sightlines_pvs::BitMatrix;
 use sightlines_stabtree::PairMask;
 use std::ops::Range;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 /// Rays to a cell before its query: most pairs of cells that see each other do so along many lines.
 const RAYS_TO_A_CELL: u32 = 24;
@@ -97,10 +99,9 @@ pub(super) fn see(
         return Ok(known);
     }
     let counter = Counter::new(options.progress, "cells", n).of(Work::Deciding);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build().expect("threads can be started");
     let mut cells: Vec<usize> = scattered(n).collect();
     for turn in 0..MOST_TURNS {
-        let shares = Shares::new(allowance, cells.len(), pool.current_num_threads());
+        let shares = Shares::new(allowance, cells.len(), threads::on(options.threads, rayon::current_num_threads));
         let one = |method: &mut Box<dyn FromRegion + Send>, &cell: &usize| {
             let row = see_from(scene, &mut **method, options, cell, Some(&known), shares.next_unit())?;
             if turn == 0 {
@@ -111,7 +112,7 @@ pub(super) fn see(
             Ok((cell, row))
         };
         let found: Vec<(usize, CellRow)> =
-            pool.install(|| cells.par_iter().map_init(make, one).collect::<Result<_, BakeError>>())?;
+            threads::on(options.threads, || cells.par_iter().map_init(make, one).collect::<Result<_, BakeError>>())?;
         cells = found.iter().filter(|(_, row)| row.left.iter().any(|left| !left.is_empty())).map(|f| f.0).collect();
         found.into_iter().for_each(|(cell, row)| known.add(cell, &row, n_objects));
         if cells.is_empty() || allowance.is_over() {
@@ -131,12 +132,16 @@ pub(super) fn see_all(
 ) -> Result<Vec<CellRow>, BakeError> {
     let n = scene.volumes.len();
     let sizes = [scene.n_boxes() as u32, scene.occludees.len() as u32];
-    let costs = costs_of(scene, options.units.are_kept());
+    let costs = threads::on(options.threads, || costs_of(scene, options.units.need_costs()));
     let shares_of_time = shares_of(&costs);
     options.units.begin(&Phase { name: PHASE, costs: &costs })?;
     let counter = Counter::new(options.progress, "cells", n).of(Work::Deciding);
-    let one = |method: &mut Option<Box<dyn FromRegion + Send>>, cell: usize| {
+    let cells = options.units.in_order(PHASE, scattered(n));
+    let next = AtomicUsize::new(0);
+    let one = |method: &mut Option<Box<dyn FromRegion + Send>>| {
         counter.check()?;
+        // Whichever thread is free takes the next one, so that those that come first are done first.
+        let cell = cells[next.fetch_add(1, Relaxed)];
         let mut computed = None;
         let result = options.units.get(PHASE, cell, || {
             let method = method.get_or_insert_with(make);
@@ -154,14 +159,8 @@ pub(super) fn see_all(
         counter.step_by(shares_of_time[cell], is_kept)?;
         Ok((cell, row))
     };
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build().expect("threads can be started");
-    let cells: Vec<usize> = scattered(n).collect();
-    let found: Vec<(usize, Option<CellRow>)> = pool.install(|| {
-        cells
-            .par_iter()
-            .with_max_len(1)
-            .map_init(|| None, |method, &cell| one(method, cell))
-            .collect::<Result<_, BakeError>>()
+    let found: Vec<(usize, Option<CellRow>)> = threads::on(options.threads, || {
+        cells.par_iter().with_max_len(1).map_init(|| None, |method, _| one(method)).collect::<Result<_, BakeError>>()
     })?;
     // If others have cells to do, this ends the bake.
     options.units.end(PHASE)?;
@@ -174,15 +173,15 @@ fn unfit(cell: usize) -> Halt {
     Halt::Store(format!("the kept result of unit {cell} of the phase '{PHASE}' does not fit this bake"))
 }
 
-/// The predicted cost of each cell: in proportion to what some rays from it reach, if it matters.
-fn costs_of(scene: &Targets<'_>, matters: bool) -> Vec<f64> {
+/// The predicted cost of each cell: in proportion to what some rays from it reach; the same for all if that is not needed.
+fn costs_of(scene: &Targets<'_>, is_needed: bool) -> Vec<f64> {
     let n_objects = scene.occludees.len();
     let cost = |volume: &Volume| {
         let mut reached = vec![false; n_objects];
         scene.witness.see(volume, RAYS_TO_PREDICT, &vec![true; n_objects], &mut reached);
         1.0 + reached.iter().filter(|reached| **reached).count() as f64
     };
-    if matters { scene.volumes.par_iter().map(cost).collect() } else { vec![1.0; scene.volumes.len()] }
+    if is_needed { scene.volumes.par_iter().map(cost).collect() } else { vec![1.0; scene.volumes.len()] }
 }
 
 /// Rays by which the cost of a cell is predicted.

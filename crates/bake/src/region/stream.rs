@@ -6,6 +6,7 @@ use crate::error::BakeError;
 use crate::reports::RegionReport;
 use crate::scene::extents;
 use crate::table::state_file;
+use crate::threads;
 use sightlines_cells::Scene;
 use sightlines_multifocal::Effort;
 use sightlines_packed::{PackReport, PackWriter, StreamError, StreamOptions};
@@ -40,10 +41,20 @@ pub enum PackRegionsError {
 ///
 /// # Errors
 /// [`PackRegionsError`]
-pub fn pack_regions<W: Write>(
+pub fn pack_regions<W: Write + Send>(
     scene: &Scene,
     options: &RegionBakeOptions<'_>,
-    state: &dyn Fn(&mut TableParts),
+    state: &(dyn Fn(&mut TableParts) + Sync),
+    out: W,
+) -> Result<(W, RegionReport, PackReport), PackRegionsError> {
+    threads::on(options.threads, || pack_here(scene, options, state, out))
+}
+
+/// The same, on the threads that call it.
+fn pack_here<W: Write>(
+    scene: &Scene,
+    options: &RegionBakeOptions<'_>,
+    state: &(dyn Fn(&mut TableParts) + Sync),
     out: W,
 ) -> Result<(W, RegionReport, PackReport), PackRegionsError> {
     let start = Instant::now();

@@ -1,8 +1,8 @@
 //! Maps as units of work: what they cost, and their tables as results that are kept.
 
 use super::{Done, MapStatus, RejectError, RejectSummary};
-use sightlines_formats::Wad;
 use sightlines_formats::doom::{MapLump, MapLumps};
+use sightlines_formats::{RejectTable, Wad};
 use sightlines_progress::Units;
 
 pub(crate) const PHASE: &str = "maps";
@@ -80,7 +80,10 @@ fn decode(bytes: &[u8]) -> Option<Done> {
                 n_rounded_crossings: count()?,
                 n_dropped_pieces: count()?,
             };
-            Some((n_sectors, MapStatus::Written(summary), Some(rest.to_vec())))
+            // As it was computed; whoever makes effects may make it what they like.
+            let is_sound = |table: RejectTable| summary.n_effects > 0 || !table.has_hand_made_effects();
+            let table = RejectTable::from_bytes(n_sectors, rest).ok();
+            table.is_some_and(is_sound).then(|| (n_sectors, MapStatus::Written(summary), Some(rest.to_vec())))
         }
         _ => None,
     }
@@ -103,7 +106,7 @@ mod tests {
         for done in [
             (7, MapStatus::KeptHandMade, None),
             (0, MapStatus::SkippedUnsupported, None),
-            (3, MapStatus::Written(summary), Some(vec![1, 2])),
+            (3, MapStatus::Written(summary), Some(vec![0b0101_0110, 0])),
             (0, MapStatus::Written(RejectSummary::default()), Some(Vec::new())),
         ] {
             let bytes = encode(&done);
@@ -112,5 +115,13 @@ mod tests {
             (0..bytes.len()).for_each(|n| drop(decode(&bytes[..n])));
         }
         assert_eq!((decode(&[9, 0, 0, 0, 0]), decode(&[])), (None, None));
+        // Tables that nobody computes: one that is not symmetric, one that hides a sector from itself, one of another size.
+        let without = RejectSummary { n_effects: 0, ..summary };
+        let is_read =
+            |table: &[u8], summary| decode(&encode(&(3, MapStatus::Written(summary), Some(table.to_vec())))).is_some();
+        for (table, is_sound) in [([0b0000_1010, 0], true), ([0b0000_0010, 0], false), ([1, 0], false)] {
+            assert_eq!((is_read(&table, without), is_read(&table, summary)), (is_sound, true), "{table:?}");
+        }
+        assert!(!is_read(&[0], without));
     }
 }

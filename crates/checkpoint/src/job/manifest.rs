@@ -160,7 +160,13 @@ impl Manifest {
 
     /// The phase of a shard, by its place, and what the shard is.
     pub(crate) fn shard(&self, shard: usize) -> Option<(usize, &ShardPlan)> {
-        let phase = (0..self.phases.len()).find(|&phase| self.shards_of(phase).contains(&shard))?;
-        Some((phase, &self.phases[phase].shards[shard - self.shards_of(phase).start]))
+        let mut begin = 0;
+        for (place, phase) in self.phases.iter().enumerate() {
+            if let Some(plan) = phase.shards.get(shard.checked_sub(begin)?) {
+                return Some((place, plan));
+            }
+            begin += phase.shards.len();
+        }
+        None
     }
 }

@@ -6,6 +6,7 @@
 
 mod cut;
 mod manifest;
+mod own;
 mod store;
 
 pub use cut::cut;
@@ -76,6 +77,14 @@ pub enum JobError {
         shard: usize,
         /// How many there are.
         n: usize,
+    },
+    /// Shards that a process cannot do together.
+    #[error("{}: shards {} and {} are of two phases, the second of which has to wait for all of the first", path.display(), shards[0], shards[1])]
+    TwoPhases {
+        /// The manifest.
+        path: PathBuf,
+        /// Two of them.
+        shards: [usize; 2],
     },
 }
 

@@ -2,22 +2,29 @@
 
 use super::cut::cut;
 use super::manifest::PhasePlan;
-use super::{JOURNAL, Job, JobError, ShardState};
+use super::own::OwnShards;
+use super::{Job, JobError, ShardState};
 use crate::index::Results;
-use crate::journal::{Journal, Opening};
-use sightlines_formats::process_mark;
 use sightlines_progress::{Halt, Phase, UnitStore};
-use std::path::PathBuf;
+use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 /// What a process does for a job.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Role {
     /// Goes through the bake with the results of all parts: it ends at the first phase that is not complete, and plans one that is not known.
     Merge,
-    /// Computes the units of one shard, and writes its part.
-    Shard(usize),
+    /// Computes the units of these shards, which are all of one phase: one shard after the other, in ascending order. Each part is written as soon as its units are done,
+    /// and does not depend on which other shards the process does.
+    Shards(Vec<usize>),
+}
+
+impl Role {
+    /// Computes the units of one shard.
+    pub fn shard(shard: usize) -> Self {
+        Self::Shards(vec![shard])
+    }
 }
 
 /// How far a process came.
@@ -29,7 +36,7 @@ pub enum Outcome {
         /// Its place.
         phase: usize,
         /// Its shards.
-        shards: std::ops::Range<usize>,
+        shards: Range<usize>,
     },
     /// Shards of a phase are not done.
     Missing {
@@ -38,7 +45,7 @@ pub enum Outcome {
         /// The shards, and what there is of each.
         shards: Vec<(usize, ShardState)>,
     },
-    /// The part of the shard is written.
+    /// The parts of all shards of the process are written.
     Done,
 }
 
@@ -46,19 +53,8 @@ pub enum Outcome {
 #[derive(Debug)]
 pub struct JobStore {
     role: Role,
-    /// For the phase of the shard.
-    own: Option<Own>,
+    own: Option<OwnShards>,
     state: Mutex<State>,
-}
-
-/// The shard that a process computes.
-#[derive(Debug)]
-struct Own {
-    shard: usize,
-    phase: String,
-    begin: usize,
-    end: usize,
-    journal: Journal,
 }
 
 #[derive(Debug)]
@@ -66,23 +62,38 @@ struct State {
     job: Job,
     /// How many phases have begun.
     n_begun: usize,
-    /// Parts of the phases before, and of this one if it is complete; of the phase under way, journals of others.
-    parts: Vec<(String, Vec<Results>)>,
+    /// Those of the phase under way, if it is complete.
+    parts: Option<Parts>,
     outcome: Option<Outcome>,
+}
+
+/// The parts of a phase, in order.
+#[derive(Debug)]
+struct Parts {
+    phase: String,
+    n_units: usize,
+    /// Behind the last unit of each.
+    ends: Vec<usize>,
+    parts: Vec<Results>,
 }
 
 impl JobStore {
     /// The store of a process with this role. Results of a shard are kept in a journal after a while.
     ///
     /// # Errors
-    /// [`JobError::NoShard`].
+    /// [`JobError::NoShard`], and [`JobError::TwoPhases`].
     pub fn new(job: Job, role: Role, after: Duration) -> Result<Self, JobError> {
-        let own = match role {
+        let own = match &role {
             Role::Merge => None,
-            Role::Shard(shard) => Some(Own::new(&job, shard, after)?),
+            Role::Shards(shards) => Some(OwnShards::new(&job, shards, after)?),
         };
-        let state = State { job, n_begun: 0, parts: Vec::new(), outcome: None };
+        let state = State { job, n_begun: 0, parts: None, outcome: None };
         Ok(Self { role, own, state: Mutex::new(state) })
+    }
+
+    /// What the process does.
+    pub fn role(&self) -> &Role {
+        &self.role
     }
 
     /// Why the bake ended early, if the store ended it.
@@ -95,40 +106,21 @@ impl JobStore {
         self.lock().job.clone()
     }
 
-    /// Keeps results that are in memory for a later run of the same shard.
+    /// Keeps results that are in memory for a later run of the same shards.
     ///
     /// # Errors
     /// [`Halt::Store`] if they cannot be written.
     pub fn flush(&self) -> Result<(), Halt> {
-        self.own.as_ref().map_or(Ok(()), |own| own.journal.flush().map_err(|error| Halt::Store(error.to_string())))
+        self.own.as_ref().map_or(Ok(()), OwnShards::flush)
     }
 
     fn lock(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The shard of this process, if it is of a phase.
-    fn own_of(&self, phase: &str) -> Option<&Own> {
-        self.own.as_ref().filter(|own| own.phase == phase)
-    }
-}
-
-impl Own {
-    fn new(job: &Job, shard: usize, after: Duration) -> Result<Self, JobError> {
-        let (phase, plan) = job.shard(shard)?;
-        let path: PathBuf = job.part_path(shard).with_extension(format!("part.{}{JOURNAL}", process_mark()));
-        let (key, program) = (job.key(), &job.manifest().program);
-        // What an earlier process with this number left is read with all other journals.
-        let opening = if path.exists() { Opening::Resume } else { Opening::Anew };
-        let journal = Journal::open(&path, key, program, opening, after);
-        let journal = journal.or_else(|_| Journal::open(&path, key, program, Opening::Anew, after));
-        let read = |error: crate::StateError| JobError::State(Box::new(error));
-        let phase = job.manifest().phases[phase].name.clone();
-        Ok(Self { shard, phase, begin: plan.begin, end: plan.end, journal: journal.map_err(read)? })
-    }
-
-    fn has(&self, unit: usize) -> bool {
-        (self.begin..self.end).contains(&unit)
+    /// The shards of this process, if they are of a phase.
+    fn own_of(&self, phase: &str) -> Option<&OwnShards> {
+        self.own.as_ref().filter(|own| own.are_of(phase))
     }
 }
 
@@ -139,26 +131,27 @@ impl State {
     }
 
     /// The parts of a phase, or what is missing of them.
-    fn open_parts(&self, phase: usize) -> Result<Vec<Results>, Vec<(usize, ShardState)>> {
-        let PhasePlan { name, shards, .. } = &self.job.manifest.phases[phase];
+    fn open_parts(&self, phase: usize) -> Result<Parts, Vec<(usize, ShardState)>> {
+        let PhasePlan { name, n_units, shards } = &self.job.manifest.phases[phase];
         let (mut parts, mut missing) = (Vec::new(), Vec::new());
         for (shard, plan) in self.job.manifest.shards_of(phase).zip(shards) {
             match self.job.part(shard, name, plan) {
                 Ok(Some(part)) => parts.push(part),
-                _ => missing.push((shard, self.job.state(shard).unwrap_or(ShardState::Missing))),
+                Ok(None) => missing.push((shard, self.job.state(shard).unwrap_or(ShardState::Missing))),
+                Err(error) => missing.push((shard, ShardState::Broken(error.to_string()))),
             }
         }
+        let ends = shards.iter().map(|plan| plan.end).collect();
+        let parts = Parts { phase: name.clone(), n_units: *n_units, ends, parts };
         if missing.is_empty() { Ok(parts) } else { Err(missing) }
     }
+}
 
-    fn load(&mut self, phase: &str, unit: usize) -> Result<Option<Vec<u8>>, Halt> {
-        let of_phase = self.parts.iter_mut().find(|(name, _)| name == phase);
-        for part in of_phase.into_iter().flat_map(|(_, parts)| parts) {
-            if part.has(phase, unit as u64) {
-                return part.load(phase, unit as u64).map_err(|error| Halt::Store(error.to_string()));
-            }
-        }
-        Ok(None)
+impl Parts {
+    fn load(&mut self, unit: usize) -> Result<Option<Vec<u8>>, Halt> {
+        let place = self.ends.partition_point(|end| *end <= unit);
+        let Some(part) = self.parts.get_mut(place) else { return Ok(None) };
+        part.load(&self.phase, unit as u64).map_err(|error| Halt::Store(error.to_string()))
     }
 }
 
@@ -190,14 +183,14 @@ impl UnitStore for JobStore {
                 phase.name
             )));
         }
-        let parts = match self.own_of(phase.name) {
-            Some(own) => state.job.journals(own.shard),
-            None => match state.open_parts(place) {
-                Ok(parts) => parts,
-                Err(shards) => return Err(state.end_with(Outcome::Missing { phase: place, shards })),
-            },
-        };
-        state.parts.push((phase.name.to_owned(), parts));
+        if let Some(own) = self.own_of(phase.name) {
+            own.take_up(&state.job);
+            return Ok(());
+        }
+        match state.open_parts(place) {
+            Ok(parts) => state.parts = Some(parts),
+            Err(shards) => return Err(state.end_with(Outcome::Missing { phase: place, shards })),
+        }
         Ok(())
     }
 
@@ -206,47 +199,44 @@ impl UnitStore for JobStore {
     }
 
     fn load(&self, phase: &'static str, unit: usize) -> Result<Option<Vec<u8>>, Halt> {
+        let mut state = self.lock();
         if let Some(own) = self.own_of(phase) {
-            if !own.has(unit) {
-                return Ok(None);
-            }
-            if let Some(result) = own.journal.load(phase, unit)? {
-                return Ok(Some(result));
-            }
+            return own.load(&state.job, phase, unit);
         }
-        self.lock().load(phase, unit)
+        match &mut state.parts {
+            Some(parts) if parts.phase == phase => parts.load(unit),
+            _ => Ok(None),
+        }
     }
 
     fn save(&self, phase: &'static str, unit: usize, result: &[u8]) -> Result<(), Halt> {
         match self.own_of(phase) {
-            Some(own) => own.journal.save(phase, unit, result),
+            Some(own) => own.save(&self.lock().job, phase, unit, result),
             None => Err(Halt::Store(format!("unit {unit} of phase {phase} is none of this process"))),
         }
     }
 
     fn end(&self, phase: &'static str) -> Result<(), Halt> {
+        let mut state = self.lock();
         let Some(own) = self.own_of(phase) else {
             // Nothing of the phase is loaded any more, and open files are few.
-            self.lock().parts.retain(|(name, _)| name != phase);
+            state.parts = None;
             return Ok(());
         };
-        let mut results = Vec::with_capacity(own.end - own.begin);
-        for unit in own.begin..own.end {
-            match self.load(phase, unit)? {
-                Some(result) => results.push((unit as u64, result)),
-                None => return Err(Halt::Store(format!("unit {unit} of phase {phase} was not computed"))),
-            }
-        }
-        let mut state = self.lock();
-        let saved = state.job.save_part(own.shard, phase, &results);
-        saved.map_err(|error| Halt::Store(error.to_string()))?;
+        own.end(&state.job, phase)?;
         Err(state.end_with(Outcome::Done))
     }
-}
 
-impl JobStore {
-    /// What the process does.
-    pub fn role(&self) -> Role {
-        self.role
+    fn runs(&self, phase: &'static str) -> Option<Vec<Range<usize>>> {
+        if let Some(own) = self.own_of(phase) {
+            return Some(own.runs());
+        }
+        // The order of parts is that of reading.
+        self.lock().parts.as_ref().map(|parts| std::iter::once(0..parts.n_units).collect())
+    }
+
+    fn needs_costs(&self) -> bool {
+        let state = self.lock();
+        state.job.manifest.phases.len() <= state.n_begun
     }
 }

@@ -42,7 +42,7 @@ proptest! {
                     let by = order.rotate_left(n_rounds * 9);
                     todo.sort_by_key(|&shard| (by.wrapping_mul(shard as u64 * 2 + 1) >> 7, shard));
                     for shard in todo {
-                        prop_assert_eq!(run(&folder, n, Role::Shard(shard)), Err(Outcome::Done));
+                        prop_assert_eq!(run(&folder, n, Role::shard(shard)), Err(Outcome::Done));
                     }
                 }
                 Err(other) => prop_assert!(false, "{:?}", other),
@@ -66,7 +66,7 @@ pub(crate) fn first_phase(folder: &Path) -> Job {
     plan(folder, "a", 3).unwrap();
     assert_eq!(run(folder, [6, 4], Role::Merge), Err(Outcome::Planned { phase: 0, shards: 0..3 }));
     for shard in 0..3 {
-        assert_eq!(run(folder, [6, 4], Role::Shard(shard)), Err(Outcome::Done));
+        assert_eq!(run(folder, [6, 4], Role::shard(shard)), Err(Outcome::Done));
     }
     Job::open(folder, PROGRAM).unwrap()
 }
@@ -110,12 +110,12 @@ fn what_is_missing_or_broken_is_named() {
     let other = all.path().join("other");
     plan(&other, "b", 3).unwrap();
     assert!(matches!(run(&other, [6, 4], Role::Merge), Err(Outcome::Planned { .. })));
-    assert_eq!(run(&other, [6, 4], Role::Shard(1)), Err(Outcome::Done));
+    assert_eq!(run(&other, [6, 4], Role::shard(1)), Err(Outcome::Done));
     fs::copy(Job::open(&other, PROGRAM).unwrap().part_path(1), job.part_path(1)).unwrap();
     let text = format!("{name}: the results are of another input or of other options");
     missing(&[(1, ShardState::Broken(text))]);
     // A process that does the shard replaces what is broken.
-    assert_eq!(run(&folder, [6, 4], Role::Shard(1)), Err(Outcome::Done));
+    assert_eq!(run(&folder, [6, 4], Role::shard(1)), Err(Outcome::Done));
     assert_eq!(fs::read(job.part_path(1)).unwrap(), parts[1]);
     assert!(matches!(run(&folder, [6, 4], Role::Merge), Err(Outcome::Planned { phase: 1, .. })));
 }
@@ -128,7 +128,7 @@ fn shards_go_on_and_may_be_done_at_once() {
     let job = first_phase(&folder);
     let part = fs::read(job.part_path(1)).unwrap();
     fs::remove_file(job.part_path(1)).unwrap();
-    let store = |job: &Job| JobStore::new(job.clone(), Role::Shard(1), Duration::ZERO).unwrap();
+    let store = |job: &Job| JobStore::new(job.clone(), Role::shard(1), Duration::ZERO).unwrap();
     let mut stopped = toy([6, 4]);
     stopped.stop_after = 1;
     assert_eq!(stopped.bake(Some(&store(&job))), Err(Halt::Store("killed".to_owned())));
@@ -148,7 +148,7 @@ fn shards_go_on_and_may_be_done_at_once() {
     assert_eq!(fs::read(job.part_path(1)).unwrap(), part);
     std::thread::scope(|scope| {
         for _ in 0..4 {
-            scope.spawn(|| assert_eq!(run(&folder, [6, 4], Role::Shard(2)), Err(Outcome::Done)));
+            scope.spawn(|| assert_eq!(run(&folder, [6, 4], Role::shard(2)), Err(Outcome::Done)));
         }
     });
     assert_eq!(job.state(2).unwrap(), ShardState::Done);
@@ -167,13 +167,71 @@ fn other_inputs_and_programs_are_refused() {
         "{error}"
     );
     // A bake with other units than were planned.
-    let store = JobStore::new(job.clone(), Role::Shard(1), Duration::ZERO).unwrap();
+    let store = JobStore::new(job.clone(), Role::shard(1), Duration::ZERO).unwrap();
     let Err(Halt::Store(text)) = toy([7, 4]).bake(Some(&store)) else { panic!("it went on") };
     assert!(text.starts_with("the job was planned with 6 units of phase pairs, and there are 7"), "{text}");
     assert!(matches!(
-        JobStore::new(job, Role::Shard(3), Duration::ZERO),
+        JobStore::new(job, Role::shard(3), Duration::ZERO),
         Err(JobError::NoShard { shard: 3, n: 3, .. })
     ));
     let stranger = JobStore::new(Job::open(&folder, PROGRAM).unwrap(), Role::Merge, Duration::ZERO).unwrap();
     assert!(!stranger.wants("pairs", 0) && stranger.save("pairs", 0, b"").is_err());
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+    /// Invariant: however shards are grouped, each part has the bytes that a process of its own writes, and so has the merge.
+    #[test]
+    fn groups_of_shards_make_the_same_parts(n in [1..16_usize, 1..16_usize], max_shards in 1..8_usize, groups in any::<u64>()) {
+        let all = tempfile::tempdir().unwrap();
+        let folders = ["alone", "together"].map(|name| all.path().join(name));
+        folders.iter().for_each(|folder| drop(plan(folder, "a", max_shards).unwrap()));
+        let mut n_rounds = 0;
+        while let Err(Outcome::Planned { shards, .. }) = run(&folders[0], n, Role::Merge) {
+            prop_assert_eq!(run(&folders[1], n, Role::Merge), Err(Outcome::Planned { phase: n_rounds, shards: shards.clone() }));
+            shards.clone().for_each(|shard| assert_eq!(run(&folders[0], n, Role::shard(shard)), Err(Outcome::Done)));
+            // Four groups, named from the last shard on, some shards twice.
+            for group in 0..4 {
+                let is_of = |shard: &usize| groups.rotate_left(*shard as u32 * 7 + 1) % 4 == group;
+                let mut of: Vec<usize> = shards.clone().rev().filter(is_of).collect();
+                of.extend(of.first().copied());
+                if !of.is_empty() {
+                    prop_assert_eq!(run(&folders[1], n, Role::Shards(of)), Err(Outcome::Done));
+                }
+            }
+            let jobs = [0, 1].map(|k| Job::open(&folders[k], PROGRAM).unwrap());
+            for shard in shards {
+                let [alone, together] = [0, 1].map(|k: usize| fs::read(jobs[k].part_path(shard)).unwrap());
+                prop_assert_eq!(alone, together);
+            }
+            n_rounds += 1;
+        }
+        prop_assert_eq!(run(&folders[1], n, Role::Merge), Ok(toy(n).bake(None).unwrap()));
+    }
+}
+
+/// A process that is stopped in the middle of its shards leaves whole parts of those that were done, and what it knew of the next.
+#[test]
+fn parts_of_a_group_are_written_one_by_one() {
+    let all = tempfile::tempdir().unwrap();
+    let folder = all.path().join("job");
+    plan(&folder, "a", 4).unwrap();
+    assert_eq!(run(&folder, [12, 2], Role::Merge), Err(Outcome::Planned { phase: 0, shards: 0..4 }));
+    let job = Job::open(&folder, PROGRAM).unwrap();
+    let n_units = |shard: usize| job.shard(shard).unwrap().1.end - job.shard(shard).unwrap().1.begin;
+    let mut stopped = toy([12, 2]);
+    stopped.stop_after = n_units(1) + n_units(2) + 1;
+    let store = JobStore::new(job.clone(), Role::Shards(vec![3, 1, 2]), Duration::ZERO).unwrap();
+    assert_eq!(stopped.bake(Some(&store)), Err(Halt::Store("killed".to_owned())));
+    let states = [0, 1, 2, 3].map(|shard| job.state(shard).unwrap());
+    assert_eq!(states, [ShardState::Missing, ShardState::Done, ShardState::Done, ShardState::Partial(1)]);
+    // Who goes on computes what is missing.
+    let going_on = toy([12, 2]);
+    let store = JobStore::new(job.clone(), Role::Shards(vec![0, 3]), Duration::ZERO).unwrap();
+    assert_eq!(going_on.bake(Some(&store)), Err(Halt::Shared));
+    assert_eq!(going_on.n(), n_units(0) + n_units(3) - 1);
+    assert!(matches!(run(&folder, [12, 2], Role::Merge), Err(Outcome::Planned { phase: 1, .. })));
+    // Shards of two phases cannot be done together: the second waits for all of the first.
+    let refused = JobStore::new(Job::open(&folder, PROGRAM).unwrap(), Role::Shards(vec![3, 4]), Duration::ZERO);
+    assert!(matches!(&refused, Err(JobError::TwoPhases { shards: [3, 4], .. })), "{refused:?}");
 }

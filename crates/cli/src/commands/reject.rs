@@ -72,6 +72,7 @@ pub(crate) fn run(args: &RejectArgs, show_progress: bool) -> Result<Answer, Erro
 
 /// Reads, builds and writes. Prints nothing but progress and warnings.
 pub(crate) fn make(args: &RejectArgs, keeping: Keeping<'_>, show_progress: bool) -> Result<Outcome, Error> {
+    crate::threads::use_only(args.threads);
     // It may be the WAD that is read.
     output::check(&[], &[&args.output])?;
     let wad = Wad::read(&args.input)?;

@@ -68,7 +68,7 @@ fn jobs_write_the_same_bytes() {
                 assert!(child.wait().unwrap().success());
             }
             let again = folder.run(&["job", "shard", &job, &numbers[0], "--json"]).expect(0).json();
-            assert_eq!(again["was_done"], json!(true));
+            assert_eq!(again["shards"][0]["was_done"], json!(true));
             let merged = folder.run(&["job", "merge", &job, "--json"]);
             match merged.code {
                 3 => phase = merged.json()["next"].clone(),
@@ -212,6 +212,11 @@ fn wrong_usage_is_refused() {
     );
     assert!(folder.refused(&["job", "shard", "job", "4"]).ends_with("job.json: there is no shard 4; there are 4"));
     assert!(folder.refused(&["job", "merge", "nowhere"]).contains("nowhere/job.json: "));
+    for wrong in ["3-1", "x", "1-", "-1"] {
+        folder.run(&["job", "shard", "job", wrong]).expect(2);
+    }
+    let past = folder.refused(&["job", "shard", "job", "2-99999999999"]);
+    assert!(past.ends_with("job.json: there is no shard 99999999999; there are 4"), "{past}");
     // Scripts without starting anything.
     let files =
         folder.run(&["job", "submit", "job", "--dry-run", "--sbatch=--partition=long", "--json"]).expect(0).json();
@@ -219,6 +224,13 @@ fn wrong_usage_is_refused() {
     let script = String::from_utf8(folder.read("job/slurm/shards-0-0.sh")).unwrap();
     assert!(script.contains("#SBATCH --array=0-3\n") && script.contains("#SBATCH --partition=long\n"), "{script}");
     assert!(String::from_utf8(folder.read("job/kubernetes.yaml")).unwrap().contains("completions: 4"));
+    // Several shards to a task; those that are done are no reason for one.
+    folder.run(&["job", "submit", "job", "--dry-run", "--shards-per-task", "3"]).expect(0);
+    let script = String::from_utf8(folder.read("job/slurm/shards-0-0.sh")).unwrap();
+    assert!(
+        script.contains("#SBATCH --array=0-1\n") && script.contains("first=$((0 + SLURM_ARRAY_TASK_ID * 3))"),
+        "{script}"
+    );
 }
 
 /// A place for parts that is full: a clear error, and nothing half-written.
@@ -254,4 +266,87 @@ fn a_full_disk_leaves_no_broken_part() {
     folder.run(&["job", "shard", "job", "1"]).expect(0);
     assert_eq!(names(), ["1.part"]);
     drop(mounted);
+}
+
+/// Shards that one process does have the parts that processes of their own write.
+#[test]
+fn groups_of_shards_write_the_same_parts() {
+    let folder = inputs();
+    let mut n_parts = 0;
+    for (k, (command, out)) in COMMANDS.into_iter().enumerate() {
+        let jobs = [format!("alone{k}"), format!("together{k}")];
+        let mut phase = plan(&folder, &jobs[0], command, out);
+        plan(&folder, &jobs[1], command, out);
+        loop {
+            let first = phase["first_shard"].as_u64().unwrap();
+            let all: Vec<u64> = (first..first + phase["n_shards"].as_u64().unwrap()).collect();
+            for shard in &all {
+                folder.run(&["job", "shard", &jobs[0], &shard.to_string()]).expect(0);
+            }
+            let (last, run) = (all[all.len() - 1].to_string(), format!("{first}-{}", all[all.len() / 2]));
+            let done = folder.run(&["job", "shard", &jobs[1], &last, &run, &last, "--json"]).expect(0).json();
+            assert!(done["shards"].as_array().unwrap().iter().all(|shard| shard["was_done"] == json!(false)), "{done}");
+            let rest = format!("{first}-{last}");
+            folder.run(&["job", "shard", &jobs[1], &rest, "--threads", "2"]).expect(0);
+            for shard in all {
+                let [alone, together] = [0, 1].map(|k: usize| folder.read(&format!("{}/parts/{shard}.part", jobs[k])));
+                assert!(alone == together, "{command}: shard {shard}");
+                n_parts += 1;
+            }
+            let merged =
+                jobs.clone().map(|job| folder.run(&["job", "merge", &job, "-o", &format!("{job}-out"), "--json"]));
+            match merged[0].code {
+                3 => phase = merged[0].json()["next"].clone(),
+                code => break assert_eq!((code, merged[1].code), (0, 0)),
+            }
+        }
+    }
+    assert!(n_parts >= 20, "{n_parts}");
+}
+
+/// A process that is killed in the middle of its shards leaves the parts of those that were done.
+#[cfg(unix)]
+#[test]
+fn killed_processes_leave_parts() {
+    let folder = inputs();
+    let (command, out) = ("build tower.glb --method multifocal --grid 6,4,1 --planes 6 -o OUT", "out.pvs");
+    folder.run(&words(command, out)).expect(0);
+    let whole = folder.read(out);
+    plan(&folder, "job", command, "merged.pvs");
+    let part = |shard: usize| folder.path(&format!("job/parts/{shard}.part"));
+    let mut program = Command::new(env!("CARGO_BIN_EXE_sightlines"));
+    program.args(["job", "shard", "job", "0-4", "-q"]).current_dir(folder.path(".")).stdout(Stdio::null());
+    let mut child = program.spawn().unwrap();
+    while !part(0).is_file() {
+        assert!(child.try_wait().unwrap().is_none_or(|status| status.success()));
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    let _ = child.kill();
+    child.wait().unwrap();
+    let left: Vec<bool> = (0..5).map(|shard| part(shard).is_file()).collect();
+    // Parts come in the order of shards.
+    assert!(left.is_sorted_by(|a, b| a >= b) && left.contains(&false), "{left:?}");
+    let done = folder.run(&["job", "shard", "job", "0-4", "--json"]).expect(0).json();
+    let were_done: Vec<Value> = done["shards"].as_array().unwrap().iter().map(|of| of["was_done"].clone()).collect();
+    assert_eq!(json!(were_done), json!(left));
+    folder.run(&["job", "merge", "job"]).expect(0);
+    assert!(folder.read("merged.pvs") == whole);
+}
+
+/// What would fail again is said once, and not tried again.
+#[test]
+fn hopeless_shards_are_not_tried_again() {
+    let folder = inputs();
+    let (command, out) = COMMANDS[0];
+    plan(&folder, "job", command, out);
+    let mut scene = folder.read("tower.glb");
+    *scene.last_mut().unwrap() ^= 1;
+    folder.write("tower.glb", scene);
+    let command = "{program} job shard {job} {shards} -q; code=$?; echo tried >> {job}/tries; exit $code";
+    for engine in [&["--workers", "1"][..], &["--engine", "command", "--workers", "1", "--command", command]] {
+        let error = folder.refused(&[&["job", "submit", "job", "--retries", "9"][..], engine].concat());
+        assert!(error.starts_with("shards 0 to 2: tower.glb: the file is not what it was when the job in "), "{error}");
+        assert_eq!(error.matches("the file is not").count(), 1, "{error}");
+    }
+    assert_eq!(folder.read("job/tries"), b"tried\n");
 }

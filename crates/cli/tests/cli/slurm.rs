@@ -121,6 +121,15 @@ impl Cluster {
         command
     }
 
+    /// A controller that has forgotten what it started last takes a node out of use, until somebody who looks after the cluster puts it back.
+    fn put_back(&self, nodes: &[&str]) {
+        for node in nodes {
+            if self.ask(&["sinfo", "-h", "-n", node, "-t", "drain", "-o", "%D"]) == "1" {
+                self.ask(&["scontrol", "update", &format!("NodeName={node}"), "State=RESUME"]);
+            }
+        }
+    }
+
     fn ask(&self, words: &[&str]) -> String {
         output(self.command(words[0]).args(&words[1..]))
     }
@@ -162,8 +171,8 @@ fn n_parts(folder: &Folder) -> usize {
     names.iter().filter(|name| name.ends_with(".part")).count()
 }
 
-/// With this variable set, the controller and a node are killed too. Now and then Slurm 22.05 then keeps a task of the dead node for ever, which
-/// somebody who looks after the cluster has to cancel; so this is for people who watch.
+/// With this variable set, the controller and a node are killed too. Slurm 22.05 may then keep a task of the dead node for ever, or hold one that it could
+/// not start; the submission gives these up, which takes a while, so this is for people who watch.
 const DAEMONS: &str = "SIGHTLINES_SLURM_FAULTS";
 
 /// With a shard killed in the middle, and the controller and a node too if that is wanted, a job ends with the bytes of a build.
@@ -203,16 +212,16 @@ fn a_job_on_slurm_gives_the_bytes_of_a_build() {
         cluster.controller.wait().unwrap();
         std::thread::sleep(Duration::from_millis(300));
         cluster.controller = Cluster::controller(&cluster.folder);
-        wait_for("more parts", || n_parts(&folder) >= 7 || submit.try_wait().unwrap().is_some());
+        wait_for("more parts", || {
+            cluster.put_back(&["w0", "w1"]);
+            n_parts(&folder) >= 7 || submit.try_wait().unwrap().is_some()
+        });
         at_node = n_parts(&folder);
         cluster.nodes[1].kill().unwrap();
         cluster.nodes[1].wait().unwrap();
     }
     wait_for("the end", || {
-        // A controller that has forgotten what it started last takes a node out of use, until somebody who looks after the cluster puts it back.
-        if cluster.ask(&["sinfo", "-h", "-n", "w0", "-t", "drain", "-o", "%D"]) == "1" {
-            cluster.ask(&["scontrol", "update", "NodeName=w0", "State=RESUME"]);
-        }
+        cluster.put_back(if kills_daemons { &["w0"] } else { &["w0", "w1"] });
         submit.try_wait().unwrap().is_some()
     });
     let ended = submit.wait_with_output().unwrap();

@@ -102,7 +102,8 @@ fn worlds_are_asked_and_checked() {
     assert_eq!(seen["tiles"], json!(["0_0"]));
     let own = seen["seen"]["0_0"]["objects"].as_array().unwrap();
     assert!(own.contains(&json!(0)) && own.len() >= 3, "{seen}");
-    let whole = |seen: &Value| seen["seen"].as_object().unwrap().values().filter(|of| of["whole"] == json!(true)).count();
+    let whole =
+        |seen: &Value| seen["seen"].as_object().unwrap().values().filter(|of| of["whole"] == json!(true)).count();
     assert!((1..12).contains(&whole(&seen)), "{seen}");
     let text = folder.run(&["tiles", "query", "out", "--eye", "42,1.7,44"]).expect(0).out;
     assert!(text.starts_with("42,1.7,44 is in 0_0\n0_0 "), "{text}");

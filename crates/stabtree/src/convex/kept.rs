@@ -2,13 +2,13 @@
 //!
 //! The first phase is one unit: bounds, and lines through every portal. Then come beams, [`FEW`] gates to a unit, and then the pairs
 //! in doubt, [`CELLS`] cells to a unit. Unlike the steps of a search in one process, a unit knows only what earlier phases
-//! have found, and units of its own that this process has the results of. So more is asked, and the same is found, except that pairs
+//! have found, and those of its own run ([`UnitStore::runs`](sightlines_progress::UnitStore::runs)). So more is asked, and the same is found, except that pairs
 //! may be given up for another reason ([`ConvexVisibility::undecided`](super::ConvexVisibility::undecided)): on none of the real maps that were tried they differ.
 //! Beams and pairs are several phases each, so that what the quick ones find serves the slow ones.
 
 use super::beams::Traced;
 use super::pairs::PairVerdict;
-use super::{ConvexCounters, ConvexSearch, FEW, Gates, N_STAGES, PAIRS};
+use super::{ConvexCounters, ConvexSearch, ConvexState, FEW, Gates, N_STAGES, PAIRS};
 use sightlines_progress::{Halt, Observer, Phase, Units};
 use sightlines_pvs::BitMatrix;
 use sightlines_pvs::runs::{read_runs, read_varint, runs_of, write_runs, write_varint};
@@ -35,6 +35,39 @@ fn divided<const K: usize>(
         (name, units)
     };
     phases.map(phase).into()
+}
+
+/// Runs of units, each of which begins with what earlier phases have found.
+struct Apart {
+    runs: Vec<Range<usize>>,
+    /// What they have found; none if there is one run.
+    before: Option<ConvexState>,
+}
+
+impl Apart {
+    /// The runs of a phase with so many units.
+    fn new(runs: Option<Vec<Range<usize>>>, n_units: usize) -> Self {
+        Self { runs: runs.unwrap_or_else(|| std::iter::once(0..n_units).collect()), before: None }
+    }
+
+    fn are_several(&self) -> bool {
+        self.runs.len() > 1
+    }
+
+    /// The units in order, and whether a run begins with each.
+    fn units(&self) -> Vec<(usize, bool)> {
+        self.runs.iter().flat_map(|run| run.clone().map(|unit| (unit, unit == run.start))).collect()
+    }
+
+    /// A run begins; whether there was one before, whose results are forgotten.
+    fn begin(&mut self, state: &mut ConvexState) -> bool {
+        match &self.before {
+            Some(before) => state.clone_from(before),
+            None if self.are_several() => self.before = Some(state.clone()),
+            None => {}
+        }
+        self.before.is_some()
+    }
 }
 
 /// Cells of a unit of pairs.
@@ -102,6 +135,10 @@ impl ConvexSearch {
         for matrix in [&mut state.visible, &mut state.possible, &mut state.through] {
             (0..matrix.n_rows()).try_for_each(|row| read_row(&mut bytes, matrix, row))?;
         }
+        // What all later phases keep, and what tables of them rely on.
+        if ![&state.visible, &state.possible].iter().all(|matrix| matrix.is_symmetric()) {
+            return None;
+        }
         (state.counters, state.stage, state.done) = (read_counters(&mut bytes)?, stage, 0);
         bytes.is_empty().then_some(())
     }
@@ -113,7 +150,13 @@ impl ConvexSearch {
             let cost = |&gate: &u32| (self.state.through.count_row(gate as usize) as f64).powi(2);
             let costs: Vec<f64> = ranges.iter().map(|range| self.order[range.clone()].iter().map(cost).sum()).collect();
             units.begin(&Phase { name: phase, costs: &costs })?;
-            for (unit, range) in ranges.into_iter().enumerate() {
+            let mut apart = Apart::new(units.runs(phase), ranges.len());
+            let was_done = if apart.are_several() { is_done.clone() } else { Vec::new() };
+            for (unit, begins) in apart.units() {
+                if begins && apart.begin(&mut self.state) {
+                    is_done.clone_from(&was_done);
+                }
+                let range = ranges[unit].clone();
                 let (mut found, n_cells) = (None, self.gates.n_cells());
                 let result = units.get(phase, unit, || {
                     let (traced, counters): (Vec<Traced>, Vec<ConvexCounters>) =
@@ -152,14 +195,18 @@ impl ConvexSearch {
             let cost = |cells: &Vec<u32>| cells.iter().map(|&cell| self.pairs_in_doubt(cell).len() as f64).sum();
             let costs: Vec<f64> = chunks.iter().map(cost).collect();
             units.begin(&Phase { name: phase, costs: &costs })?;
-            for (unit, cells) in chunks.into_iter().enumerate() {
-                let mut is_computed = false;
+            let mut apart = Apart::new(units.runs(phase), chunks.len());
+            for (unit, begins) in apart.units() {
+                if begins {
+                    apart.begin(&mut self.state);
+                }
+                let (cells, mut is_computed) = (&chunks[unit], false);
                 let result = units.get(phase, unit, || {
                     is_computed = true;
-                    Ok::<_, Halt>(self.decide_cells(&cells))
+                    Ok::<_, Halt>(self.decide_cells(cells))
                 })?;
                 if let Some(bytes) = result.filter(|_| !is_computed) {
-                    self.restore_cells(&cells, &bytes).ok_or_else(|| unfit(phase, unit))?;
+                    self.restore_cells(cells, &bytes).ok_or_else(|| unfit(phase, unit))?;
                 }
                 self.state.done += cells.len() as u64;
                 self.tell(observer)?;

@@ -12,6 +12,7 @@ use sightlines_progress::{Allowance, Counter, Halt, Phase, Shares, Units, shares
 use sightlines_pvs::BitMatrix;
 use sightlines_sightline::ShaftCounters;
 use std::collections::VecDeque;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 /// The work of some units, and the lines that were found.
 type Done = Vec<(ShaftCounters, WitnessLog)>;
@@ -26,7 +27,7 @@ impl SpaceSearch<'_> {
     /// Decides pairs of groups. What is left when the allowance is over counts as visible.
     pub(super) fn settle_pairs(
         &self,
-        mut tasks: Vec<Pair>,
+        tasks: Vec<Pair>,
         threads: usize,
         allowance: Allowance<'_>,
         counter: &Counter<'_>,
@@ -36,13 +37,19 @@ impl SpaceSearch<'_> {
         let costs: Vec<f64> = tasks.iter().map(|pair| self.cost_of(*pair)).collect();
         let shares_of_time = shares_of(&costs);
         units.begin(&Phase { name: kept::PAIRS, costs: &costs })?;
+        let order = units.in_order(kept::PAIRS, 0..tasks.len());
+        let mut tasks: Vec<(usize, Pair)> = order.into_iter().map(|unit| (unit, tasks[unit])).collect();
         while is_first || (!tasks.is_empty() && !allowance.is_over()) {
             let shares = Shares::new(allowance, tasks.len(), threads);
-            let turn = std::mem::take(&mut tasks).into_par_iter().enumerate().with_max_len(1).map_init(
+            let (begun, next) = (std::mem::take(&mut tasks), AtomicUsize::new(0));
+            let turn = (0..begun.len()).into_par_iter().with_max_len(1).map_init(
                 || self.worker(),
-                |worker, (unit, task)| {
+                |worker, _| {
                     // The observer may have cancelled while others were at work.
                     counter.check()?;
+                    // Whichever thread is free takes the next one, so that those that come first are done first.
+                    let place = next.fetch_add(1, Relaxed);
+                    let (unit, task) = begun[place];
                     let before = worker.shaft.counters();
                     let (mut rest, mut is_computed) = (Vec::new(), false);
                     let result = units.get(kept::PAIRS, unit, || {
@@ -58,17 +65,19 @@ impl SpaceSearch<'_> {
                     } else {
                         counter.check()?
                     }
-                    Ok((rest, (worker.shaft.counters() - before, worker.take_log())))
+                    Ok((place, (unit, rest), (worker.shaft.counters() - before, worker.take_log())))
                 },
             );
-            for (rest, did) in turn.collect::<Result<Vec<_>, Halt>>()? {
-                tasks.extend(rest);
+            let mut turn = turn.collect::<Result<Vec<_>, Halt>>()?;
+            turn.sort_unstable_by_key(|(place, ..)| *place);
+            for (_, (unit, rest), did) in turn {
+                tasks.extend(rest.into_iter().map(|pair| (unit, pair)));
                 done.push(did);
             }
             is_first = false;
         }
         units.end(kept::PAIRS)?;
-        self.give_up_pairs(&tasks);
+        self.give_up_pairs(tasks.iter().map(|(_, pair)| *pair));
         Ok(done)
     }
 
@@ -91,13 +100,13 @@ impl SpaceSearch<'_> {
     }
 
     /// Marks as visible, and as left, all cells of pairs of groups that may see each other and are not known to.
-    fn give_up_pairs(&self, pairs: &[Pair]) {
+    fn give_up_pairs(&self, pairs: impl Iterator<Item = Pair>) {
         let Some([left, _]) = &self.left else { return };
         let places = |n: u32| {
             let node = &self.tree.nodes()[n as usize];
             node.start as usize..node.end as usize
         };
-        for &[a, b] in pairs {
+        for [a, b] in pairs {
             for a in places(a) {
                 for b in places(b).filter(|&b| b != a && self.may_see_cell(a, b) && !self.cells.get(a, b)) {
                     left.set(a, b);
@@ -129,13 +138,17 @@ impl SpaceSearch<'_> {
         let costs: Vec<f64> = (0..self.boxes.len()).map(|object| self.cost_of_object(object)).collect();
         let shares_of_time = shares_of(&costs);
         units.begin(&Phase { name: kept::OBJECTS, costs: &costs })?;
-        let mut tasks: Vec<(usize, Vec<u32>)> = (0..self.boxes.len()).map(|object| (object, vec![0])).collect();
+        let order = units.in_order(kept::OBJECTS, 0..self.boxes.len());
+        let mut tasks: Vec<(usize, Vec<u32>)> = order.into_iter().map(|object| (object, vec![0])).collect();
         while is_first || (!tasks.is_empty() && !allowance.is_over()) {
             let shares = Shares::new(allowance, tasks.len(), threads);
-            let turn = std::mem::take(&mut tasks).into_par_iter().with_max_len(4).map_init(
+            let (begun, next) = (std::mem::take(&mut tasks), AtomicUsize::new(0));
+            let turn = (0..begun.len()).into_par_iter().with_max_len(4).map_init(
                 || self.worker(),
-                |worker, (object, nodes)| {
+                |worker, _| {
                     counter.check()?;
+                    let place = next.fetch_add(1, Relaxed);
+                    let (object, nodes) = (begun[place].0, begun[place].1.clone());
                     let before = worker.shaft.counters();
                     let (mut rest, mut is_computed) = (Vec::new(), false);
                     let result = units.get(kept::OBJECTS, object, || {
@@ -151,10 +164,12 @@ impl SpaceSearch<'_> {
                     } else {
                         counter.check()?
                     }
-                    Ok(((object, rest), (worker.shaft.counters() - before, worker.take_log())))
+                    Ok((place, (object, rest), (worker.shaft.counters() - before, worker.take_log())))
                 },
             );
-            for (rest, did) in turn.collect::<Result<Vec<_>, Halt>>()? {
+            let mut turn = turn.collect::<Result<Vec<_>, Halt>>()?;
+            turn.sort_unstable_by_key(|(place, ..)| *place);
+            for (_, rest, did) in turn {
                 tasks.extend(Some(rest).filter(|(_, nodes)| !nodes.is_empty()));
                 done.push(did);
             }

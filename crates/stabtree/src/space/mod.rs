@@ -179,22 +179,27 @@ pub fn space_visibility(
     objects: &[Aabb<3>],
     options: &SearchOptions<'_>,
 ) -> Result<SpaceVisibility, Halt> {
-    let blockers = Blockers::new(opaque_rectangles(graph, solid));
-    let mut search = SpaceSearch::new(graph, objects, &blockers);
-    search.use_columns();
-    if options.budget.is_limited() {
-        search.expect_to_leave_pairs();
-    }
-    let (counters, _) = on_threads(options.threads, |threads| search.answer(threads, options))?;
-    Ok(search.into_seen(counters))
+    on_threads(options.threads, |threads| {
+        let blockers = Blockers::new(opaque_rectangles(graph, solid));
+        let mut search = SpaceSearch::new(graph, objects, &blockers);
+        search.use_columns();
+        if options.budget.is_limited() {
+            search.expect_to_leave_pairs();
+        }
+        let (counters, _) = search.answer(threads, options)?;
+        Ok(search.into_seen(counters))
+    })
 }
 
-/// Runs something on this many threads and passes their number; 0 uses one for each core.
+/// Runs something on this many threads and passes their number; 0 uses one for each core. Whoever is on so many already stays there.
 pub(crate) fn on_threads<T: Send>(threads: usize, run: impl FnOnce(usize) -> T + Send) -> T {
     let threads = match threads {
         0 => std::thread::available_parallelism().map_or(1, usize::from),
         t => t,
     };
+    if rayon::current_thread_index().is_some() && rayon::current_num_threads() == threads {
+        return run(threads);
+    }
     match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
         Ok(pool) => pool.install(|| run(threads)),
         // No threads could be created: the existing ones are used.

@@ -111,6 +111,7 @@ pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Resul
 /// Reads, bakes and writes. Prints nothing but progress and warnings.
 pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, verbose: bool) -> Result<Built, Error> {
     let BuildArgs { input: path, output: out, .. } = args;
+    crate::threads::use_only(args.bake.threads);
     let clock = limit::Clock::new(args.time_limit);
     if out.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) {
         return Err(Error::Json { out: out.clone() });

@@ -3,6 +3,7 @@
 mod engine;
 mod error;
 mod merge;
+mod numbers;
 mod outcome;
 mod plan;
 mod shard;
@@ -33,7 +34,7 @@ pub(crate) struct JobArgs {
 enum JobCommand {
     /// Cut a build into shards of about the same cost: put `job plan -o JOB` before the command
     Plan(plan::PlanArgs),
-    /// Do one shard, and write its part
+    /// Do some shards, and write the part of each
     Shard(shard::ShardArgs),
     /// Put all parts together: writes what the command writes without a job, or plans the shards that come next
     Merge(merge::MergeArgs),

@@ -1,5 +1,6 @@
 //! What is printed about a job.
 
+use super::numbers::Run;
 use super::task::Made;
 use crate::output::{count, percent, seconds};
 use crate::progress::rough;
@@ -74,27 +75,32 @@ impl fmt::Display for Planned {
     }
 }
 
+/// What `job shard` has done.
+#[derive(Debug, Serialize)]
+pub(super) struct ShardsDone {
+    pub(super) job: String,
+    pub(super) shards: Vec<ShardDone>,
+    pub(super) seconds: f64,
+}
+
 /// What one shard gave.
 #[derive(Debug, Serialize)]
 pub(super) struct ShardDone {
-    pub(super) job: String,
     pub(super) shard: usize,
     pub(super) phase: String,
     pub(super) begin: usize,
     pub(super) end: usize,
     pub(super) was_done: bool,
-    pub(super) seconds: f64,
 }
 
-impl fmt::Display for ShardDone {
+impl fmt::Display for ShardsDone {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { job, shard, phase, begin, end, was_done, seconds: time } = self;
-        let units = count((end - begin) as u64, "unit");
-        let how = match was_done {
-            true => "done already".to_owned(),
-            false => format!("in {}", seconds(Duration::try_from_secs_f64(*time).unwrap_or_default())),
-        };
-        writeln!(f, "shard {shard} of {job}: {units} of phase {phase}, {how}")
+        for ShardDone { shard, phase, begin, end, was_done } in &self.shards {
+            let units = count((end - begin) as u64, "unit");
+            let how = if *was_done { "done already" } else { "done" };
+            writeln!(f, "shard {shard} of {}: {units} of phase {phase}, {how}", self.job)?;
+        }
+        writeln!(f, "in {}", seconds(Duration::try_from_secs_f64(self.seconds).unwrap_or_default()))
     }
 }
 
@@ -273,17 +279,9 @@ impl fmt::Display for Submitted {
 
 /// Numbers of shards in words: `shards 0 to 3, 7`.
 pub(super) fn ranges(shards: &[usize]) -> String {
-    let mut runs: Vec<[usize; 2]> = Vec::new();
-    for &shard in shards {
-        match runs.last_mut() {
-            Some([_, last]) if *last + 1 == shard => *last = shard,
-            _ => runs.push([shard, shard]),
-        }
-    }
-    let run =
-        |&[first, last]: &[usize; 2]| if first == last { format!("{first}") } else { format!("{first} to {last}") };
+    let run = |Run { first, last }: Run| if first == last { format!("{first}") } else { format!("{first} to {last}") };
     let noun = if shards.len() == 1 { "shard" } else { "shards" };
-    format!("{noun} {}", runs.iter().map(run).collect::<Vec<_>>().join(", "))
+    format!("{noun} {}", Run::all(shards).into_iter().map(run).collect::<Vec<_>>().join(", "))
 }
 
 #[cfg(test)]

@@ -1,13 +1,15 @@
-//! `job shard`: the part of one shard.
+//! `job shard`: the parts of some shards.
 
-use super::outcome::{ShardDone, ranges};
+use super::numbers::Run;
+use super::outcome::{ShardDone, ShardsDone, ranges};
 use super::task::Task;
 use super::{Error, absolute, open};
 use crate::kept::{Identity, JobSlot, Keeping};
 use crate::output;
 use crate::{Answer, interrupt};
-use sightlines::checkpoint::{JobStore, Outcome, Role, ShardState};
-use std::path::PathBuf;
+use sightlines::checkpoint::{Job, JobStore, Outcome, Role, ShardState};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// Arguments of `job shard`.
@@ -16,9 +18,9 @@ pub(crate) struct ShardArgs {
     /// The folder of the job
     #[arg(value_name = "JOB")]
     job: PathBuf,
-    /// The number of the shard, from 0 on
-    #[arg(value_name = "N")]
-    shard: usize,
+    /// Numbers of shards, from 0 on, and runs of them such as 3-9; one process prepares once and then does one after the other
+    #[arg(value_name = "N", required = true, value_parser = Run::parse)]
+    shards: Vec<Run>,
     /// Number of threads; 0 uses every core
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 1, value_parser = crate::numbers::threads)]
     threads: usize,
@@ -33,42 +35,59 @@ pub(crate) struct ShardArgs {
 pub(crate) fn run(args: &ShardArgs, show_progress: bool) -> Result<Answer, Error> {
     let start = Instant::now();
     let job = open(&absolute(&args.job)?)?;
-    let (phase, plan) = job.shard(args.shard).map(|(phase, plan)| (phase, *plan))?;
-    let mut done = ShardDone {
-        job: args.job.display().to_string(),
-        shard: args.shard,
-        phase: job.manifest().phases[phase].name.clone(),
-        begin: plan.begin,
-        end: plan.end,
-        was_done: job.state(args.shard)? == ShardState::Done,
-        seconds: 0.0,
-    };
-    if !done.was_done {
-        let task = Task::of(&job)?.with_threads(Some(args.threads));
-        let slot = JobSlot::default();
-        let (role, after) = (Role::Shard(args.shard), Duration::from_secs(args.save_after));
-        let open = |identity: &Identity| slot.open(identity, || Ok(JobStore::new(job.clone(), role, after)?));
-        let made = task.make(Keeping::Job(&open), show_progress, false);
-        match slot.store().and_then(JobStore::outcome) {
-            Some(Outcome::Done) => {}
-            Some(Outcome::Missing { shards, phase }) => {
-                let shards: Vec<usize> = shards.iter().map(|(shard, _)| *shard).collect();
-                let name = &job.manifest().phases[phase].name;
-                return Err(Error::Command(format!(
-                    "{}: shard {} needs all of phase {name} first: {} to be done",
-                    args.job.display(),
-                    args.shard,
-                    ranges(&shards)
-                )));
-            }
-            _ if interrupt::requested() => return Err(Error::Interrupted),
-            _ => {
-                made?;
-                return Err(Error::NeverBegun { path: args.job.clone(), shard: args.shard });
-            }
+    let mut shards = Vec::new();
+    for run in &args.shards {
+        // A run that is too long is refused before it is written out.
+        job.shard(run.last)?;
+        shards.extend(run.first..=run.last);
+    }
+    shards.sort_unstable();
+    shards.dedup();
+    let mut done = ShardsDone { job: args.job.display().to_string(), shards: Vec::new(), seconds: 0.0 };
+    let mut todo: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for shard in shards {
+        let (phase, plan) = job.shard(shard)?;
+        let was_done = job.state(shard)? == ShardState::Done;
+        let name = job.manifest().phases[phase].name.clone();
+        done.shards.push(ShardDone { shard, phase: name, begin: plan.begin, end: plan.end, was_done });
+        if !was_done {
+            todo.entry(phase).or_default().push(shard);
         }
+    }
+    for shards in todo.into_values() {
+        compute(&job, &args.job, shards, args, show_progress)?;
     }
     done.seconds = start.elapsed().as_secs_f64();
     output::print(args.json, &done)?;
     Ok(Answer::Yes)
+}
+
+/// Computes shards of one phase.
+fn compute(job: &Job, name: &Path, shards: Vec<usize>, args: &ShardArgs, show_progress: bool) -> Result<(), Error> {
+    let task = Task::of(job)?.with_threads(Some(args.threads));
+    let slot = JobSlot::default();
+    let after = Duration::from_secs(args.save_after);
+    let open = |identity: &Identity| {
+        slot.open(identity, || Ok(JobStore::new(job.clone(), Role::Shards(shards.clone()), after)?))
+    };
+    let made = task.make(Keeping::Job(&open), show_progress, false);
+    match slot.store().and_then(JobStore::outcome) {
+        Some(Outcome::Done) => Ok(()),
+        Some(Outcome::Missing { shards: missing, phase }) => {
+            let missing: Vec<usize> = missing.iter().map(|(shard, _)| *shard).collect();
+            let phase = &job.manifest().phases[phase].name;
+            let verb = if shards.len() == 1 { "needs" } else { "need" };
+            Err(Error::Command(format!(
+                "{}: {} {verb} all of phase {phase} first: {} to be done",
+                name.display(),
+                ranges(&shards),
+                ranges(&missing)
+            )))
+        }
+        _ if interrupt::requested() => Err(Error::Interrupted),
+        _ => {
+            made?;
+            Err(Error::NeverBegun { path: name.to_owned(), shard: shards[0] })
+        }
+    }
 }

@@ -52,14 +52,17 @@ pub(crate) struct SubmitArgs {
     /// local, command: shards that are done at once [default: as many as there are cores]
     #[arg(long, help_heading = "Method", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
     workers: Option<u32>,
-    /// command: what a shell runs for a shard; {shard} stands for its number, {job} for the folder of the job, {program} for this program. It
-    /// ends when the shard is done: 'ssh node2 {program} job shard {job} {shard}'
+    /// command: what a shell runs for a shard; {shard} stands for its number, {shards} for those of several, {job} for the folder of the job,
+    /// {program} for this program. It ends when they are done: 'ssh node2 {program} job shard {job} {shards}'
     #[arg(long, help_heading = "Method", value_name = "TEMPLATE", required_if_eq("engine", "command"))]
     command: Option<String>,
     /// slurm: an option for sbatch, such as --sbatch=--partition=long; may be given several times
     #[arg(long, help_heading = "Method", value_name = "OPTION", allow_hyphen_values = true)]
     sbatch: Vec<String>,
-    /// How often a shard that failed is tried again
+    /// slurm: shards that a task does, one after the other; it prepares once for all of them
+    #[arg(long, help_heading = "Method", value_name = "K", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    shards_per_task: u32,
+    /// How often a shard that failed is tried again; one that ended with exit code 2 is not
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(0..=100))]
     retries: u32,
     /// Write scripts for Slurm and a manifest for Kubernetes into the folder of the job, and start nothing
@@ -77,7 +80,8 @@ pub(crate) fn run(args: &SubmitArgs, show_progress: bool, verbose: bool) -> Resu
     let (folder, out) = (absolute(&args.job)?, args.output.as_deref().map(absolute).transpose()?);
     let program = std::env::current_exe().map_err(|source| Error::Folder { path: folder.clone(), source })?;
     let job = open(&folder)?;
-    let slurm = Slurm { program: &program, options: &args.sbatch, output: out.as_deref(), show_progress };
+    let (options, per_task) = (&args.sbatch[..], args.shards_per_task as usize);
+    let slurm = Slurm { program: &program, options, per_task, output: out.as_deref(), show_progress };
     if args.dry_run {
         let Some(phase) = job.manifest().phases.len().checked_sub(1) else {
             return Err(Error::Command(format!("{}: the job has no shards", args.job.display())));

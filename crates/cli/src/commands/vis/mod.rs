@@ -129,6 +129,7 @@ pub(crate) fn make(args: &VisArgs, keeping: Keeping<'_>, show_progress: bool) ->
 
 /// Writes the map. Prints nothing but progress and warnings.
 pub(crate) fn compute(args: &VisArgs, manner: Manner<'_, '_>) -> Result<Outcome, Error> {
+    crate::threads::use_only(args.threads);
     let start = Instant::now();
     if args.prt.is_none() && args.map.is_file() && input::kind_of(&args.map)? == Some(InputKind::Prt) {
         return Err(Error::PortalsForMap { path: args.map.clone(), command: "sightlines vis" });

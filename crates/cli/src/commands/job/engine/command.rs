@@ -1,11 +1,13 @@
-//! A command of the user for each shard.
+//! A command of the user for each shard, or for several.
 
+use super::local::batch;
 use super::{Engine, Round, pool, quoted};
 use crate::commands::job::Error;
+use crate::commands::job::numbers::Run;
 use std::path::Path;
 use std::process::{Command as Process, Stdio};
 
-/// What a shell runs for each shard, so many at once.
+/// What a shell runs for each shard, or for some of them, so many at once.
 pub(in crate::commands::job) struct Command<'a> {
     pub(in crate::commands::job) program: &'a Path,
     pub(in crate::commands::job) template: &'a str,
@@ -14,11 +16,15 @@ pub(in crate::commands::job) struct Command<'a> {
 }
 
 impl Engine for Command<'_> {
-    fn run(&self, round: &Round<'_>, _: u32) -> Result<bool, Error> {
+    fn run(&self, round: &Round<'_>, attempt: u32) -> Result<bool, Error> {
         let job = quoted(round.job.folder());
         let template = self.template.replace("{job}", &job).replace("{program}", &quoted(self.program));
-        pool::run(round, self.workers, self.show_progress, |shard| {
-            let line = template.replace("{shard}", &shard.to_string());
+        let takes_several = template.contains("{shards}");
+        let size = |left| if takes_several && attempt == 1 { batch(left, round.shards.len(), self.workers) } else { 1 };
+        pool::run(round, self.workers, self.show_progress, size, |shards| {
+            let runs: Vec<String> = Run::all(shards).into_iter().map(Run::text).collect();
+            let line = template.replace("{shards}", &runs.join(" "));
+            let line = shards.first().map_or(line.clone(), |shard| line.replace("{shard}", &shard.to_string()));
             let mut command = if cfg!(windows) { Process::new("cmd") } else { Process::new("sh") };
             command.arg(if cfg!(windows) { "/C" } else { "-c" }).arg(line);
             command.stdin(Stdio::null()).stdout(Stdio::null());

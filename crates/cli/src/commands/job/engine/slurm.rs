@@ -1,18 +1,20 @@
 //! Slurm: an array job for the shards of a phase, and a job that merges behind it.
 
+mod queue;
+
 use super::{Engine, Round, Shown, quoted};
 use crate::commands::job::Error;
+use crate::commands::job::numbers::Run;
+use crate::commands::job::outcome::ranges;
 use crate::interrupt;
 use crate::output;
+use queue::{Watch, cancel, is_gone, is_pending, sbatch};
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
 use std::time::Duration;
 
 /// How often Slurm is asked for news.
 const POLL: Duration = Duration::from_millis(500);
-/// How often it may fail to take a job, a poll apart: its controller may be starting again.
-const PATIENCE: usize = 60;
 /// How often it has to know nothing of a job before that counts as gone.
 const GONE: usize = 4;
 /// How often all parts have to be there while the merge still waits before nobody waits for it: a node that died may keep tasks that are over.
@@ -22,82 +24,113 @@ const WHOLE: usize = 20;
 pub(in crate::commands::job) struct Slurm<'a> {
     pub(in crate::commands::job) program: &'a Path,
     pub(in crate::commands::job) options: &'a [String],
+    /// Shards of a task.
+    pub(in crate::commands::job) per_task: usize,
     /// What merges write, if not what was planned.
     pub(in crate::commands::job) output: Option<&'a Path>,
     pub(in crate::commands::job) show_progress: bool,
 }
 
-/// The files of an attempt.
+/// The files of an attempt. Another submission of the same job has others.
 struct Files {
-    shards: PathBuf,
-    merge: PathBuf,
-    /// Where the merge writes how it ended.
-    end: PathBuf,
+    folder: PathBuf,
+    /// What tells the attempt from all others.
+    name: String,
 }
 
 impl Files {
     fn of(round: &Round<'_>, attempt: u32) -> Self {
-        let folder = round.job.folder().join("slurm");
-        let name = |what: &str, ending: &str| folder.join(format!("{what}-{}-{attempt}.{ending}", round.phase));
-        Self { shards: name("shards", "sh"), merge: name("merge", "sh"), end: name("merge", "end") }
+        let mark = match attempt {
+            // Scripts to be read, which are not run.
+            0 => String::new(),
+            _ => format!("-{}", sightlines::formats::process_mark()),
+        };
+        Self { folder: round.job.folder().join("slurm"), name: format!("{}-{attempt}{mark}", round.phase) }
+    }
+
+    fn script(&self, what: &str) -> PathBuf {
+        self.folder.join(format!("{what}-{}.sh", self.name))
+    }
+
+    /// Where a job writes what became of it. Its name has the number of the job, which the script takes from a variable.
+    fn end(&self, what: &str, job: &str) -> PathBuf {
+        self.folder.join(format!("{what}-{}-{job}.end", self.name))
+    }
+
+    /// The same for a shell; the number of the job is in a variable.
+    fn end_in_shell(&self, what: &str, variable: &str) -> String {
+        format!("{}\"${variable}\".end", quoted(&self.folder.join(format!("{what}-{}-", self.name))))
+    }
+
+    /// What the tasks of an array have said that would fail again: the number of the task, and the message.
+    fn hopeless(&self, array: &str) -> Option<(usize, String)> {
+        let begin = format!("task-{}-{array}-", self.name);
+        let entries = fs::read_dir(&self.folder).into_iter().flatten().flatten();
+        let mut found: Vec<(usize, PathBuf)> = entries
+            .filter_map(|entry| {
+                let name = entry.file_name();
+                let task = name.to_str()?.strip_prefix(&begin)?.strip_suffix(".end")?;
+                Some((task.parse().ok()?, entry.path()))
+            })
+            .collect();
+        found.sort();
+        found.into_iter().next().map(|(task, path)| (task, fs::read_to_string(path).unwrap_or_default()))
     }
 }
 
 impl Slurm<'_> {
+    /// The places, within the phase, of the tasks that have one of these shards.
+    fn tasks(&self, round: &Round<'_>) -> Vec<usize> {
+        let first = round.job.manifest().shards_of(round.phase).start;
+        let mut tasks: Vec<usize> = round.shards.iter().map(|shard| (shard - first) / self.per_task).collect();
+        tasks.dedup();
+        tasks
+    }
+
+    /// The shards of a task.
+    fn shards_of(&self, round: &Round<'_>, task: usize) -> Vec<usize> {
+        let all = round.job.manifest().shards_of(round.phase);
+        let first = all.start.saturating_add(task.saturating_mul(self.per_task));
+        (first..all.end).take(self.per_task).collect()
+    }
+
     /// Writes the scripts of an attempt into the folder of the job.
     pub(in crate::commands::job) fn write(&self, round: &Round<'_>, attempt: u32) -> Result<Vec<PathBuf>, Error> {
         let files = Files::of(round, attempt);
-        let folder = round.job.folder().join("slurm");
-        fs::create_dir_all(&folder).map_err(|source| Error::Folder { path: folder.clone(), source })?;
+        let folder = &files.folder;
+        fs::create_dir_all(folder).map_err(|source| Error::Folder { path: folder.clone(), source })?;
         let (program, job) = (quoted(self.program), quoted(round.job.folder()));
         let options: String = self.options.iter().map(|option| format!("#SBATCH {option}\n")).collect();
         let name = &round.job.manifest().phases[round.phase].name;
-        let array = array_of(round.shards);
+        let array: Vec<String> = Run::all(&self.tasks(round)).into_iter().map(Run::text).collect();
+        let array = array.join(",");
+        let all = round.job.manifest().shards_of(round.phase);
+        let (first, last, n) = (all.start, all.end.saturating_sub(1), self.per_task);
         // Slurm has no quotes here; what it cannot take has to be given by --chdir.
         let logs = folder.display();
+        let end = files.end_in_shell("task", "SLURM_ARRAY_JOB_ID-$SLURM_ARRAY_TASK_ID");
         let shards = format!(
             "#!/bin/sh\n#SBATCH --job-name=sightlines-{name}\n#SBATCH --array={array}\n#SBATCH --requeue\n\
-             #SBATCH --output={logs}/shard-%a-{attempt}.log\n#SBATCH --open-mode=append\n{options}\
-             exec {program} job shard {job} \"$SLURM_ARRAY_TASK_ID\" --threads \"${{SLURM_CPUS_PER_TASK:-1}}\"\n"
+             #SBATCH --output={logs}/shards-%A-%a.log\n#SBATCH --open-mode=append\n{options}\
+             first=$(({first} + SLURM_ARRAY_TASK_ID * {n}))\nlast=$((first + {n} - 1))\n\
+             if [ \"$last\" -gt {last} ]; then last={last}; fi\nsaid={end}\n\
+             {program} job shard {job} \"$first-$last\" --threads \"${{SLURM_CPUS_PER_TASK:-1}}\" 2> \"$said.new\"\n\
+             code=$?\ncat \"$said.new\" >&2\n\
+             if [ $code -eq 2 ]; then mv \"$said.new\" \"$said\"; else rm -f \"$said.new\"; fi\nexit $code\n"
         );
         let out = self.output.map_or(String::new(), |out| format!(" -o {}", quoted(out)));
-        let end = quoted(&files.end);
+        let end = files.end_in_shell("merge", "SLURM_JOB_ID");
         let merge = format!(
             "#!/bin/sh\n#SBATCH --job-name=sightlines-merge\n#SBATCH --requeue\n\
-             #SBATCH --output={logs}/merge-{}-{attempt}.log\n#SBATCH --open-mode=append\n{options}\
+             #SBATCH --output={logs}/merge-%j.log\n#SBATCH --open-mode=append\n{options}\
              {program} job merge {job}{out} --threads \"${{SLURM_CPUS_PER_TASK:-1}}\"\n\
-             code=$?\necho $code > {end}.new && mv {end}.new {end}\nexit $code\n",
-            round.phase
+             code=$?\nend={end}\necho $code > \"$end.new\" && mv \"$end.new\" \"$end\"\nexit $code\n"
         );
-        output::save(&files.shards, shards.as_bytes())?;
-        output::save(&files.merge, merge.as_bytes())?;
-        Ok(vec![files.shards, files.merge])
-    }
-
-    /// Queues a script; the number of the job. Tries for a while: the controller may be starting again.
-    fn sbatch(&self, script: &Path, after: Option<&str>) -> Result<String, Error> {
-        let mut last = String::new();
-        for _ in 0..PATIENCE {
-            let mut command = Command::new("sbatch");
-            command.arg("--parsable").stdin(Stdio::null());
-            if let Some(after) = after {
-                // Whatever became of the shards: the merge finds out what is missing.
-                command.arg(format!("--dependency=afterany:{after}"));
-            }
-            let program = "sbatch".to_owned();
-            let done = command.arg(script).output().map_err(|source| Error::Start { program, source })?;
-            let text = String::from_utf8_lossy(&done.stdout);
-            if done.status.success() {
-                let id = text.trim().split(';').next().unwrap_or_default().to_owned();
-                return Ok(id);
-            }
-            last = String::from_utf8_lossy(&done.stderr).trim().to_owned();
-            if !is_of_controller(&last) || interrupt::requested() {
-                break;
-            }
-            std::thread::sleep(POLL);
+        let scripts = [(files.script("shards"), shards), (files.script("merge"), merge)];
+        for (path, text) in &scripts {
+            output::save(path, text.as_bytes())?;
         }
-        Err(Error::Queue { program: "sbatch", message: last })
+        Ok(scripts.map(|(path, _)| path).into())
     }
 }
 
@@ -106,83 +139,39 @@ impl Engine for Slurm<'_> {
         let _watch = interrupt::watch();
         self.write(round, attempt)?;
         let files = Files::of(round, attempt);
-        // What an earlier submission left would be taken for the end of this one.
-        let _ = fs::remove_file(&files.end);
-        let shards = self.sbatch(&files.shards, None)?;
-        let merge = self.sbatch(&files.merge, Some(&shards))?;
+        let shards = sbatch(&files.script("shards"), None)?;
+        let merge = sbatch(&files.script("merge"), Some(&shards))?;
+        let end = files.end("merge", &merge);
         let shown = Shown::new(round, self.show_progress);
-        let (mut n_gone, mut n_whole) = (0, 0);
-        while n_gone < GONE && !files.end.exists() {
+        let (mut n_gone, mut n_whole, mut watch) = (0, 0, Watch::default());
+        while n_gone < GONE && !end.exists() {
             let is_whole = round.shards.iter().all(|&shard| round.job.part_path(shard).exists());
             n_whole = if is_whole && is_pending(&merge)? { n_whole + 1 } else { 0 };
             if n_whole > WHOLE {
-                let _ = Command::new("scancel").args([&merge, &shards]).stdin(Stdio::null()).output();
+                cancel(&[&merge, &shards]);
                 return Ok(false);
+            }
+            if let Some((task, message)) = files.hopeless(&shards) {
+                cancel(&[&shards, &merge]);
+                let message = message.trim();
+                let message = message.strip_prefix("error: ").unwrap_or(message).to_owned();
+                return Err(Error::Shard { shards: ranges(&self.shards_of(round, task)), message });
             }
             if interrupt::requested() {
                 // Otherwise the cluster would go on with what nobody waits for.
-                let _ = Command::new("scancel").args([&shards, &merge]).stdin(Stdio::null()).output();
+                cancel(&[&shards, &merge]);
                 return Err(Error::Interrupted);
+            }
+            if let Some(stuck) = watch.look(&shards) {
+                tracing::warn!("Slurm keeps what will never end: {}; it is cancelled and sent again", stuck.join(", "));
+                cancel(&[&shards, &merge]);
+                return Ok(false);
             }
             shown.update();
             std::thread::sleep(POLL);
             n_gone = if is_gone(&[&shards, &merge])? { n_gone + 1 } else { 0 };
         }
         shown.update();
-        Ok(fs::read_to_string(&files.end).is_ok_and(|code| code.trim() == "0"))
-    }
-}
-
-/// Whether Slurm knows, and knows nothing of these jobs any more. Nothing follows from silence.
-fn is_gone(jobs: &[&str]) -> Result<bool, Error> {
-    let asked = Command::new("squeue").args(["-h", "-o", "%i", "-j", &jobs.join(",")]).stdin(Stdio::null()).output();
-    let asked = asked.map_err(|source| Error::Start { program: "squeue".to_owned(), source })?;
-    let said = String::from_utf8_lossy(&asked.stderr);
-    Ok(match asked.status.success() {
-        true => asked.stdout.iter().all(u8::is_ascii_whitespace),
-        false => said.contains("Invalid job id"),
-    })
-}
-
-/// Whether Slurm says that a job waits.
-fn is_pending(job: &str) -> Result<bool, Error> {
-    let asked = Command::new("squeue").args(["-h", "-o", "%T", "-j", job]).stdin(Stdio::null()).output();
-    let asked = asked.map_err(|source| Error::Start { program: "squeue".to_owned(), source })?;
-    Ok(asked.status.success() && asked.stdout.trim_ascii() == b"PENDING")
-}
-
-/// Whether a message is about a controller that does not answer.
-fn is_of_controller(message: &str) -> bool {
-    ["Unable to contact slurm controller", "timed out", "Connection refused", "Zero Bytes were transmitted"]
-        .iter()
-        .any(|text| message.contains(text))
-}
-
-/// Numbers of shards as Slurm takes them: `0-3,7`.
-fn array_of(shards: &[usize]) -> String {
-    let mut runs: Vec<[usize; 2]> = Vec::new();
-    for &shard in shards {
-        match runs.last_mut() {
-            Some([_, last]) if *last + 1 == shard => *last = shard,
-            _ => runs.push([shard, shard]),
-        }
-    }
-    let run = |&[first, last]: &[usize; 2]| if first == last { format!("{first}") } else { format!("{first}-{last}") };
-    runs.iter().map(run).collect::<Vec<_>>().join(",")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn arrays_are_runs() {
-        assert_eq!([&[4][..], &[0, 1, 2], &[1, 2, 7, 9, 10]].map(array_of), ["4", "0-2", "1-2,7,9-10"]);
-    }
-
-    #[test]
-    fn controllers_that_start_again_are_waited_for() {
-        let away = "sbatch: error: Batch job submission failed: Unable to contact slurm controller (connect failure)";
-        assert!(is_of_controller(away) && !is_of_controller("sbatch: error: invalid partition specified: x"));
+        Ok(fs::read_to_string(&end).is_ok_and(|code| code.trim() == "0"))
     }
 }
