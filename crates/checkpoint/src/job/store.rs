@@ -3,11 +3,13 @@
 use super::cut::cut;
 use super::manifest::PhasePlan;
 use super::{JOURNAL, Job, JobError, ShardState};
+use crate::error::StateError;
 use crate::index::Results;
 use crate::journal::{Journal, Opening};
 use sightlines_formats::process_mark;
 use sightlines_progress::{Halt, Phase, UnitStore};
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
@@ -116,13 +118,16 @@ impl JobStore {
 impl Own {
     fn new(job: &Job, shard: usize, after: Duration) -> Result<Self, JobError> {
         let (phase, plan) = job.shard(shard)?;
-        let path: PathBuf = job.part_path(shard).with_extension(format!("part.{}{JOURNAL}", process_mark()));
+        // A process may have several stores.
+        static COUNT: AtomicU64 = AtomicU64::new(0);
+        let mark = format!("{}-{}", process_mark(), COUNT.fetch_add(1, Relaxed));
+        let path: PathBuf = job.part_path(shard).with_extension(format!("part.{mark}{JOURNAL}"));
         let (key, program) = (job.key(), &job.manifest().program);
         // What an earlier process with this number left is read with all other journals.
         let opening = if path.exists() { Opening::Resume } else { Opening::Anew };
         let journal = Journal::open(&path, key, program, opening, after);
         let journal = journal.or_else(|_| Journal::open(&path, key, program, Opening::Anew, after));
-        let read = |error: crate::StateError| JobError::State(Box::new(error));
+        let read = |error: StateError| JobError::State(Box::new(error));
         let phase = job.manifest().phases[phase].name.clone();
         Ok(Self { shard, phase, begin: plan.begin, end: plan.end, journal: journal.map_err(read)? })
     }
