@@ -51,9 +51,19 @@ struct State {
     results: Option<Results>,
     in_memory: BTreeMap<(String, u64), Vec<u8>>,
     /// A file of results that this bake replaces, and that nobody else may use until then.
-    before: Option<File>,
+    before: Option<Before>,
+    /// The mark of results of the same bake that were put aside.
+    aside: Option<[u8; 16]>,
     /// Why nothing more is written.
     failure: Option<StateError>,
+}
+
+/// A file of results that a bake begins without.
+#[derive(Debug)]
+struct Before {
+    file: File,
+    /// If they are of the same bake.
+    mark: Option<[u8; 16]>,
 }
 
 impl Journal {
@@ -75,13 +85,13 @@ impl Journal {
                 match (Results::of(path, again()?, &owner), opening) {
                     (Ok(results), Opening::Resume) => state.results = results,
                     (Ok(results), Opening::Anew) => {
-                        n_before = results.map_or(0, |results| results.n_results());
-                        state.before = Some(file);
+                        n_before = results.as_ref().map_or(0, Results::n_results);
+                        state.before = Some(Before { file, mark: results.map(|results| results.mark) });
                     }
                     (
                         Err(StateError::OtherKey(_) | StateError::OtherProgram { .. } | StateError::OtherForm(_)),
                         Opening::Anew,
-                    ) => state.before = Some(file),
+                    ) => state.before = Some(Before { file, mark: None }),
                     (Err(error), _) => return Err(error),
                 }
             }
@@ -149,23 +159,29 @@ impl Journal {
         self.write(&mut self.lock())
     }
 
-    /// Removes the file that this journal has written or gone on from: the bake is done.
+    /// Removes the file that this journal has written or gone on from, and older results of the same bake: it is done.
     ///
     /// # Errors
     /// [`StateError::Replaced`] for another file of that name, which stays, and [`StateError::Write`].
     pub fn remove(self) -> Result<(), StateError> {
+        let aside = self.before_path();
         let state = self.state.into_inner().unwrap_or_else(PoisonError::into_inner);
-        let Some(results) = state.results else { return Ok(()) };
-        match is_at(&self.path, &self.owner, results.mark) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
-            Err(error) => return Err(StateError::write(&self.path, error)),
-            Ok(false) => return Err(StateError::Replaced(self.path)),
-            Ok(true) => {}
+        let own = state.results.as_ref().map(|results| results.mark);
+        let before = state.before.as_ref().and_then(|before| before.mark);
+        for (path, mark) in [(&self.path, own), (&self.path, before), (&aside, state.aside)] {
+            let Some(mark) = mark else { continue };
+            match is_at(path, &self.owner, mark) {
+                Err(error) if error.kind() == io::ErrorKind::NotFound => continue,
+                Err(error) => return Err(StateError::write(path, error)),
+                Ok(false) => return Err(StateError::Replaced(path.clone())),
+                Ok(true) => {}
+            }
+            match fs::remove_file(path) {
+                Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(StateError::write(path, error)),
+                _ => {}
+            }
         }
-        match fs::remove_file(&self.path) {
-            Err(error) if error.kind() != io::ErrorKind::NotFound => Err(StateError::write(&self.path, error)),
-            _ => Ok(()),
-        }
+        Ok(())
     }
 
     fn lock(&self) -> MutexGuard<'_, State> {
@@ -179,7 +195,12 @@ impl Journal {
         }
         let results = match &mut state.results {
             Some(results) => results,
-            none => none.insert(self.create(&mut state.before)?),
+            none => {
+                if let Some(before) = state.before.take() {
+                    state.aside = self.put_aside(before)?;
+                }
+                none.insert(self.create()?)
+            }
         };
         while let Some((key, result)) = state.in_memory.pop_first() {
             if let Err(source) = append(results, &key.0, key.1, &result) {
@@ -190,16 +211,29 @@ impl Journal {
         Ok(())
     }
 
-    /// A new file with a header. A file of results that has the name is renamed before.
-    fn create(&self, before: &mut Option<File>) -> Result<Results, StateError> {
-        let failed = |source| StateError::write(&self.path, source);
-        if let Some(old) = before.take() {
-            let n_bytes = old.metadata().map_err(failed)?.len();
-            match if n_bytes == 0 { fs::remove_file(&self.path) } else { fs::rename(&self.path, self.before_path()) } {
-                Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(failed(error)),
-                _ => {}
-            }
+    /// Gives a file of results another name, and returns its mark if it is of the same bake.
+    fn put_aside(&self, Before { file, mark }: Before) -> Result<Option<[u8; 16]>, StateError> {
+        let aside = self.before_path();
+        // Something else of that name is not to be lost.
+        match File::open(&aside) {
+            Ok(mut found) => match records::header(&aside, &mut found) {
+                Ok(_) | Err(StateError::OtherForm(_)) => {}
+                Err(error) => return Err(error),
+            },
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+            Err(source) => return Err(StateError::read(&aside, source)),
         }
+        let failed = |source| StateError::write(&self.path, source);
+        let n_bytes = file.metadata().map_err(failed)?.len();
+        match if n_bytes == 0 { fs::remove_file(&self.path) } else { fs::rename(&self.path, aside) } {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => Err(failed(error)),
+            _ => Ok(mark),
+        }
+    }
+
+    /// A new file with a header.
+    fn create(&self) -> Result<Results, StateError> {
+        let failed = |source| StateError::write(&self.path, source);
         // Whoever finds a file of this name from here on finds one without results, or one that is locked.
         let mark = new_mark();
         let header = self.owner.header(mark);

@@ -100,23 +100,31 @@ fn files_of_other_bakes_are_refused_or_replaced() {
     drop(other);
     assert_eq!(open(&path, "b", Opening::Resume).unwrap().n_taken_up(), 2);
     assert_eq!(open(&before, "a", Opening::Resume).unwrap().n_taken_up(), 8);
-    // So are results of the same bake, and only the last ones.
-    let again = open(&path, "b", Opening::Anew).unwrap();
-    assert_eq!((again.n_before(), again.n_taken_up()), (2, 0));
-    assert!(toy([2, 0]).bake(Some(&again)).is_ok() && again.n_taken_up() == 0);
-    again.remove().unwrap();
+    // So are results of the same bake, until it is done.
+    let again = || open(&path, "b", Opening::Anew).unwrap();
+    let stopped = again();
+    assert_eq!((stopped.n_before(), stopped.n_taken_up()), (2, 0));
+    assert!(toy([2, 0]).bake(Some(&stopped)).is_ok());
     assert_eq!(open(&before, "b", Opening::Resume).unwrap().n_taken_up(), 2);
-    assert!(!path.exists());
-    // A journal that finds nothing to do leaves all as it is.
-    fs::rename(&before, &path).unwrap();
-    open(&path, "b", Opening::Anew).unwrap().remove().unwrap();
-    assert_eq!(open(&path, "b", Opening::Resume).unwrap().n_taken_up(), 2);
+    stopped.remove().unwrap();
+    assert!(!path.exists() && !before.exists());
+    toy([2, 0]).bake(Some(&again())).unwrap();
+    again().remove().unwrap();
+    assert!(!path.exists(), "a bake that was done before it had a file needs older results no more");
+    // Those of another bake stay, and so does what is none of ours.
+    toy([4, 4]).bake(Some(&open(&path, "a", Opening::Anew).unwrap())).unwrap();
+    again().remove().unwrap();
+    assert!(path.exists());
+    fs::write(&before, "a letter").unwrap();
+    let refused = toy([2, 0]).bake(Some(&again())).unwrap_err().to_string();
+    assert_eq!(refused, format!("{}: this is no file of results of units", before.display()));
+    fs::remove_file(&before).unwrap();
     // The form of another version is not read, and not lost.
     let mut bytes = fs::read(&path).unwrap();
     bytes[8] = 1;
     fs::write(&path, &bytes).unwrap();
-    assert!(matches!(open(&path, "b", Opening::Resume), Err(StateError::OtherForm(_))));
-    toy([2, 0]).bake(Some(&open(&path, "b", Opening::Anew).unwrap())).unwrap();
+    assert!(matches!(open(&path, "a", Opening::Resume), Err(StateError::OtherForm(_))));
+    toy([2, 0]).bake(Some(&again())).unwrap();
     assert!(fs::read(&before).unwrap() == bytes);
     // What is something else is never overwritten.
     fs::write(&path, "a letter").unwrap();

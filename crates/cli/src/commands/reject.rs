@@ -1,9 +1,8 @@
 //! `reject`: the REJECT lumps of a WAD.
 
 use crate::Answer;
-use crate::error::InputError;
 use crate::file_error::{FileError, from_file_error};
-use crate::kept::{Identity, Interrupted, Keeping, Kept, KeptError, ResumeArgs};
+use crate::kept::{Identity, Inputs, Interrupted, Keeping, Kept, KeptError, ResumeArgs};
 use crate::output::{self, count, percent, seconds};
 use crate::progress::Bar;
 use serde::Serialize;
@@ -74,10 +73,11 @@ pub(crate) fn run(args: &RejectArgs, show_progress: bool) -> Result<Answer, Erro
 pub(crate) fn make(args: &RejectArgs, keeping: Keeping<'_>, show_progress: bool) -> Result<Outcome, Error> {
     // It may be the WAD that is read.
     output::check(&[], &[&args.output])?;
+    let files = std::iter::once(&args.input).chain(&args.rmb).map(PathBuf::as_path);
+    let inputs = Inputs::look(keeping, files)?;
     let wad = Wad::read(&args.input)?;
     let rmb = args.rmb.as_ref().map(RmbFile::read).transpose()?;
-    let files: Vec<&Path> = std::iter::once(&args.input).chain(&args.rmb).map(PathBuf::as_path).collect();
-    let kept = Kept::open(keeping, &args.output, &files, || args.identity())?;
+    let kept = Kept::open(keeping, &inputs, &[&args.output], || args.identity(&inputs))?;
     let made = || -> Result<Outcome, Error> {
         let bar = Bar::new("visibility of sectors", show_progress);
         let options = RejectOptions {
@@ -111,13 +111,12 @@ pub(crate) fn make(args: &RejectArgs, keeping: Keeping<'_>, show_progress: bool)
 }
 
 impl RejectArgs {
-    /// What decides the results of units.
-    fn identity(&self) -> Result<Identity, InputError> {
-        let mut identity = Identity::new("reject");
-        identity.file(&self.input)?;
-        self.rmb.iter().try_for_each(|rmb| identity.file(rmb))?;
-        identity.debug("options", &(&self.map, self.force, self.strict));
-        Ok(identity)
+    /// What decides the results of units. A new argument does not compile until it is decided whether it is part of that.
+    fn identity(&self, inputs: &Inputs) -> Identity {
+        let Self { input: _, map, force, rmb: _, strict, threads: _, resume: _, output: _, json: _ } = self;
+        let mut identity = Identity::new("reject", inputs);
+        identity.debug("options", &(map, force, strict));
+        identity
     }
 }
 

@@ -26,10 +26,9 @@ pub(crate) use source::bake_visibly;
 
 use crate::Answer;
 use crate::doors::DoorBox;
-use crate::error::InputError;
 use crate::input::{self, refuse};
-use crate::kept::{Identity, Keeping, Kept, ResumeArgs};
-use crate::map_portals::MADE;
+use crate::kept::{Identity, Inputs, Keeping, Kept, ResumeArgs};
+use crate::map_portals::{MADE, portal_file};
 use crate::numbers::duration;
 use crate::output;
 use crate::plans::{self, PlanArgs};
@@ -41,7 +40,7 @@ use serde::Serialize;
 use sightlines::bake::auto::choose_for;
 use sightlines::bake::methods::BufferOptions;
 use sightlines::bake::{BakeOptions, Bakeable, Baked, Report, SceneMethod};
-use sightlines::formats::Input;
+use sightlines::formats::{Input, InputKind};
 use source::{Source, bake_announced};
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -121,6 +120,11 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
     output::check(&[path], &[out])?;
     args.certify.check(path, out)?;
     let reading = args.plans.options(path)?;
+    // The portals of a Quake map are in a file of their own.
+    let is_map = path.exists() && input::kind_of(path)? == Some(InputKind::Bsp);
+    let portal_file = portal_file(path, args.prt.as_deref()).filter(|_| is_map);
+    let inputs = if path.exists() { Some(path.as_path()).into_iter().chain(portal_file.as_deref()).collect() } else { Vec::new() };
+    let inputs = Inputs::look(keeping, inputs)?;
     let input = input::read(path, args.map.as_deref(), &args.surfaces.options(), &reading)?;
     args.refuse_meaningless(&input)?;
     let chosen = (args.map.as_deref(), args.prt.as_deref());
@@ -147,8 +151,9 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
     }
     args.refuse_for_regions(&source, &options)?;
 
-    let files: Vec<&Path> = [Some(path.as_path()), source.portals()].into_iter().flatten().collect();
-    let kept = Kept::open(keeping, out, &files, || args.identity(&source, &options))?;
+    let proofs = args.certify.file(out);
+    let outputs: Vec<&Path> = std::iter::once(out).chain(&proofs).map(PathBuf::as_path).collect();
+    let kept = Kept::open(keeping, &inputs, &outputs, || args.identity(&inputs, &source, &options))?;
     let made = || -> Result<Built, Error> {
         let units = kept.units();
         let options = BakeOptions { units, ..options.clone() };
@@ -193,21 +198,30 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
 }
 
 impl BuildArgs {
-    /// What decides the results of units: the files, how they are read, and how they are baked; not the number of threads.
-    fn identity(&self, source: &Source, options: &BakeOptions<'_>) -> Result<Identity, InputError> {
-        let mut identity = Identity::new("build");
-        source.identify(&self.input, &mut identity)?;
-        identity.debug("reading", &(&self.map, &self.surfaces, &self.plans));
+    /// What decides the results of units: the files, how they are read, and how they are baked; not the number of threads. A new argument or option does not
+    /// compile until it is decided whether it is part of that.
+    fn identity(&self, inputs: &Inputs, source: &Source, options: &BakeOptions<'_>) -> Identity {
+        // What `bake` and `region` say is in the options, and doors are shut after the bake.
+        #[rustfmt::skip]
+        let Self {
+            input: _, map, prt: _, surfaces, plans, bake: _, region: _, time_limit: _, doors: _, resume: _, output: _,
+            class: _, stab_trees, certify, json: _,
+        } = self;
+        let mut identity = Identity::new("build", inputs);
+        source.identify(&mut identity);
+        identity.debug("reading", &(map, surfaces, plans));
         // What changes nothing but the time is left out, and the address of a function with `buffers.warn`.
-        let BakeOptions { subdivide, cut, chords, gap, frame, digest, portals, method, cells, split, fast, .. } =
-            options;
-        let BakeOptions { buffers, threads: _, progress: _, budget: _, units: _, .. } = options;
+        #[rustfmt::skip]
+        let BakeOptions {
+            subdivide, cut, chords, gap, frame, digest, portals, method, cells, buffers, split, fast,
+            threads: _, progress: _, budget: _, units: _,
+        } = options;
         identity.debug("cells", &(subdivide, cut, gap, frame, digest, cells));
         identity.debug("method", &(chords, portals, method, split, fast));
         let BufferOptions { measure, planes, texels, occluders, carry, sheets, line_space, backend, warn: _ } = buffers;
         identity.debug("buffers", &(measure, planes, texels, occluders, carry, sheets, line_space, backend));
-        identity.debug("more", &(self.stab_trees, self.certify.is_given()));
-        Ok(identity)
+        identity.debug("more", &(stab_trees, certify.is_given()));
+        identity
     }
 
     /// Refuses options that mean nothing for an input.

@@ -7,7 +7,7 @@ mod points;
 use crate::Answer;
 use crate::error::InputError;
 use crate::input;
-use crate::kept::{Identity, Keeping, Kept, ResumeArgs};
+use crate::kept::{Identity, Inputs, Keeping, Kept, ResumeArgs};
 use crate::named::one_of;
 use crate::output;
 use crate::picture::PictureError;
@@ -208,6 +208,8 @@ pub(crate) fn run(args: &VgaArgs, show_progress: bool) -> Result<Answer, Error> 
     if args.measure.is_some() && !kind.is_picture() {
         return Err(Error::Measure(args.output.clone()));
     }
+    let keeping = Keeping::File(&args.resume);
+    let looked = Inputs::look(keeping, inputs)?;
     let plan = plan_of(args)?;
     let (points, grid) = match (&args.points, args.spacing) {
         (None, Some(spacing)) => {
@@ -220,7 +222,7 @@ pub(crate) fn run(args: &VgaArgs, show_progress: bool) -> Result<Answer, Error> 
     let measures = measures(args, kind);
     let drawn = kind.is_picture().then(|| shown(args, &measures));
 
-    let kept = Kept::open(Keeping::File(&args.resume), &args.output, &inputs, || args.identity())?;
+    let kept = Kept::open(keeping, &looked, &[&args.output], || args.identity(&looked))?;
     let analysed = analyse(args, &plan, &points, &measures, (&kept, show_progress));
     let written = analysed.and_then(|analysed| {
         let columns = columns_of(&analysed.analysis, &measures);
@@ -290,15 +292,18 @@ fn analyse(
 }
 
 impl VgaArgs {
-    /// What decides the results of units: the files, how they are read, and what is measured; not the number of threads.
-    fn identity(&self) -> Result<Identity, InputError> {
-        let mut identity = Identity::new("vga");
-        identity.file(&self.plan)?;
-        self.points.iter().try_for_each(|points| identity.file(points))?;
-        identity.debug("points", &(&self.map, &self.plans, self.spacing, &self.seed));
-        let Self { measures, measure, radius, metric_radius, angular_radius, turns, touch, .. } = self;
+    /// What decides the results of units: the files, how they are read, and what is measured; not the number of threads. A new argument does not compile until
+    /// it is decided whether it is part of that.
+    fn identity(&self, inputs: &Inputs) -> Identity {
+        #[rustfmt::skip]
+        let Self {
+            plan: _, map, plans, spacing, seed, points: _, measures, radius, metric_radius, angular_radius, turns, touch,
+            threads: _, resume: _, measure, size: _, output: _, json: _,
+        } = self;
+        let mut identity = Identity::new("vga", inputs);
+        identity.debug("points", &(map, plans, spacing, seed));
         identity.debug("measures", &(measures, measure, radius, metric_radius, angular_radius, turns, touch));
-        Ok(identity)
+        identity
     }
 }
 

@@ -16,7 +16,7 @@ use crate::clusters::warn_of_repeats;
 use crate::error::{InputError, OutputError};
 use crate::input;
 use crate::interrupt;
-use crate::kept::{Identity, Interrupted, Keeping, Kept};
+use crate::kept::{Identity, Inputs, Interrupted, Keeping, Kept};
 use crate::map_portals::{MapPortals, portal_file, portals_for};
 use crate::output;
 use crate::progress::Bar;
@@ -140,6 +140,7 @@ pub(crate) fn compute(args: &VisArgs, manner: Manner<'_, '_>) -> Result<Outcome,
     // without.
     let beside = [file.as_ref(), Some(&state_path)];
     output::check(&beside.into_iter().flatten().map(PathBuf::as_path).collect::<Vec<_>>(), &[out])?;
+    let inputs = Inputs::look(manner.keeping, [Some(&args.map), file.as_ref()].into_iter().flatten().map(PathBuf::as_path))?;
     let bsp = read_bsp(&args.map)?;
     let portals = portals_for(&bsp, &args.map, args.prt.as_deref())?;
     let format = portals.format();
@@ -151,7 +152,7 @@ pub(crate) fn compute(args: &VisArgs, manner: Manner<'_, '_>) -> Result<Outcome,
     warn_of_repeats(&prt_path, &prt);
 
     let key = StateKey::new(&text, args.fast);
-    let kept = Kept::open(manner.keeping, out, &[], || args.identity(&text, &prt_path))?;
+    let kept = Kept::open(manner.keeping, &inputs, &[out], || args.identity(&text, &inputs))?;
     drop(text);
     let every = Duration::from_secs(args.save_every);
     let (mut saved, from) = Saved::open(state_path, every, key, &graph_of_prt(&prt), manner.states)?;
@@ -200,16 +201,16 @@ pub(crate) fn compute(args: &VisArgs, manner: Manner<'_, '_>) -> Result<Outcome,
 }
 
 impl VisArgs {
-    /// What decides the results of units.
-    fn identity(&self, portals: &[u8], prt: &Path) -> Result<Identity, InputError> {
-        let mut identity = Identity::new("vis");
-        identity.file(&self.map)?;
-        if prt != self.map {
-            identity.file(prt)?;
-        }
+    /// What decides the results of units. A new argument does not compile until it is decided whether it is part of that.
+    fn identity(&self, portals: &[u8], inputs: &Inputs) -> Identity {
+        #[rustfmt::skip]
+        let Self {
+            map: _, prt: _, fast, threads: _, resume: _, state: _, save_every: _, certify: _, silence: _, output: _, json: _,
+        } = self;
+        let mut identity = Identity::new("vis", inputs);
         identity.debug("portals", &portals);
-        identity.debug("options", &self.fast);
-        Ok(identity)
+        identity.debug("options", fast);
+        identity
     }
 }
 
