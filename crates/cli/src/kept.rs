@@ -303,11 +303,21 @@ pub(crate) struct Interrupted {
 
 impl std::fmt::Display for Interrupted {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match &self.state {
-            Some(path) => {
+        match (interrupt::memory(), &self.state) {
+            (None, Some(path)) => {
                 write!(f, "interrupted; the same command with --resume goes on from {}", path.display())
             }
-            None => f.write_str("interrupted; nothing was written"),
+            (None, None) => f.write_str("interrupted; nothing was written"),
+            (Some(why), Some(path)) => write!(
+                f,
+                "stopped: {why}; with --resume and a larger --memory, or fewer --threads, the same command goes on from {}; \
+                 `job plan` shares it among processes",
+                path.display()
+            ),
+            (Some(why), None) => write!(
+                f,
+                "stopped: {why}; nothing was written. Try a larger --memory, fewer --threads, or `job plan`, which shares the work among processes"
+            ),
         }
     }
 }

@@ -8,6 +8,7 @@ mod doors;
 mod error;
 mod framed;
 mod limit;
+pub(crate) mod needs;
 mod options;
 mod packed;
 pub(crate) mod plan;
@@ -29,6 +30,7 @@ use crate::doors::DoorBox;
 use crate::input::{self, refuse};
 use crate::kept::{Identity, Inputs, Keeping, Kept, ResumeArgs};
 use crate::map_portals::{MADE, portal_file};
+use crate::memory::{self, MemoryArgs};
 use crate::numbers::duration;
 use crate::output;
 use crate::plans::{self, PlanArgs};
@@ -76,6 +78,8 @@ pub(crate) struct BuildArgs {
     #[arg(long = "door", help_heading = "Input", value_name = "NAME=X0,Y0,Z0,X1,Y1,Z1", allow_hyphen_values = true)]
     doors: Vec<DoorBox>,
     #[command(flatten)]
+    pub(crate) memory: MemoryArgs,
+    #[command(flatten)]
     pub(crate) resume: ResumeArgs,
     /// The table to write; in packed form, as `pack` makes it, if the name ends in .pvz. More than 65,536 cells without portals, by one of the
     /// methods that look from whole cells, are then written row by row, without a square of them in memory
@@ -117,6 +121,7 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
     if args.class.is_some() && !packed::is_packed(out) {
         return Err(Error::Class { out: out.clone() });
     }
+    args.memory.watch();
     output::check(&[path], &[out])?;
     args.certify.check(path, out)?;
     let reading = args.plans.options(path)?;
@@ -150,6 +155,7 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
         (auto, options) = (Some(auto::Chosen::new(choice)), BakeOptions { cells, ..chosen });
     }
     args.refuse_for_regions(&source, &options)?;
+    let class = args.fit(&source, &mut options)?;
 
     let proofs = args.certify.file(out);
     let outputs: Vec<&Path> = std::iter::once(out).chain(&proofs).map(PathBuf::as_path).collect();
@@ -158,8 +164,7 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
         let units = kept.units();
         let options = BakeOptions { units, ..options.clone() };
         let plan = announce::Plan::new(&source.content, &options, auto.as_ref(), args.time_limit);
-        let is_alone = args.doors.is_empty() && !args.certify.is_given();
-        if let Some(file) = packed::of_rows(&source, &options, out, args.class).filter(|_| is_alone) {
+        if let Some(file) = packed::of_rows(&source, &options, out, class).filter(|_| args.is_alone()) {
             let outcome = packed::write_rows(path, file, &options, plan, (out, show_progress))?;
             return Ok(Built {
                 auto: None,
@@ -170,6 +175,7 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
                 given_doors: Vec::new(),
                 stab: None,
                 proofs: None,
+                peak_bytes: memory::peak_bytes(),
                 verbose,
             });
         }
@@ -179,7 +185,7 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
         let (baked, stab) = stab::add(path, baked, args.stab_trees, options.threads, &kept, show_progress)?;
         let (baked, given_doors) = doors::add(path, baked, &args.doors);
         let baked = plans::state(baked, &reading);
-        let bytes = packed::bytes_of(&baked.table, path, out, args.class)?;
+        let bytes = packed::bytes_of(&baked.table, path, out, class)?;
         // Proofs that contradict the table leave an older one untouched.
         let proofs = args.certify.write(path, out, &baked, options.threads, &kept, show_progress)?;
         output::save(out, &bytes)?;
@@ -188,7 +194,8 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
             Bakeable::Scene(file) => Some(Surfaces::new(file).with_backs(&baked.table, &file.scene)),
             _ => None,
         };
-        Ok(Built { auto, outcome, viewers, placed, surfaces, given_doors, stab, proofs, verbose })
+        let peak_bytes = memory::peak_bytes();
+        Ok(Built { auto, outcome, viewers, placed, surfaces, given_doors, stab, proofs, peak_bytes, verbose })
     };
     let made = made();
     match kept.finish(made.is_ok()) {
@@ -197,6 +204,10 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
     }
 }
 
+/// What to do where there is no room for a build.
+const FEWER_CELLS: &str = "allow more, or take fewer cells";
+const BY_ROWS: &str = "allow more, take fewer cells, or, by a method that looks from whole cells, name the output .pvz, which is written row by row";
+
 impl BuildArgs {
     /// What decides the results of units: the files, how they are read, and how they are baked; not the number of threads. A new argument or option does not
     /// compile until it is decided whether it is part of that.
@@ -204,7 +215,7 @@ impl BuildArgs {
         // What `bake` and `region` say is in the options, and doors are shut after the bake.
         #[rustfmt::skip]
         let Self {
-            input: _, map, prt: _, surfaces, plans, bake: _, region: _, time_limit: _, doors: _, resume: _, output: _,
+            input: _, map, prt: _, surfaces, plans, bake: _, region: _, time_limit: _, doors: _, memory: _, resume: _, output: _,
             class: _, stab_trees, certify, json: _,
         } = self;
         let mut identity = Identity::new("build", inputs);
@@ -222,6 +233,28 @@ impl BuildArgs {
         identity.debug("buffers", &(measure, planes, texels, occluders, carry, sheets, line_space, backend));
         identity.debug("more", &(stab_trees, certify.is_given()));
         identity
+    }
+
+    /// Whether nothing but the table is made, so that rows need not be kept.
+    fn is_alone(&self) -> bool {
+        self.doors.is_empty() && !self.certify.is_given()
+    }
+
+    /// Chooses what fits into the memory that may be used: the number of threads, and for a packed table the layout that is written row by row.
+    fn fit(&self, source: &Source, options: &mut BakeOptions<'_>) -> Result<Option<Class>, Error> {
+        let by_rows = |class| self.is_alone() && packed::of_rows(source, options, &self.output, class).is_some();
+        let mut class = self.class;
+        let all = needs::of(source, options, by_rows(class));
+        if class.is_none() && !self.memory.has_room(all) && by_rows(Some(Class::Large)) {
+            class = Some(Class::Large);
+            tracing::warn!("{}: written row by row, as --class large does, for --memory", self.output.display());
+        }
+        let needs = needs::of(source, options, by_rows(class));
+        options.threads = self.memory.threads(options.threads, needs).map_err(|source| {
+            let advice = if packed::is_packed(&self.output) { FEWER_CELLS } else { BY_ROWS };
+            Error::Memory { path: self.input.clone(), source, advice }
+        })?;
+        Ok(class)
     }
 
     /// Refuses options that mean nothing for an input.
@@ -330,6 +363,8 @@ pub(crate) struct Built {
     stab: Option<stab::Added>,
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     proofs: Option<certify::Certified>,
+    /// The most memory that was in use at once; null where the system does not report it.
+    peak_bytes: Option<u64>,
     /// Whether people get all facts, rather than a few lines; programs always do.
     #[serde(skip)]
     verbose: bool,

@@ -4,6 +4,7 @@ use super::outcome::{ShardDone, ranges};
 use super::task::Task;
 use super::{Error, absolute, open};
 use crate::kept::{Identity, JobSlot, Keeping};
+use crate::memory::MemoryArgs;
 use crate::output;
 use crate::{Answer, interrupt};
 use sightlines::checkpoint::{JobStore, Outcome, Role, ShardState};
@@ -22,6 +23,8 @@ pub(crate) struct ShardArgs {
     /// Number of threads; 0 uses every core
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 1, value_parser = crate::numbers::threads)]
     threads: usize,
+    #[command(flatten)]
+    memory: MemoryArgs,
     /// Seconds after which results are kept for a later run of the same shard
     #[arg(long, help_heading = "Resuming", value_name = "SECONDS", default_value_t = 10)]
     save_after: u64,
@@ -44,7 +47,7 @@ pub(crate) fn run(args: &ShardArgs, show_progress: bool) -> Result<Answer, Error
         seconds: 0.0,
     };
     if !done.was_done {
-        let task = Task::of(&job)?.with_threads(Some(args.threads));
+        let task = Task::of(&job)?.with_threads(Some(args.threads)).with_memory(args.memory);
         let slot = JobSlot::default();
         let (role, after) = (Role::Shard(args.shard), Duration::from_secs(args.save_after));
         let open = |identity: &Identity| slot.open(identity, || Ok(JobStore::new(job.clone(), role, after)?));
@@ -61,7 +64,9 @@ pub(crate) fn run(args: &ShardArgs, show_progress: bool) -> Result<Answer, Error
                     ranges(&shards)
                 )));
             }
-            _ if interrupt::requested() => return Err(Error::Interrupted),
+            _ if interrupt::requested() => {
+                return Err(interrupt::memory().map_or(Error::Interrupted, Error::Memory));
+            }
             _ => {
                 made?;
                 return Err(Error::NeverBegun { path: args.job.clone(), shard: args.shard });

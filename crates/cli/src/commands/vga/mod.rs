@@ -8,6 +8,7 @@ use crate::Answer;
 use crate::error::InputError;
 use crate::input;
 use crate::kept::{Identity, Inputs, Keeping, Kept, ResumeArgs};
+use crate::memory::{self, MemoryArgs, Needs};
 use crate::named::one_of;
 use crate::output;
 use crate::picture::PictureError;
@@ -85,6 +86,8 @@ pub(crate) struct VgaArgs {
     /// Number of threads; 0 uses every core
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::numbers::threads)]
     threads: usize,
+    #[command(flatten)]
+    memory: MemoryArgs,
     #[command(flatten)]
     resume: ResumeArgs,
     /// The measure that a picture shows [default: the first of --measures, else connectivity]
@@ -199,6 +202,7 @@ impl Kind {
 }
 
 pub(crate) fn run(args: &VgaArgs, show_progress: bool) -> Result<Answer, Error> {
+    args.memory.watch();
     let kind = Kind::of(&args.output)?;
     let inputs: Vec<&Path> = std::iter::once(&args.plan).chain(&args.points).map(PathBuf::as_path).collect();
     output::check(&inputs, &[&args.output])?;
@@ -222,8 +226,13 @@ pub(crate) fn run(args: &VgaArgs, show_progress: bool) -> Result<Answer, Error> 
     let measures = measures(args, kind);
     let drawn = kind.is_picture().then(|| shown(args, &measures));
 
+    // Paths keep a length, a node and an entry of a heap for each point; a column has a number, and a value that may be missing.
+    let n = points.len() as u64;
+    let needs = Needs { shared: 24 * n * measures.len() as u64, per_thread: (4 << 20) + 48 * n };
+    let too_large = |source| Error::Memory { path: args.plan.clone(), source };
+    let threads = args.memory.threads(args.threads, needs).map_err(too_large)?;
     let kept = Kept::open(keeping, &looked, &[&args.output], || args.identity(&looked))?;
-    let analysed = analyse(args, &plan, &points, &measures, (&kept, show_progress));
+    let analysed = analyse(args, &plan, &points, &measures, (&kept, threads, show_progress));
     let written = analysed.and_then(|analysed| {
         let columns = columns_of(&analysed.analysis, &measures);
         output::save(&args.output, &written(args, kind, &plan, &points, &columns, drawn)?)?;
@@ -248,6 +257,7 @@ pub(crate) fn run(args: &VgaArgs, show_progress: bool) -> Result<Answer, Error> 
         measure_seconds,
         drawn: drawn.map(Measure::name),
         file: args.output.display().to_string(),
+        peak_bytes: memory::peak_bytes(),
     };
     output::print(args.json, &outcome)?;
     Ok(Answer::Yes)
@@ -271,11 +281,11 @@ fn analyse(
     plan: &Plan,
     points: &Points,
     measures: &[Measure],
-    (kept, show_progress): (&Kept<'_>, bool),
+    (kept, threads, show_progress): (&Kept<'_>, usize, bool),
 ) -> Result<Analysed, Error> {
     let bar = Bar::new("visibility graph", show_progress);
     let units = kept.units();
-    let effort = Effort { threads: args.threads, observer: Some(&bar), units };
+    let effort = Effort { threads, observer: Some(&bar), units };
     let start = Instant::now();
     let graph = graph(args, plan, points, &effort)?;
     let graph_seconds = start.elapsed().as_secs_f64();
@@ -298,7 +308,7 @@ impl VgaArgs {
         #[rustfmt::skip]
         let Self {
             plan: _, map, plans, spacing, seed, points: _, measures, radius, metric_radius, angular_radius, turns, touch,
-            threads: _, resume: _, measure, size: _, output: _, json: _,
+            threads: _, memory: _, resume: _, measure, size: _, output: _, json: _,
         } = self;
         let mut identity = Identity::new("vga", inputs);
         identity.debug("points", &(map, plans, spacing, seed));
