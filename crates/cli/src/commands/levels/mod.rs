@@ -13,7 +13,7 @@ use crate::progress::Bar;
 use crate::simplification::{self, HowArgs, OutFormat, ReadScene, SimplificationError, read, written};
 use outcome::Outcome;
 use sightlines::cells::Scene;
-use sightlines::formats::SceneFile;
+use sightlines::formats::{GltfSource, SceneFile};
 use sightlines::formats::levels::{INDEX_NAME, LevelFile, LevelsIndex, write_levels_index};
 use sightlines::multifocal::FromRegion;
 use sightlines::simplify::{
@@ -147,7 +147,7 @@ impl LevelsArgs {
         let mut identity = Identity::new("levels", inputs);
         // Files that a scene names are part of it.
         identity.debug("content", &file.scene);
-        identity.debug("how", &HowArgs { threads: 0, ..how.clone() });
+        identity.debug("how", &how.for_any_threads());
         identity.debug("options", &(simplify, memory, bytes_per_triangle));
         identity
     }
