@@ -4,6 +4,7 @@ use sightlines::checkpoint::{Job, JobStore, Journal, Key, Manifest, Opening, Out
 use sightlines::progress::{Halt, Phase, UnitStore, Units};
 use std::fs;
 use std::path::Path;
+use std::sync::LazyLock;
 use std::time::Duration;
 
 const PROGRAM: &str = "1.0";
@@ -45,7 +46,8 @@ fn open(path: &Path) -> Option<Journal> {
 fn job(folder: &Path) -> Job {
     let manifest = Manifest::new(PROGRAM, KEY, vec!["bake".to_owned()], "/".to_owned(), 3);
     let job = Job::create(folder, manifest).expect("an empty folder");
-    let run = |role| bake(&JobStore::new(Job::open(folder, PROGRAM).expect("a job"), role, Duration::ZERO).expect("a role"));
+    let run =
+        |role| bake(&JobStore::new(Job::open(folder, PROGRAM).expect("a job"), role, Duration::ZERO).expect("a role"));
     assert_eq!(run(Role::Merge), Err(Halt::Shared));
     (0..3).for_each(|shard| assert_eq!(run(Role::Shard(shard)), Err(Halt::Shared)));
     job
@@ -94,15 +96,19 @@ pub fn parts() -> Vec<Vec<u8>> {
 
 /// A part is broken, or is the one that was written.
 pub fn check_part(bytes: &[u8]) -> bool {
-    let all = folder();
-    let folder = all.path().join("job");
-    let job = job(&folder);
+    // Made once, and put back as it was.
+    static MADE: LazyLock<(tempfile::TempDir, Job)> = LazyLock::new(|| {
+        let folder = folder();
+        let job = job(&folder.path().join("job"));
+        (folder, job)
+    });
+    let (folder, job) = (MADE.1.folder(), &MADE.1);
     let mut n_done = 0;
     for shard in 0..3 {
         let path = job.part_path(shard);
         let before = fs::read(&path).expect("a part");
         fs::write(&path, bytes).expect("a part");
-        let job = Job::open(&folder, PROGRAM).expect("a job");
+        let job = Job::open(folder, PROGRAM).expect("a job");
         let state = job.state(shard).expect("a shard");
         let store = JobStore::new(job, Role::Merge, Duration::ZERO).expect("a role");
         match state {

@@ -181,9 +181,15 @@ pub(crate) fn header(path: &Path, reader: &mut (impl Read + Seek)) -> Result<Opt
 
 /// What is where a record should begin.
 enum Found {
-    Record { phase: String, unit: u64, n: u64 },
+    Record {
+        phase: String,
+        unit: u64,
+        n: u64,
+    },
     /// The head of a record, and a body that is not what was written.
-    Damaged { n: u64 },
+    Damaged {
+        n: u64,
+    },
     /// No sound head, or one of a record that is longer than the file.
     NoHead,
 }

@@ -85,12 +85,12 @@ impl MemoryArgs {
         }
     }
 
-    /// As many of the threads as there is room for: 0 stands for one for each core.
+    /// As many of the threads as there is room for: 0 stands for one for each core. All of them, if nothing is known of what they need.
     ///
     /// # Errors
     /// [`TooLarge`] if there is no room even for one.
     pub(crate) fn threads(self, threads: usize, needs: Needs) -> Result<usize, TooLarge> {
-        let Some(Size(limit)) = self.memory else { return Ok(threads) };
+        let Some(Size(limit)) = self.memory.filter(|_| needs != Needs::default()) else { return Ok(threads) };
         let wanted = match threads {
             0 => std::thread::available_parallelism().map_or(1, std::num::NonZero::get),
             n => n,

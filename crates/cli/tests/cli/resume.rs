@@ -179,7 +179,8 @@ fn states_are_not_lost_by_a_slip() {
         assert!(child.try_wait().unwrap().is_none(), "it was over before it could be killed");
         std::thread::sleep(Duration::from_millis(2));
     }
-    let busy = "out.pvs.state: another process keeps its results in this file; wait for it, or name another with --state";
+    let busy =
+        "out.pvs.state: another process keeps its results in this file; wait for it, or name another with --state";
     assert_eq!(folder.refused(&BUILD), busy);
     child.kill().unwrap();
     let said = String::from_utf8(child.wait_with_output().unwrap().stderr).unwrap();

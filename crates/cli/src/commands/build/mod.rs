@@ -128,7 +128,11 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
     // The portals of a Quake map are in a file of their own.
     let is_map = path.exists() && input::kind_of(path)? == Some(InputKind::Bsp);
     let portal_file = portal_file(path, args.prt.as_deref()).filter(|_| is_map);
-    let inputs = if path.exists() { Some(path.as_path()).into_iter().chain(portal_file.as_deref()).collect() } else { Vec::new() };
+    let inputs = if path.exists() {
+        Some(path.as_path()).into_iter().chain(portal_file.as_deref()).collect()
+    } else {
+        Vec::new()
+    };
     let inputs = Inputs::look(keeping, inputs)?;
     let input = input::read(path, args.map.as_deref(), &args.surfaces.options(), &reading)?;
     args.refuse_meaningless(&input)?;

@@ -13,8 +13,8 @@ use crate::progress::Bar;
 use crate::simplification::{self, HowArgs, OutFormat, ReadScene, SimplificationError, read, written};
 use outcome::Outcome;
 use sightlines::cells::Scene;
-use sightlines::formats::{GltfSource, SceneFile};
 use sightlines::formats::levels::{INDEX_NAME, LevelFile, LevelsIndex, write_levels_index};
+use sightlines::formats::{GltfSource, SceneFile};
 use sightlines::multifocal::FromRegion;
 use sightlines::simplify::{
     Effort, HiddenBy, LevelOptions, Levels, MakeMethod, SimplifyError, SimplifyOptions, levels_with,

@@ -146,7 +146,8 @@ pub(crate) fn compute(args: &VisArgs, manner: Manner<'_, '_>) -> Result<Outcome,
     // without.
     let beside = [file.as_ref(), Some(&state_path)];
     output::check(&beside.into_iter().flatten().map(PathBuf::as_path).collect::<Vec<_>>(), &[out])?;
-    let inputs = Inputs::look(manner.keeping, [Some(&args.map), file.as_ref()].into_iter().flatten().map(PathBuf::as_path))?;
+    let inputs =
+        Inputs::look(manner.keeping, [Some(&args.map), file.as_ref()].into_iter().flatten().map(PathBuf::as_path))?;
     let bsp = read_bsp(&args.map)?;
     let portals = portals_for(&bsp, &args.map, args.prt.as_deref())?;
     let format = portals.format();
