@@ -62,6 +62,13 @@ pub(crate) fn request_for_memory(used: u64, allowed: u64) {
     REQUESTED.store(true, SeqCst);
 }
 
+/// Takes a [request for memory](request_for_memory) back: the work has not begun, and is refused.
+pub(crate) fn forget_memory() {
+    if USED.swap(0, SeqCst) > 0 {
+        REQUESTED.store(false, SeqCst);
+    }
+}
+
 /// Why the program was interrupted, if it used too much memory.
 pub(crate) fn memory() -> Option<String> {
     let [used, allowed] = [&USED, &ALLOWED].map(|n| n.load(SeqCst));

@@ -103,6 +103,7 @@ impl MemoryArgs {
         let n = limit.saturating_sub(fixed).checked_div(needs.per_thread).unwrap_or(0);
         let n = usize::try_from(n).unwrap_or(usize::MAX).min(wanted);
         if n == 0 || with(n) > limit {
+            interrupt::forget_memory();
             return Err(TooLarge { needed: with(1), limit });
         }
         tracing::warn!("--memory: {n} of {wanted} threads, for which there is room in {}", bytes(limit));
