@@ -1,6 +1,7 @@
 //! `vga`: visibility graph analysis of a floor plan.
 
 mod error;
+mod kind;
 mod outcome;
 mod points;
 
@@ -16,6 +17,7 @@ use crate::place::Point;
 use crate::plans::PlanArgs;
 use crate::progress::Bar;
 use error::Error;
+use kind::Kind;
 use outcome::{Outcome, Range};
 use sightlines::bake::Bakeable;
 use sightlines::cells::Plan;
@@ -173,31 +175,6 @@ const fn touch_about(touch: Touch) -> &'static str {
     match touch {
         Touch::Blocks => "It is, as in depthmapX",
         Touch::Passes => "It is not, unless walls touch it from both sides",
-    }
-}
-
-/// What is written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
-    Csv,
-    GeoJson,
-    Svg,
-    Png,
-}
-
-impl Kind {
-    fn of(path: &Path) -> Result<Self, Error> {
-        match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
-            Some("csv") => Ok(Self::Csv),
-            Some("geojson" | "json") => Ok(Self::GeoJson),
-            Some("svg") => Ok(Self::Svg),
-            Some("png") => Ok(Self::Png),
-            _ => Err(Error::Kind(path.to_owned())),
-        }
-    }
-
-    fn is_picture(self) -> bool {
-        matches!(self, Self::Svg | Self::Png)
     }
 }
 
