@@ -5,6 +5,7 @@ mod numbers;
 pub mod quake_bytes;
 pub mod scenes;
 pub mod simplified;
+pub mod stored;
 pub mod surfaces;
 pub mod volumes;
 pub mod world_files;

@@ -22,6 +22,23 @@ pub enum StateError {
     /// It is something else.
     #[error("{}: this is no file of results of units", .0.display())]
     NotState(PathBuf),
+    /// It has the form of files of results of another version of the program.
+    #[error("{}: the file has the form of another version of the program", .0.display())]
+    OtherForm(PathBuf),
+    /// Another process keeps its results in it.
+    #[error("{}: another process keeps its results in this file", .0.display())]
+    InUse(PathBuf),
+    /// Something else has its name by now.
+    #[error("{}: not removed: it is no longer the file that this process wrote", .0.display())]
+    Replaced(PathBuf),
+    /// A phase of the bake was divided into other units.
+    #[error("{}: the results of phase {phase} are of other units than this bake has", path.display())]
+    OtherUnitsOfPhase {
+        /// The file.
+        path: PathBuf,
+        /// The name of the phase.
+        phase: String,
+    },
     /// Another version of the program wrote it.
     #[error("{}: written by version {found} of the program, and this is {expected}", path.display())]
     OtherProgram {

@@ -1,7 +1,7 @@
 //! Results in a file, found by their phase and unit.
 
 use crate::error::StateError;
-use crate::records::{self, Owner, Place, Scan, scan};
+use crate::records::{self, DIVISION, Owner, Place, Scan, scan};
 use std::collections::HashMap;
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -12,10 +12,15 @@ pub(crate) struct Results {
     path: PathBuf,
     file: File,
     places: HashMap<String, HashMap<u64, Place>>,
+    /// How phases are divided, by their names.
+    divisions: HashMap<String, Place>,
+    pub(crate) mark: [u8; 16],
     /// Where the next record goes.
     pub(crate) end: u64,
     pub(crate) is_finished: bool,
     pub(crate) is_torn: bool,
+    /// Where damage begins, before the end.
+    pub(crate) damage: Vec<u64>,
 }
 
 impl Results {
@@ -24,9 +29,10 @@ impl Results {
     /// # Errors
     /// [`StateError`] for a file of another owner, or of none.
     pub(crate) fn of(path: &Path, file: File, owner: &Owner) -> Result<Option<Self>, StateError> {
-        let Some(Scan { owner: found, records, end, is_finished, is_torn }) = scan(path, &file)? else {
+        let Some(Scan { header, records, end, is_finished, is_torn, damage }) = scan(path, &file)? else {
             return Ok(None);
         };
+        let found = header.owner;
         if found.program != owner.program {
             let (found, expected) = (found.program, owner.program.clone());
             return Err(StateError::OtherProgram { path: path.to_owned(), found, expected });
@@ -34,7 +40,8 @@ impl Results {
         if found.key != owner.key {
             return Err(StateError::OtherKey(path.to_owned()));
         }
-        let mut results = Self { path: path.to_owned(), file, places: HashMap::new(), end, is_finished, is_torn };
+        let new = Self::new(path, file, end, header.mark);
+        let mut results = Self { is_finished, is_torn, damage, ..new };
         records.into_iter().for_each(|(phase, unit, place)| results.add(&phase, unit, place));
         Ok(Some(results))
     }
@@ -49,11 +56,25 @@ impl Results {
     }
 
     /// A new file without results.
-    pub(crate) fn new(path: &Path, file: File, end: u64) -> Self {
-        Self { path: path.to_owned(), file, places: HashMap::new(), end, is_finished: false, is_torn: false }
+    pub(crate) fn new(path: &Path, file: File, end: u64, mark: [u8; 16]) -> Self {
+        Self {
+            path: path.to_owned(),
+            file,
+            places: HashMap::new(),
+            divisions: HashMap::new(),
+            mark,
+            end,
+            is_finished: false,
+            is_torn: false,
+            damage: Vec::new(),
+        }
     }
 
     pub(crate) fn add(&mut self, phase: &str, unit: u64, place: Place) {
+        if unit == DIVISION {
+            self.divisions.insert(phase.to_owned(), place);
+            return;
+        }
         if !self.places.contains_key(phase) {
             self.places.insert(phase.to_owned(), HashMap::new());
         }
@@ -89,7 +110,11 @@ impl Results {
     /// # Errors
     /// [`StateError`] if the result cannot be read, or is no longer what it was.
     pub(crate) fn load(&mut self, phase: &str, unit: u64) -> Result<Option<Vec<u8>>, StateError> {
-        let Some(&place) = self.places.get(phase).and_then(|places| places.get(&unit)) else { return Ok(None) };
+        let place = match unit {
+            DIVISION => self.divisions.get(phase),
+            unit => self.places.get(phase).and_then(|places| places.get(&unit)),
+        };
+        let Some(&place) = place else { return Ok(None) };
         let loaded = records::load(&mut self.file, place, phase, unit);
         let loaded = loaded.map_err(|source| StateError::read(&self.path, source))?;
         loaded.map(Some).ok_or_else(|| StateError::Damaged { path: self.path.clone(), offset: place.offset })

@@ -8,11 +8,13 @@
 //! - **Invariants**: no content of a file causes a panic or more memory than a small multiple of its size; a result is returned only
 //!   if its checksum holds; parts and the manifest of a job appear whole or not at all.
 
+mod division;
 mod error;
 mod index;
 mod job;
 mod journal;
 mod key;
+mod lock;
 mod records;
 
 pub use error::StateError;

@@ -33,7 +33,7 @@ use clap::{Parser, Subcommand};
 #[derive(Debug, Parser)]
 #[command(name = "sightlines", version, long_about = None, disable_help_flag = true, disable_version_flag = true)]
 #[command(after_help = "Exit codes: 0 success; 1 the answer is no (query, draw: a point outside every cell; explain: \
-                        hidden; verify: a violation); 2 bad input or usage; 3 a job is not complete; 130 interrupted.")]
+                        hidden; verify: a violation); 2 bad input or usage; 3 a job is not complete; 4 more memory was used than --memory allows; 130 interrupted.")]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,

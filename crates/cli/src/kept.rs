@@ -2,18 +2,20 @@
 
 use crate::error::{InputError, OutputError};
 use crate::interrupt;
+use crate::output::{self, count};
 use crate::plain::plain;
 use sightlines::checkpoint::{InputFile, Job, JobError, JobStore, Journal, Key, KeyHasher, Opening, StateError};
 use sightlines::progress::{UnitStore, Units};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
-use std::time::Duration;
+use std::time::{Duration, SystemTime};
+use std::{fs, io};
 
 /// The version of the program, which results are of.
 pub(crate) const PROGRAM: &str = env!("CARGO_PKG_VERSION");
 
 /// What units are, and what their results mean: to be raised when a bake is divided otherwise, or decides otherwise, between two versions of the program.
-pub(crate) const UNITS: u32 = 1;
+pub(crate) const UNITS: u32 = 2;
 
 /// Whether a bake goes on from an earlier run, and where its results are kept.
 #[derive(Debug, Clone, clap::Args)]
@@ -44,6 +46,36 @@ impl ResumeArgs {
     }
 }
 
+impl ResumeArgs {
+    fn open(&self, inputs: &Inputs, outputs: &[&Path], key: Key) -> Result<Journal, KeptError> {
+        let path = self.path(outputs.first().copied().unwrap_or(Path::new("out")));
+        if inputs.paths().chain(outputs.iter().copied()).any(|other| output::is_one_place(other, &path)) {
+            return Err(OutputError::TwoOutputs(path).into());
+        }
+        let opening = if self.resume { Opening::Resume } else { Opening::Anew };
+        let after = Duration::from_secs(self.save_after);
+        let journal = Journal::open(&path, key, PROGRAM, opening, after)?.or_in_memory();
+        match (self.resume, journal.n_taken_up()) {
+            (true, 0) => tracing::warn!("{}: there is nothing to go on from; beginning anew", path.display()),
+            (true, n) => tracing::info!("{}: going on from {n} results", path.display()),
+            (false, _) => {}
+        }
+        if journal.n_damaged() > 0 {
+            let n = count(journal.n_damaged() as u64, "record");
+            tracing::warn!("{}: {n} damaged; the rest is used", path.display());
+        }
+        if journal.n_before() > 0 {
+            tracing::warn!(
+                "{}: beginning without its {}: --resume goes on from them. They go to {} until this run is done",
+                path.display(),
+                count(journal.n_before() as u64, "result"),
+                journal.before_path().display()
+            );
+        }
+        Ok(journal)
+    }
+}
+
 /// Why results cannot be kept, or taken up.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum KeptError {
@@ -65,6 +97,9 @@ pub(crate) enum KeptError {
     /// An input that cannot be read.
     #[error(transparent)]
     Input(#[from] InputError),
+    /// An input that is not what was read.
+    #[error("{}: the file has changed while it was read; run the command again", .0.display())]
+    Changed(PathBuf),
     /// A state that would replace something.
     #[error(transparent)]
     Output(#[from] OutputError),
@@ -73,8 +108,81 @@ pub(crate) enum KeptError {
 fn advice(error: &StateError) -> &'static str {
     match error {
         StateError::NotState(_) => ", and would be overwritten; name another with --state",
-        StateError::OtherKey(_) | StateError::OtherProgram { .. } => "; without --resume the work begins anew",
+        StateError::InUse(_) => "; wait for it, or name another with --state",
+        StateError::OtherKey(_) | StateError::OtherProgram { .. } | StateError::OtherForm(_) => {
+            "; without --resume the work begins anew"
+        }
         _ => "",
+    }
+}
+
+/// The files that a command reads, as they were before it read them.
+#[derive(Debug, Default)]
+pub(crate) struct Inputs(Vec<Looked>);
+
+#[derive(Debug)]
+struct Looked {
+    path: PathBuf,
+    n_bytes: u64,
+    key: Key,
+    modified: Option<SystemTime>,
+    /// Whether it was written so recently that a change may leave the time of the last one as it is.
+    is_fresh: bool,
+}
+
+/// The times of files are as coarse as this on some systems.
+const COARSE: Duration = Duration::from_secs(3);
+
+impl Inputs {
+    /// Looks at files before they are read: at all of their content, if results of units are kept.
+    pub(crate) fn look<'p>(
+        keeping: Keeping<'_>,
+        paths: impl IntoIterator<Item = &'p Path>,
+    ) -> Result<Self, InputError> {
+        let looked = paths.into_iter().map(|path| match keeping {
+            Keeping::Nowhere => Ok(Looked::without_content(path)),
+            Keeping::File(_) | Keeping::Job(_) => {
+                Looked::new(path).map_err(|source| InputError::Open { path: path.to_owned(), source })
+            }
+        });
+        Ok(Self(looked.collect::<Result<_, _>>()?))
+    }
+
+    /// Refuses files that are not what was looked at: what was read is something else.
+    fn check(&self) -> Result<(), KeptError> {
+        for looked in &self.0 {
+            let is_same = looked.is_same();
+            if !is_same.map_err(|source| InputError::Open { path: looked.path.clone(), source })? {
+                return Err(KeptError::Changed(looked.path.clone()));
+            }
+        }
+        Ok(())
+    }
+
+    fn paths(&self) -> impl Iterator<Item = &Path> {
+        self.0.iter().map(|looked| looked.path.as_path())
+    }
+}
+
+impl Looked {
+    fn without_content(path: &Path) -> Self {
+        Self { path: path.to_owned(), n_bytes: 0, key: Key([0; 16]), modified: None, is_fresh: false }
+    }
+
+    fn new(path: &Path) -> io::Result<Self> {
+        // Before the content: what is changed in between has a later time.
+        let modified = fs::metadata(path)?.modified().ok();
+        let (n_bytes, key) = KeyHasher::new("").file("", path)?;
+        let age = modified.and_then(|modified| modified.elapsed().ok());
+        Ok(Self { path: path.to_owned(), n_bytes, key, modified, is_fresh: age.is_none_or(|age| age < COARSE) })
+    }
+
+    fn is_same(&self) -> io::Result<bool> {
+        let found = fs::metadata(&self.path)?;
+        if found.len() != self.n_bytes || found.modified().ok() != self.modified {
+            return Ok(false);
+        }
+        Ok(!self.is_fresh || KeyHasher::new("").file("", &self.path)?.1 == self.key)
     }
 }
 
@@ -86,20 +194,17 @@ pub(crate) struct Identity {
 }
 
 impl Identity {
-    /// Of a kind of work.
-    pub(crate) fn new(kind: &str) -> Self {
+    /// Of a kind of work on files.
+    pub(crate) fn new(kind: &str, inputs: &Inputs) -> Self {
         let mut hasher = KeyHasher::new(PROGRAM);
         hasher.value("kind", kind.as_bytes());
         hasher.value("units", &UNITS.to_le_bytes());
-        Self { hasher, inputs: Vec::new() }
-    }
-
-    /// Adds the content of a file.
-    pub(crate) fn file(&mut self, path: &Path) -> Result<(), InputError> {
-        let hashed = self.hasher.file("file", path);
-        let (n_bytes, key) = hashed.map_err(|source| InputError::Open { path: path.to_owned(), source })?;
-        self.inputs.push(InputFile { path: path.display().to_string(), n_bytes, key: key.to_string() });
-        Ok(())
+        let file = |Looked { path, n_bytes, key, .. }: &Looked| {
+            hasher.value("file", &key.0);
+            InputFile { path: path.display().to_string(), n_bytes: *n_bytes, key: key.to_string() }
+        };
+        let inputs = inputs.0.iter().map(file).collect();
+        Self { hasher, inputs }
     }
 
     /// Adds a value.
@@ -135,34 +240,22 @@ pub(crate) struct Kept<'a> {
 }
 
 impl<'a> Kept<'a> {
-    /// Opens the store of a run that writes `output`; `identify` is only called if there is one.
+    /// Opens the store of a run that has read `inputs` and writes `outputs`, of which there is at least one; `identify` is only called if there is a store.
     pub(crate) fn open(
         keeping: Keeping<'a>,
-        output: &Path,
-        inputs: &[&Path],
-        identify: impl FnOnce() -> Result<Identity, InputError>,
+        inputs: &Inputs,
+        outputs: &[&Path],
+        identify: impl FnOnce() -> Identity,
     ) -> Result<Self, KeptError> {
         let (journal, job) = match keeping {
             Keeping::File(args) => {
-                let path = args.path(output);
-                for other in inputs.iter().copied().chain([output]) {
-                    if other == path {
-                        return Err(OutputError::TwoOutputs(path).into());
-                    }
-                }
-                let opening = if args.resume { Opening::Resume } else { Opening::Anew };
-                let after = Duration::from_secs(args.save_after);
-                let journal = Journal::open(&path, identify()?.key(), PROGRAM, opening, after)?.or_in_memory();
-                match (args.resume, journal.n_taken_up()) {
-                    (true, 0) => {
-                        tracing::warn!("{}: there is nothing to go on from; beginning anew", path.display());
-                    }
-                    (true, n) => tracing::info!("{}: going on from {n} results", path.display()),
-                    (false, _) => {}
-                }
-                (Some(journal), None)
+                inputs.check()?;
+                (Some(args.open(inputs, outputs, identify().key())?), None)
             }
-            Keeping::Job(open) => (None, Some(open(&identify()?)?)),
+            Keeping::Job(open) => {
+                inputs.check()?;
+                (None, Some(open(&identify())?))
+            }
             Keeping::Nowhere => (None, None),
         };
         Ok(Self { journal, job, _watch: interrupt::watch() })
@@ -210,11 +303,21 @@ pub(crate) struct Interrupted {
 
 impl std::fmt::Display for Interrupted {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match &self.state {
-            Some(path) => {
+        match (interrupt::memory(), &self.state) {
+            (None, Some(path)) => {
                 write!(f, "interrupted; the same command with --resume goes on from {}", path.display())
             }
-            None => f.write_str("interrupted; nothing was written"),
+            (None, None) => f.write_str("interrupted; nothing was written"),
+            (Some(why), Some(path)) => write!(
+                f,
+                "stopped: {why}; with --resume and a larger --memory, or fewer --threads, the same command goes on from {}; \
+                 `job plan` shares it among processes",
+                path.display()
+            ),
+            (Some(why), None) => write!(
+                f,
+                "stopped: {why}; nothing was written. Try a larger --memory, fewer --threads, or `job plan`, which shares the work among processes"
+            ),
         }
     }
 }

@@ -98,7 +98,7 @@ fn exit_code(result: Result<Answer, Box<dyn Error>>) -> ExitCode {
         Err(error) if is_closed_pipe(&*error) => ExitCode::SUCCESS,
         Err(error) if interrupt::requested() => {
             let _ = writeln!(std::io::stderr(), "{error}");
-            ExitCode::from(interrupt::EXIT_CODE)
+            ExitCode::from(interrupt::exit_code())
         }
         Err(error) => {
             // Nothing is left to do if standard error is closed too.

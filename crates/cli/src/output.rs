@@ -75,6 +75,16 @@ fn is_one_file(a: &Path, b: &Path) -> bool {
     (a == b && !is_special) || refuse_same(a, b).is_err()
 }
 
+/// Whether two names are of one place, whether something is there or not.
+pub(crate) fn is_one_place(a: &Path, b: &Path) -> bool {
+    // A file that is not there yet is in a folder that is.
+    let place = |path: &Path| {
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        path.canonicalize().ok().or_else(|| Some(folder.canonicalize().ok()?.join(path.file_name()?)))
+    };
+    a == b || matches!((place(a), place(b)), (Some(a), Some(b)) if a == b)
+}
+
 /// Refuses an output that cannot be written: its folder is not there or refuses new files, or a folder has its name.
 ///
 /// A file is written under another name in the same folder and renamed, so an empty one is created there and removed. What

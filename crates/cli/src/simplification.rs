@@ -137,6 +137,11 @@ impl HowArgs {
         Ok((choice_name(self.method), self.method.map(prepare).transpose()?))
     }
 
+    /// The same with as many threads as there are cores: what decides the result.
+    pub(crate) fn for_any_threads(&self) -> Self {
+        Self { threads: 0, ..self.clone() }
+    }
+
     /// The options, for views in at least so many parts.
     pub(crate) fn options(&self, n_parts: usize) -> SimplifyOptions {
         let standard = SimplifyOptions::default();

@@ -1,12 +1,14 @@
 //! Names of files that are being written, and what is done with those that nobody finishes.
 
 use std::ffi::{OsStr, OsString};
-use std::fs;
+use std::fs::{self, File, TryLockError};
 use std::path::Path;
 use std::sync::OnceLock;
 use std::time::Duration;
 
-/// Nobody writes a file for longer than this.
+/// Nobody is between making a file and locking it for longer than this.
+const MINUTE: Duration = Duration::from_secs(60);
+/// Nobody writes a file for longer than this without adding to it.
 const DAY: Duration = Duration::from_secs(24 * 3600);
 
 /// The name of a file that is to become `name`: hidden, with the machine and the process that write it.
@@ -23,7 +25,7 @@ pub fn process_mark() -> String {
     format!("{}-{}", machine(), std::process::id())
 }
 
-/// The part of a [mark](process_mark) that all processes which can look for each other share.
+/// The part of a [mark](process_mark) that all processes of a machine share, whose locks hold for each other.
 pub(crate) fn machine() -> String {
     static MACHINE: OnceLock<String> = OnceLock::new();
     MACHINE.get_or_init(read_machine).clone()
@@ -41,10 +43,16 @@ fn read_machine() -> String {
     format!("{}-{digits:08x}", if name.is_empty() { "host" } else { &name })
 }
 
-/// Whether a process of this machine no longer runs; false where that is unknown.
-fn is_gone(pid: u32) -> bool {
-    let processes = Path::new("/proc");
-    processes.join("self").exists() && !processes.join(pid.to_string()).exists()
+/// Whether nobody writes a file any more. Its writer holds a lock on it; where its machine or the file system may know nothing of that, age decides alone.
+fn is_left(path: &Path, is_of_this_machine: bool) -> bool {
+    let Ok(file) = File::options().write(true).open(path) else { return false };
+    let age = || file.metadata().ok()?.modified().ok()?.elapsed().ok();
+    let Some(age) = age() else { return false };
+    match file.try_lock() {
+        Err(TryLockError::WouldBlock) => false,
+        Ok(()) if is_of_this_machine => age > MINUTE,
+        Ok(()) | Err(TryLockError::Error(_)) => age > DAY,
+    }
 }
 
 /// Removes files that were to become `target`, and that nobody will finish.
@@ -57,22 +65,20 @@ pub(crate) fn remove(target: &Path) {
     for entry in entries.flatten() {
         let found = entry.file_name();
         let mark = found.to_str().and_then(|found| found.strip_prefix(&begin)?.strip_suffix(".tmp"));
-        let Some((machine_of, pid)) = mark.and_then(parse) else { continue };
-        let is_dead = machine_of == machine() && is_gone(pid);
-        let age = || entry.metadata().ok()?.modified().ok()?.elapsed().ok();
-        if is_dead || age().is_some_and(|age| age > DAY) {
+        let Some(machine_of) = mark.and_then(parse) else { continue };
+        if is_left(&entry.path(), machine_of == machine()) {
             // Somebody else may have removed it by now.
             let _ = fs::remove_file(entry.path());
         }
     }
 }
 
-/// The machine and the process in `MACHINE-PID-ATTEMPT`.
-fn parse(mark: &str) -> Option<(&str, u32)> {
+/// The machine in `MACHINE-PID-ATTEMPT`.
+fn parse(mark: &str) -> Option<&str> {
     let (mark, attempt) = mark.rsplit_once('-')?;
     attempt.parse::<u32>().ok()?;
     let (machine, pid) = mark.rsplit_once('-')?;
     let (name, digits) = machine.rsplit_once('-')?;
     let is_machine = !name.is_empty() && digits.len() == 8 && digits.bytes().all(|byte| byte.is_ascii_hexdigit());
-    Some((machine, pid.parse().ok()?)).filter(|_| is_machine)
+    pid.parse::<u32>().is_ok_and(|_| is_machine).then_some(machine)
 }

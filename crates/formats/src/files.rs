@@ -23,8 +23,8 @@ pub struct WriteError {
 /// target that is not a regular file (a pipe, a terminal, `/dev/null`) has no old content to preserve and is written
 /// directly.
 ///
-/// New files that earlier calls for the same path left beside it, because their process was killed, are removed: those of this machine
-/// whose process no longer runs, and any that is older than a day.
+/// New files that earlier calls for the same path left beside it, because their process was killed, are removed. A file that is being written is locked;
+/// one that is not, and that nobody has written to for a minute, is left over. Of another machine, or where there are no locks, it has to be a day.
 ///
 /// # Errors
 /// [`WriteError`] with the system's reason; the new file is removed again.
@@ -46,9 +46,10 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
         .write_all(bytes)
         .and_then(|()| permissions.map_or(Ok(()), |p| file.set_permissions(p)))
         .and_then(|()| file.sync_all());
-    // Some systems refuse to rename a file that is still open.
-    drop(file);
+    // Its lock holds until it has its name; but some systems refuse to rename a file that is still open.
+    let open = cfg!(unix).then_some(file);
     let renamed = written.and_then(|()| fs::rename(&beside, &target));
+    drop(open);
     if renamed.is_err() {
         // The reason above is the one to report, even if the removal fails too.
         let _ = fs::remove_file(&beside);
@@ -62,7 +63,11 @@ fn create_beside(target: &Path) -> io::Result<(PathBuf, File)> {
     for attempt in 0..100u32 {
         let beside = target.with_file_name(debris::hidden(name, attempt));
         match OpenOptions::new().write(true).create_new(true).open(&beside) {
-            Ok(file) => return Ok((beside, file)),
+            Ok(file) => {
+                // Without locks its age protects it.
+                let _ = file.try_lock();
+                return Ok((beside, file));
+            }
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
             Err(error) => return Err(error),
         }
@@ -112,28 +117,41 @@ mod tests {
         let target = folder.path().join("out.wad");
         let of = |name: &str, pid: u32, machine: &str| format!(".{name}.{machine}-{pid}-0.tmp");
         let here = debris::machine();
-        // No process has this number: it is above the largest that Linux gives.
-        let dead = of("out.wad", 1 << 30, &here);
-        let alive = of("out.wad", std::process::id(), &here);
-        let others = [of("out.wad", 1 << 30, "elsewhere-00000000"), of("other.wad", 1 << 30, &here)];
-        let strange = [".out.wad.tmp", ".out.wad.x-0.tmp", ".out.wad.-1-0.tmp"].map(str::to_owned);
-        let kept: Vec<&String> = others.iter().chain(&strange).chain([&alive]).collect();
-        for name in kept.iter().copied().chain([&dead]) {
+        let (dead, elsewhere) = (of("out.wad", 7, &here), of("out.wad", 7, "elsewhere-00000000"));
+        // The number of a process says nothing: it may be of another container.
+        let alive = of("out.wad", 1 << 30, &here);
+        let others = [of("other.wad", 7, &here), ".out.wad.tmp".into(), ".out.wad.x-0.tmp".into()];
+        let all: Vec<&String> = others.iter().chain([&dead, &elsewhere, &alive]).collect();
+        for name in &all {
             fs::write(folder.path().join(name), b"part").unwrap();
         }
-        atomic_write(&target, b"whole").unwrap();
-        let left = names(folder.path());
-        assert!(kept.iter().all(|name| left.contains(name)), "{left:?}");
-        assert_eq!(left.contains(&dead), !cfg!(target_os = "linux"), "{left:?}");
-        // Whoever wrote it more than a day ago is no longer at it.
-        let old = std::time::SystemTime::now() - std::time::Duration::from_secs(25 * 3600);
-        for name in &kept {
-            File::options().write(true).open(folder.path().join(name)).unwrap().set_modified(old).unwrap();
-        }
-        atomic_write(&target, b"again").unwrap();
-        let left = names(folder.path());
-        let expected: Vec<bool> = kept.iter().map(|name| **name == others[1] || strange.contains(name)).collect();
-        assert_eq!(kept.iter().map(|name| left.contains(name)).collect::<Vec<_>>(), expected, "{left:?}");
+        let open = |name: &String| File::options().write(true).open(folder.path().join(name)).unwrap();
+        let writer = open(&alive);
+        writer.try_lock().unwrap();
+        let left_after = |seconds: u64| {
+            let then = std::time::SystemTime::now() - std::time::Duration::from_secs(seconds);
+            names(folder.path()).iter().for_each(|name| open(name).set_modified(then).unwrap());
+            atomic_write(&target, b"whole").unwrap();
+            let left = names(folder.path());
+            all.iter().filter(|name| left.contains(name)).copied().cloned().collect::<Vec<String>>()
+        };
+        let but = |gone: &[&String]| all.iter().filter(|name| !gone.contains(name)).copied().cloned().collect();
+        let expected: [Vec<String>; 3] = [but(&[]), but(&[&dead]), but(&[&dead, &elsewhere])];
+        assert_eq!([50, 70, 25 * 3600].map(left_after), expected);
+        // Whoever holds the lock is at work, however long.
+        drop(writer);
+        assert_eq!(left_after(70), but(&[&dead, &elsewhere, &alive]));
+    }
+
+    /// What this process writes is locked until it has its name.
+    #[test]
+    fn files_are_locked_while_they_are_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let (beside, file) = create_beside(&folder.path().join("out.wad")).unwrap();
+        let again = File::options().write(true).open(&beside).unwrap();
+        assert!(matches!(again.try_lock(), Err(fs::TryLockError::WouldBlock)));
+        drop(file);
+        assert!(again.try_lock().is_ok());
     }
 
     #[cfg(unix)]

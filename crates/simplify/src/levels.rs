@@ -3,19 +3,24 @@
 //! A cell's variant is what is left of the scene for eyes in that cell. Cells that see much the same share one:
 //! variants are merged, those that grow least first, until all of them together fit.
 
+mod groups;
+
 use crate::hidden::{HiddenBy, Hider};
 use crate::intercepts::Intercepts;
+use crate::kept::{read_flags, read_simplified, write_flags, write_simplified};
 use crate::mesh::Mesh;
 use crate::options::SimplifyOptions;
 use crate::select::{Account, least_visible};
 use crate::simplified::Simplified;
 use crate::simplify::{SimplifyError, check_mirrors, check_table, in_threads, within_budget};
 use crate::views::Views;
+use groups::{Bits, Groups};
 use rayon::prelude::*;
 use sightlines_cells::Scene;
+use sightlines_progress::{Counter, Halt, Observer, Phase, Units};
 use sightlines_pvs::{CellId, Table};
 use sightlines_visible_surface::Faces;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 /// Options for levels.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,6 +61,30 @@ pub struct Levels {
     pub levels: Vec<Level>,
 }
 
+/// Who is told how far the work is, and where results of its units are kept. Neither changes a result.
+#[derive(Clone, Copy, Default)]
+pub struct Effort<'a> {
+    /// Is told how far the work is, and may cancel it.
+    pub observer: Option<&'a dyn Observer>,
+    /// Where results are kept, to go on after a stop: what cells see (the phase `visible-faces`) and levels (`levels`). How many levels are tried is not known
+    /// before, so a store is for one process.
+    pub units: Units<'a>,
+}
+
+impl std::fmt::Debug for Effort<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let mut out = f.debug_struct("Effort");
+        out.field("observer", &self.observer.is_some()).field("units", &self.units).finish()
+    }
+}
+
+/// Cells, one after the other in the table, about which a method is asked together.
+const N_TOGETHER: usize = 64;
+
+/// The phases of units of work.
+const FACES: &str = "visible-faces";
+const LEVELS: &str = "levels";
+
 /// Makes levels for all cells of a table, whose cells have to be boxes.
 ///
 /// * `by`: what proves faces hidden, in addition to the table itself
@@ -73,6 +102,20 @@ pub fn levels(
     by: &HiddenBy<'_>,
     options: &LevelOptions,
 ) -> Result<Levels, SimplifyError> {
+    levels_with(scene, table, by, options, &Effort::default())
+}
+
+/// As [`levels()`], with an observer and a store of units.
+///
+/// # Errors
+/// As there, and [`SimplifyError::Halted`] by either of them.
+pub fn levels_with(
+    scene: &Scene,
+    table: &Table,
+    by: &HiddenBy<'_>,
+    options: &LevelOptions,
+    effort: &Effort<'_>,
+) -> Result<Levels, SimplifyError> {
     options.simplify.check()?;
     check_mirrors(scene, &options.simplify)?;
     check_table(scene, table)?;
@@ -81,25 +124,30 @@ pub fn levels(
         let faces = Faces::of_scene(scene)?;
         let hider = Hider::new(&faces, &HiddenBy { method: by.method, table: Some(table) });
         let maker = LevelBuilder { whole, scene, table, faces: &faces, hider, mesh: Mesh::new(scene), options };
-        let all: Vec<CellId> = (0..table.n_cells() as u32).map(CellId).collect();
-        // A table may have no cells.
-        let visible = if all.is_empty() { vec![] } else { maker.hider.may_see(&Views::of_cells(table, &all)?)? };
-        let kept: Vec<Bits> = all
-            .par_iter()
-            .zip(&visible)
-            .map(|(&cell, visible)| maker.kept(cell, visible))
-            .collect::<Result<_, SimplifyError>>()?;
+        let (visible, kept): (Vec<Vec<bool>>, Vec<Bits>) = maker.seen(effort)?.into_iter().unzip();
         let mut groups = Groups::new(table, kept, options.bytes_per_triangle);
         groups.merge_equal();
         let mut made: BTreeMap<Vec<CellId>, Level> = BTreeMap::new();
+        // Each group of cells that comes to be is made once at most: there are as many merges as cells, less one.
+        let most = (2 * table.n_cells()).saturating_sub(1);
+        effort.units.begin(&Phase { name: LEVELS, costs: &vec![1.0; most] })?;
+        let mut n_made = 0;
         loop {
             let wanted = groups.cells();
             made.retain(|cells, _| wanted.contains(cells));
             let missing: Vec<&Vec<CellId>> = wanted.iter().filter(|cells| !made.contains_key(*cells)).collect();
+            let counter = Counter::new(effort.observer, LEVELS, missing.len());
             let new = missing
                 .par_iter()
-                .map(|cells| maker.level(cells, &visible))
+                .enumerate()
+                .map(|(k, cells)| {
+                    counter.check().map_err(Halt::from)?;
+                    let level = maker.kept_level(cells, &visible, (effort.units, n_made + k))?;
+                    counter.step().map_err(Halt::from)?;
+                    Ok(level)
+                })
                 .collect::<Result<Vec<Level>, SimplifyError>>()?;
+            n_made += missing.len();
             made.extend(new.into_iter().map(|level| (level.cells.clone(), level)));
             let n_bytes = made.values().fold(0u64, |sum, level| sum.saturating_add(level.n_bytes));
             if n_bytes <= options.memory {
@@ -130,6 +178,10 @@ impl Levels {
     }
 }
 
+fn unfit(phase: &str, unit: usize) -> Halt {
+    Halt::Store(format!("the kept result of unit {unit} of the phase '{phase}' does not fit this scene"))
+}
+
 /// The input of levels.
 struct LevelBuilder<'a> {
     whole: &'a Scene,
@@ -143,6 +195,81 @@ struct LevelBuilder<'a> {
 }
 
 impl LevelBuilder<'_> {
+    /// For each cell the faces that may be visible, and those of them that remain.
+    fn seen(&self, effort: &Effort<'_>) -> Result<Vec<(Vec<bool>, Bits)>, SimplifyError> {
+        let Effort { observer, units } = *effort;
+        let all: Vec<CellId> = (0..self.table.n_cells() as u32).map(CellId).collect();
+        let parts: Vec<&[CellId]> = all.chunks(N_TOGETHER).collect();
+        let costs: Vec<f64> = parts.iter().map(|cells| cells.len() as f64).collect();
+        units.begin(&Phase { name: FACES, costs: &costs })?;
+        let counter = Counter::new(observer, "visible faces", parts.len());
+        let part = |(unit, cells): (usize, &&[CellId])| {
+            counter.check().map_err(Halt::from)?;
+            let mut found = None;
+            let result = units.get(FACES, unit, || {
+                let visible = self.hider.may_see(&Views::of_cells(self.table, cells)?)?;
+                let kept: Vec<Bits> = cells
+                    .par_iter()
+                    .zip(&visible)
+                    .map(|(&cell, visible)| self.kept(cell, visible))
+                    .collect::<Result<_, SimplifyError>>()?;
+                let mut bytes = Vec::new();
+                if units.are_kept() {
+                    for (visible, kept) in visible.iter().zip(&kept) {
+                        write_flags(visible, &mut bytes);
+                        write_flags(&kept.flags(self.faces.len()), &mut bytes);
+                    }
+                }
+                found = Some(visible.into_iter().zip(kept).collect());
+                Ok::<_, SimplifyError>(bytes)
+            })?;
+            let found = match found {
+                Some(found) => found,
+                None => self.read_seen(&result.ok_or(Halt::Shared)?, cells.len()).ok_or_else(|| unfit(FACES, unit))?,
+            };
+            counter.step().map_err(Halt::from)?;
+            Ok(found)
+        };
+        let found = parts.par_iter().enumerate().map(part).collect::<Result<Vec<Vec<_>>, SimplifyError>>()?;
+        units.end(FACES)?;
+        Ok(found.into_iter().flatten().collect())
+    }
+
+    fn read_seen(&self, mut bytes: &[u8], n_cells: usize) -> Option<Vec<(Vec<bool>, Bits)>> {
+        let n = self.faces.len();
+        let mut one = || Some((read_flags(&mut bytes, n)?, Bits::of(&read_flags(&mut bytes, n)?)));
+        let found = (0..n_cells).map(|_| one()).collect::<Option<_>>()?;
+        bytes.is_empty().then_some(found)
+    }
+
+    /// A level, kept or made and then kept.
+    fn kept_level(
+        &self,
+        cells: &[CellId],
+        visible: &[Vec<bool>],
+        (units, unit): (Units<'_>, usize),
+    ) -> Result<Level, SimplifyError> {
+        let mut made = None;
+        let result = units.get(LEVELS, unit, || {
+            let level = self.level(cells, visible)?;
+            let bytes = if units.are_kept() { write_simplified(&level.simplified) } else { Vec::new() };
+            made = Some(level);
+            Ok::<_, SimplifyError>(bytes)
+        })?;
+        match made {
+            Some(level) => Ok(level),
+            None => {
+                let simplified = read_simplified(&result.ok_or(Halt::Shared)?, self.whole);
+                Ok(self.with_size(cells, simplified.ok_or_else(|| unfit(LEVELS, unit))?))
+            }
+        }
+    }
+
+    fn with_size(&self, cells: &[CellId], simplified: Simplified) -> Level {
+        let n_bytes = (simplified.counts.left as u64).saturating_mul(self.options.bytes_per_triangle);
+        Level { cells: cells.to_vec(), simplified, n_bytes }
+    }
+
     /// Those of the faces that may be visible for the eyes of one cell that remain, without collapsing: accurate enough to choose
     /// merges.
     fn kept(&self, cell: CellId, visible: &[bool]) -> Result<Bits, SimplifyError> {
@@ -180,151 +307,6 @@ impl LevelBuilder<'_> {
             (views, intercepts)
         };
         let simplified = within_budget(self.scene, self.faces, || self.mesh.clone(), &views, &intercepts, options);
-        let simplified = simplified.with_moving_of(self.whole);
-        let n_bytes = simplified.counts.left as u64;
-        let n_bytes = n_bytes.saturating_mul(self.options.bytes_per_triangle);
-        Ok(Level { cells: cells.to_vec(), simplified, n_bytes })
-    }
-}
-
-/// A set of faces.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-struct Bits(Vec<u64>);
-
-impl Bits {
-    fn new(n: usize) -> Self {
-        Self(vec![0; n.div_ceil(64)])
-    }
-
-    fn set(&mut self, face: u32, to: bool) {
-        let (word, bit) = (&mut self.0[face as usize / 64], 1 << (face % 64));
-        *word = if to { *word | bit } else { *word & !bit };
-    }
-
-    fn count(&self) -> u64 {
-        self.0.iter().map(|w| u64::from(w.count_ones())).sum()
-    }
-
-    fn count_with(&self, other: &Self) -> u64 {
-        self.0.iter().zip(&other.0).map(|(a, b)| u64::from((a | b).count_ones())).sum()
-    }
-
-    fn add(&mut self, other: &Self) {
-        self.0.iter_mut().zip(&other.0).for_each(|(a, b)| *a |= b);
-    }
-}
-
-/// Cells that share their remaining faces.
-struct Group {
-    cells: Vec<CellId>,
-    kept: Bits,
-    n_kept: u64,
-    /// Groups with which it may be merged.
-    near: BTreeSet<usize>,
-}
-
-/// A partition of the cells.
-struct Groups {
-    /// `None` where one was merged into another.
-    all: Vec<Option<Group>>,
-    /// Pairs that may be merged, by the increase of stored triangles.
-    pairs: BTreeSet<(i64, usize, usize)>,
-    bytes_per_triangle: u64,
-}
-
-impl Groups {
-    /// Each cell by itself. Two cells may be merged if a portal joins them, or if they are consecutive in the table.
-    fn new(table: &Table, kept: Vec<Bits>, bytes_per_triangle: u64) -> Self {
-        let n = kept.len();
-        let mut near = vec![BTreeSet::new(); n];
-        let mut join = |a: usize, b: usize| {
-            if a != b {
-                near[a].insert(b);
-                near[b].insert(a);
-            }
-        };
-        (1..n).for_each(|cell| join(cell - 1, cell));
-        table.portals().iter().for_each(|p| join(p.cells[0].idx(), p.cells[1].idx()));
-        let group = |((cell, kept), near): ((u32, Bits), BTreeSet<usize>)| {
-            Some(Group { cells: vec![CellId(cell)], n_kept: kept.count(), kept, near })
-        };
-        let all: Vec<Option<Group>> = (0..).zip(kept).zip(near).map(group).collect();
-        let mut groups = Self { all, pairs: BTreeSet::new(), bytes_per_triangle };
-        for a in 0..n {
-            let later: Vec<usize> = groups.group(a).near.iter().copied().filter(|b| *b > a).collect();
-            later.into_iter().for_each(|b| groups.offer(a, b));
-        }
-        groups
-    }
-
-    fn group(&self, id: usize) -> &Group {
-        self.all[id].as_ref().expect("only existing groups are looked up")
-    }
-
-    /// The cost of a merge: triangles of the union, minus those of both.
-    fn cost(&self, a: usize, b: usize) -> i64 {
-        let (a, b) = (self.group(a), self.group(b));
-        a.kept.count_with(&b.kept) as i64 - a.n_kept as i64 - b.n_kept as i64
-    }
-
-    fn offer(&mut self, a: usize, b: usize) {
-        self.pairs.insert((self.cost(a, b), a.min(b), a.max(b)));
-    }
-
-    fn n_bytes(&self) -> u64 {
-        self.all.iter().flatten().map(|g| g.n_kept).sum::<u64>().saturating_mul(self.bytes_per_triangle)
-    }
-
-    fn cells(&self) -> BTreeSet<Vec<CellId>> {
-        self.all.iter().flatten().map(|g| g.cells.clone()).collect()
-    }
-
-    /// Merges all groups with equal faces.
-    fn merge_equal(&mut self) {
-        let mut first: BTreeMap<Bits, usize> = BTreeMap::new();
-        for id in 0..self.all.len() {
-            let kept = self.group(id).kept.clone();
-            match first.get(&kept) {
-                Some(&other) => self.merge(other, id),
-                None => drop(first.insert(kept, id)),
-            }
-        }
-    }
-
-    /// Merges the two that save most; returns whether there were two.
-    fn merge_cheapest(&mut self) -> bool {
-        match self.pairs.first() {
-            Some(&(_, a, b)) => {
-                self.merge(a, b);
-                true
-            }
-            None => false,
-        }
-    }
-
-    fn merge(&mut self, a: usize, b: usize) {
-        for id in [a, b] {
-            let near: Vec<usize> = self.group(id).near.iter().copied().collect();
-            for other in near {
-                let pair = (self.cost(id, other), id.min(other), id.max(other));
-                self.pairs.remove(&pair);
-            }
-        }
-        let Some(gone) = self.all[b].take() else { return };
-        let into = self.all[a].as_mut().expect("only groups that are there are merged");
-        into.cells.extend(gone.cells);
-        into.cells.sort_unstable();
-        into.kept.add(&gone.kept);
-        into.n_kept = into.kept.count();
-        into.near.extend(&gone.near);
-        into.near.retain(|&id| id != a && id != b);
-        let near: Vec<usize> = into.near.iter().copied().collect();
-        for other in near {
-            if let Some(other) = self.all[other].as_mut() {
-                other.near.remove(&b);
-                other.near.insert(a);
-            }
-            self.offer(a, other);
-        }
+        Ok(self.with_size(cells, simplified.with_moving_of(self.whole)))
     }
 }

@@ -13,6 +13,7 @@ use crate::weigh::{Areas, Fronts};
 use sightlines_cells::{Scene, Unlike, unlike};
 use sightlines_geometry::Aabb;
 use sightlines_multifocal::BackendError;
+use sightlines_progress::Halt;
 use sightlines_pvs::Table;
 use sightlines_visible_surface::{Faces, FacesError};
 use std::borrow::Cow;
@@ -57,6 +58,9 @@ pub enum SimplifyError {
         /// The smallest possible memory, with this budget.
         least: u64,
     },
+    /// An observer or a store of units ends the work.
+    #[error(transparent)]
+    Halted(#[from] Halt),
 }
 
 /// The weight of area relative to that of rays: a face that no ray of the estimate hit counts as if all faces together

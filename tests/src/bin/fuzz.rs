@@ -33,6 +33,7 @@ use sightlines_packed::{PackOptions, Packed, SizeClass, pack};
 use sightlines_testkit::mutate::{SplitMix, mutate};
 use sightlines_tests::certificates;
 use sightlines_tests::simplified::SmallMesh;
+use sightlines_tests::stored;
 use sightlines_tests::surfaces::SmallShot;
 use sightlines_tests::volumes::SmallWorld;
 use sightlines_tests::world_files::bsp_bytes;
@@ -54,7 +55,7 @@ struct Target {
     check: fn(&[u8]) -> bool,
 }
 
-const TARGETS: [Target; 24] = [
+const TARGETS: [Target; 27] = [
     Target { name: "wad", seeds: wads, check: check_wad },
     Target { name: "reject", seeds: wads, check: check_reject },
     Target { name: "textmap", seeds: texts, check: check_text },
@@ -76,6 +77,9 @@ const TARGETS: [Target; 24] = [
     Target { name: "bsp", seeds: maps, check: check_map },
     Target { name: "portals", seeds: map_worlds, check: check_made_portals },
     Target { name: "vis-state", seeds: vis_states, check: check_vis_state },
+    Target { name: "journal", seeds: stored::journals, check: stored::check_journal },
+    Target { name: "part", seeds: stored::parts, check: stored::check_part },
+    Target { name: "manifest", seeds: stored::manifests, check: stored::check_manifest },
     Target { name: "certificates", seeds: certificates::seeds, check: certificates::check },
     Target { name: "capi", seeds: calls, check: check_calls },
     Target { name: "garbage", seeds: garbage, check: check_anything },

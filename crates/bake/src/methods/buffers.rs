@@ -78,8 +78,13 @@ impl BufferOptions {
     /// [`BuffersTooLarge`]
     pub fn check(&self) -> Result<(), BuffersTooLarge> {
         let Self { planes, texels, .. } = *self;
-        let bytes = 6 * u64::from(planes) * u64::from(texels).pow(2) * size_of::<u32>() as u64;
+        let bytes = self.bytes_per_thread();
         if bytes <= Self::MOST_BYTES { Ok(()) } else { Err(BuffersTooLarge { planes, texels, bytes }) }
+    }
+
+    /// The bytes that the buffers of one thread take at most.
+    pub fn bytes_per_thread(&self) -> u64 {
+        6 * u64::from(self.planes) * u64::from(self.texels).pow(2) * size_of::<u32>() as u64
     }
 
     fn layout(&self) -> Layout {

@@ -221,6 +221,9 @@ impl Job {
         if !part.is_finished {
             return Err(StateError::CutOff { path, offset: part.end });
         }
+        if let Some(&offset) = part.damage.first() {
+            return Err(StateError::Damaged { path, offset });
+        }
         let is_whole = part.units(phase).into_iter().eq(plan.begin as u64..plan.end as u64);
         if !is_whole || part.has_others(phase) || part.is_torn {
             return Err(StateError::OtherUnits(path));
@@ -247,7 +250,7 @@ impl Job {
 
     /// Writes the part of a shard, and removes the journals that it makes superfluous.
     fn save_part(&self, shard: usize, phase: &str, results: &[(u64, Vec<u8>)]) -> Result<(), WriteError> {
-        let mut bytes = self.owner().header();
+        let mut bytes = self.owner().header([0; 16]);
         results.iter().for_each(|(unit, result)| bytes.extend(record(phase, *unit, result)));
         bytes.extend(record("", results.len() as u64, &[]));
         let path = self.part_path(shard);

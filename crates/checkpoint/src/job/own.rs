@@ -8,6 +8,7 @@ use sightlines_formats::process_mark;
 use sightlines_progress::{Halt, UnitStore};
 use std::ops::Range;
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
@@ -127,7 +128,10 @@ impl OwnShards {
 impl OwnShard {
     fn new(job: &Job, shard: usize, after: Duration) -> Result<Self, JobError> {
         let plan = job.shard(shard)?.1;
-        let path: PathBuf = job.part_path(shard).with_extension(format!("part.{}{JOURNAL}", process_mark()));
+        // A process may have several stores.
+        static COUNT: AtomicU64 = AtomicU64::new(0);
+        let mark = format!("{}-{}", process_mark(), COUNT.fetch_add(1, Relaxed));
+        let path: PathBuf = job.part_path(shard).with_extension(format!("part.{mark}{JOURNAL}"));
         let (key, program) = (job.key(), &job.manifest().program);
         // What an earlier process with this number left is read with all other journals.
         let opening = if path.exists() { Opening::Resume } else { Opening::Anew };

@@ -32,6 +32,30 @@ proptest! {
         }
     }
 
+    /// Invariant: damage costs the results of the records that it touches, and no others. Between two records it costs at most one.
+    #[test]
+    fn only_what_is_damaged_is_computed_again(at in any::<usize>(), flip in 1..=255_u8, n_bytes in 1..60_usize, cut in any::<bool>()) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("out.state");
+        let open = || Journal::open(&path, key("a"), PROGRAM, Opening::Resume, Duration::ZERO);
+        let expected = toy([9, 9]).bake(Some(&open().unwrap())).unwrap();
+        let mut bytes = fs::read(&path).unwrap();
+        // Behind the header.
+        let at = 53 + at % (bytes.len() - 53);
+        let end = (at + n_bytes).min(bytes.len());
+        // No record is shorter than 35 bytes.
+        let n_touched = (end - at).div_ceil(35) + 1;
+        if cut { drop(bytes.drain(at..end)) } else { bytes[at..end].iter_mut().for_each(|byte| *byte ^= flip) }
+        fs::write(&path, bytes).unwrap();
+        let journal = open().unwrap();
+        prop_assert!(journal.n_taken_up() + n_touched >= 18, "{} of 18", journal.n_taken_up());
+        let again = toy([9, 9]);
+        prop_assert_eq!(again.bake(Some(&journal)).unwrap(), expected);
+        prop_assert_eq!(again.n(), 18 - journal.n_taken_up());
+        drop(journal);
+        prop_assert_eq!(open().unwrap().n_taken_up(), 18);
+    }
+
     /// Invariant: a damaged part is never merged.
     #[test]
     fn damaged_parts_are_found(at in any::<usize>(), flip in any::<u8>(), shard in 0..3_usize) {

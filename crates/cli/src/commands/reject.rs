@@ -1,9 +1,9 @@
 //! `reject`: the REJECT lumps of a WAD.
 
 use crate::Answer;
-use crate::error::InputError;
 use crate::file_error::{FileError, from_file_error};
-use crate::kept::{Identity, Interrupted, Keeping, Kept, KeptError, ResumeArgs};
+use crate::kept::{Identity, Inputs, Interrupted, Keeping, Kept, KeptError, ResumeArgs};
+use crate::memory::{self, MemoryArgs};
 use crate::output::{self, count, percent, seconds};
 use crate::progress::Bar;
 use serde::Serialize;
@@ -55,6 +55,8 @@ pub(crate) struct RejectArgs {
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::numbers::threads)]
     pub(crate) threads: usize,
     #[command(flatten)]
+    pub(crate) memory: MemoryArgs,
+    #[command(flatten)]
     pub(crate) resume: ResumeArgs,
     /// The WAD to write; may be the input
     #[arg(short, long, help_heading = "Output", value_name = "OUT.wad")]
@@ -73,12 +75,14 @@ pub(crate) fn run(args: &RejectArgs, show_progress: bool) -> Result<Answer, Erro
 /// Reads, builds and writes. Prints nothing but progress and warnings.
 pub(crate) fn make(args: &RejectArgs, keeping: Keeping<'_>, show_progress: bool) -> Result<Outcome, Error> {
     crate::threads::use_only(args.threads);
+    args.memory.watch();
     // It may be the WAD that is read.
     output::check(&[], &[&args.output])?;
+    let files = std::iter::once(&args.input).chain(&args.rmb).map(PathBuf::as_path);
+    let inputs = Inputs::look(keeping, files)?;
     let wad = Wad::read(&args.input)?;
     let rmb = args.rmb.as_ref().map(RmbFile::read).transpose()?;
-    let files: Vec<&Path> = std::iter::once(&args.input).chain(&args.rmb).map(PathBuf::as_path).collect();
-    let kept = Kept::open(keeping, &args.output, &files, || args.identity())?;
+    let kept = Kept::open(keeping, &inputs, &[&args.output], || args.identity(&inputs))?;
     let made = || -> Result<Outcome, Error> {
         let bar = Bar::new("visibility of sectors", show_progress);
         let options = RejectOptions {
@@ -102,7 +106,7 @@ pub(crate) fn make(args: &RejectArgs, keeping: Keeping<'_>, show_progress: bool)
         output::save(&args.output, &outcome.bytes)?;
         warn(&args.input, &outcome.maps);
         let maps = outcome.maps.iter().map(Map::from).collect();
-        Ok(Outcome { out: args.output.display().to_string(), maps })
+        Ok(Outcome { out: args.output.display().to_string(), maps, peak_bytes: memory::peak_bytes() })
     };
     let made = made();
     match kept.finish(made.is_ok()) {
@@ -112,13 +116,12 @@ pub(crate) fn make(args: &RejectArgs, keeping: Keeping<'_>, show_progress: bool)
 }
 
 impl RejectArgs {
-    /// What decides the results of units.
-    fn identity(&self) -> Result<Identity, InputError> {
-        let mut identity = Identity::new("reject");
-        identity.file(&self.input)?;
-        self.rmb.iter().try_for_each(|rmb| identity.file(rmb))?;
-        identity.debug("options", &(&self.map, self.force, self.strict));
-        Ok(identity)
+    /// What decides the results of units. A new argument does not compile until it is decided whether it is part of that.
+    fn identity(&self, inputs: &Inputs) -> Identity {
+        let Self { input: _, map, force, rmb: _, strict, threads: _, memory: _, resume: _, output: _, json: _ } = self;
+        let mut identity = Identity::new("reject", inputs);
+        identity.debug("options", &(map, force, strict));
+        identity
     }
 }
 
@@ -141,6 +144,8 @@ fn warn(path: &Path, maps: &[MapOutcome]) {
 pub(crate) struct Outcome {
     out: String,
     maps: Vec<Map>,
+    /// The most memory that was in use at once; null where the system does not report it.
+    peak_bytes: Option<u64>,
 }
 
 /// What became of a map.

@@ -20,6 +20,7 @@ mod json;
 mod light;
 mod maps;
 mod materials;
+mod memory;
 mod multifocal;
 mod node_builder;
 mod outputs;

@@ -92,7 +92,8 @@ fn results_that_are_kept_count() {
     let (folder, whole, took) = scene();
     let mut child = start(&folder, &BUILD);
     let begin = Instant::now();
-    while !folder.path(STATE).exists() || journal(&folder).n_taken_up() < 4 {
+    // Nobody else opens a state while a build uses it.
+    while std::fs::metadata(folder.path(STATE)).map_or(0, |state| state.len()) < 2000 {
         assert!(begin.elapsed() < took * 20, "no results");
         std::thread::sleep(Duration::from_millis(5));
     }
@@ -104,6 +105,7 @@ fn results_that_are_kept_count() {
     let (first, bytes) = found.next().expect("a result");
     let (other, _) = found.find(|(_, other)| *other != bytes).expect("a result that differs");
     kept.save("cells", other, &bytes).unwrap();
+    drop(kept);
     assert!(first != other);
     let run = folder.run(&[&BUILD[..], &["--resume"]].concat());
     assert!(run.code == 2 || folder.read("out.pvs") != whole);
@@ -149,6 +151,62 @@ fn states_of_other_builds_are_refused_or_replaced() {
     let loud: Vec<&str> = resumed.iter().copied().filter(|arg| *arg != "-q").collect();
     let run = folder.run(&loud).expect(0);
     assert!(run.err.contains("out.pvs.state: there is nothing to go on from; beginning anew"), "{}", run.err);
+}
+
+/// Starts a build and kills it once it has some results in its state.
+fn killed(folder: &Folder) {
+    let mut child = start(folder, &BUILD);
+    while std::fs::metadata(folder.path(STATE)).map_or(0, |state| state.len()) < 2000 {
+        assert!(child.try_wait().unwrap().is_none(), "it was over before it could be killed");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+}
+
+/// A state that is forgotten is put aside until the build is done; one that is damaged loses what is damaged; one that is in use is refused; none has the name
+/// of another file of the command.
+#[test]
+fn states_are_not_lost_by_a_slip() {
+    let (folder, whole, _) = scene();
+    killed(&folder);
+    let n = journal(&folder).n_taken_up();
+    assert!(n > 1, "{n}");
+    let loud: Vec<&str> = BUILD.iter().copied().filter(|arg| *arg != "-q").collect();
+    // Without --resume it begins anew, says so, and is killed too: the first state is aside.
+    let mut child = start(&folder, &loud);
+    while !folder.path("out.pvs.state.before").exists() {
+        assert!(child.try_wait().unwrap().is_none(), "it was over before it could be killed");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    let busy =
+        "out.pvs.state: another process keeps its results in this file; wait for it, or name another with --state";
+    assert_eq!(folder.refused(&BUILD), busy);
+    child.kill().unwrap();
+    let said = String::from_utf8(child.wait_with_output().unwrap().stderr).unwrap();
+    let text = format!("out.pvs.state: beginning without its {n} results: --resume goes on from them.");
+    assert!(said.contains(&text) && said.contains("out.pvs.state.before"), "{said}");
+    std::fs::rename(folder.path("out.pvs.state.before"), folder.path(STATE)).unwrap();
+    assert_eq!(journal(&folder).n_taken_up(), n);
+    // A byte in the first results: the others are used.
+    let mut bytes = folder.read(STATE);
+    bytes[200] ^= 1;
+    folder.write(STATE, bytes);
+    let run = folder.run(&[&loud[..], &["--resume"]].concat()).expect(0);
+    assert!(run.err.contains("out.pvs.state: 1 record damaged; the rest is used"), "{}", run.err);
+    assert!(folder.read("out.pvs") == whole);
+    // Done without --resume, nothing is left either.
+    killed(&folder);
+    folder.run(&BUILD).expect(0);
+    assert_eq!(folder.names(), ["out.pvs", "tower.glb"]);
+    for name in ["tower.glb", "./tower.glb", "out.pvs", "./out.pvs"] {
+        let error = folder.refused(&[&BUILD[..], &["--state", name]].concat());
+        assert!(error.contains(name) && error.contains("two outputs would be written"), "{name}: {error}");
+    }
+    std::fs::remove_file(folder.path("out.pvs")).unwrap();
+    let proofs = ["build", "tower.glb", "-o", "t.pvs", "--certify", "--state", "./t.cert", "-q"];
+    assert!(folder.refused(&proofs).contains("two outputs would be written"));
+    assert_eq!(folder.names(), ["tower.glb"]);
 }
 
 /// The first Ctrl-C keeps what is done; a build, and the visibility of a map.

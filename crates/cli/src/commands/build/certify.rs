@@ -39,7 +39,8 @@ impl CertifyArgs {
         if file == table { Err(OutputError::SameFile(file).into()) } else { Ok(()) }
     }
 
-    fn file(&self, table: &Path) -> Option<PathBuf> {
+    /// The file of proofs, if they are wanted.
+    pub(super) fn file(&self, table: &Path) -> Option<PathBuf> {
         let given = self.certify.as_ref()?;
         Some(given.clone().unwrap_or_else(|| table.with_extension("cert")))
     }

@@ -4,6 +4,7 @@ use crate::buffers::MethodFailed;
 use crate::error::of_map;
 use crate::file_error::{FileError, from_file_error};
 use crate::kept::{Interrupted, KeptError};
+use crate::memory::TooLarge;
 use sightlines::bake::BakeError;
 use sightlines::bake::CertifyError;
 use sightlines::bake::PrtBakeError;
@@ -50,6 +51,9 @@ pub(crate) enum Error {
     /// The program was interrupted.
     #[error("{0}")]
     Interrupted(Interrupted),
+    /// There is no room for it in the memory that may be used.
+    #[error("{}: {source}; {advice}", path.display())]
+    Memory { path: PathBuf, source: TooLarge, advice: &'static str },
     /// A layout for a table that is not packed.
     #[error("{}: --class is for packed tables, whose names end in .pvz", out.display())]
     Class { out: PathBuf },

@@ -8,6 +8,7 @@ mod doors;
 mod error;
 mod framed;
 mod limit;
+pub(crate) mod needs;
 mod options;
 mod packed;
 pub(crate) mod plan;
@@ -26,10 +27,10 @@ pub(crate) use source::bake_visibly;
 
 use crate::Answer;
 use crate::doors::DoorBox;
-use crate::error::InputError;
 use crate::input::{self, refuse};
-use crate::kept::{Identity, Keeping, Kept, ResumeArgs};
-use crate::map_portals::MADE;
+use crate::kept::{Identity, Inputs, Keeping, Kept, ResumeArgs};
+use crate::map_portals::{MADE, portal_file};
+use crate::memory::{self, MemoryArgs};
 use crate::numbers::duration;
 use crate::output;
 use crate::plans::{self, PlanArgs};
@@ -41,7 +42,7 @@ use serde::Serialize;
 use sightlines::bake::auto::choose_for;
 use sightlines::bake::methods::BufferOptions;
 use sightlines::bake::{BakeOptions, Bakeable, Baked, Report, SceneMethod};
-use sightlines::formats::Input;
+use sightlines::formats::{Input, InputKind};
 use source::{Source, bake_announced};
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -76,6 +77,8 @@ pub(crate) struct BuildArgs {
     /// the portals that lie wholly within the closed box. In a plan NAME=X0,Y0,X1,Y1. Names may repeat; scenes may have doors of their own
     #[arg(long = "door", help_heading = "Input", value_name = "NAME=X0,Y0,Z0,X1,Y1,Z1", allow_hyphen_values = true)]
     doors: Vec<DoorBox>,
+    #[command(flatten)]
+    pub(crate) memory: MemoryArgs,
     #[command(flatten)]
     pub(crate) resume: ResumeArgs,
     /// The table to write; in packed form, as `pack` makes it, if the name ends in .pvz. More than 65,536 cells without portals, by one of the
@@ -119,9 +122,19 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
     if args.class.is_some() && !packed::is_packed(out) {
         return Err(Error::Class { out: out.clone() });
     }
+    args.memory.watch();
     output::check(&[path], &[out])?;
     args.certify.check(path, out)?;
     let reading = args.plans.options(path)?;
+    // The portals of a Quake map are in a file of their own.
+    let is_map = path.exists() && input::kind_of(path)? == Some(InputKind::Bsp);
+    let portal_file = portal_file(path, args.prt.as_deref()).filter(|_| is_map);
+    let inputs = if path.exists() {
+        Some(path.as_path()).into_iter().chain(portal_file.as_deref()).collect()
+    } else {
+        Vec::new()
+    };
+    let inputs = Inputs::look(keeping, inputs)?;
     let input = input::read(path, args.map.as_deref(), &args.surfaces.options(), &reading)?;
     args.refuse_meaningless(&input)?;
     let chosen = (args.map.as_deref(), args.prt.as_deref());
@@ -147,15 +160,16 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
         (auto, options) = (Some(auto::Chosen::new(choice)), BakeOptions { cells, ..chosen });
     }
     args.refuse_for_regions(&source, &options)?;
+    let class = args.fit(&source, &mut options)?;
 
-    let files: Vec<&Path> = [Some(path.as_path()), source.portals()].into_iter().flatten().collect();
-    let kept = Kept::open(keeping, out, &files, || args.identity(&source, &options))?;
+    let proofs = args.certify.file(out);
+    let outputs: Vec<&Path> = std::iter::once(out).chain(&proofs).map(PathBuf::as_path).collect();
+    let kept = Kept::open(keeping, &inputs, &outputs, || args.identity(&inputs, &source, &options))?;
     let made = || -> Result<Built, Error> {
         let units = kept.units();
         let options = BakeOptions { units, ..options.clone() };
         let plan = announce::Plan::new(&source.content, &options, auto.as_ref(), args.time_limit);
-        let is_alone = args.doors.is_empty() && !args.certify.is_given();
-        if let Some(file) = packed::of_rows(&source, &options, out, args.class).filter(|_| is_alone) {
+        if let Some(file) = packed::of_rows(&source, &options, out, class).filter(|_| args.is_alone()) {
             let outcome = packed::write_rows(path, file, &options, plan, (out, show_progress))?;
             return Ok(Built {
                 auto: None,
@@ -166,6 +180,7 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
                 given_doors: Vec::new(),
                 stab: None,
                 proofs: None,
+                peak_bytes: memory::peak_bytes(),
                 verbose,
             });
         }
@@ -175,7 +190,7 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
         let (baked, stab) = stab::add(path, baked, args.stab_trees, options.threads, &kept, show_progress)?;
         let (baked, given_doors) = doors::add(path, baked, &args.doors);
         let baked = plans::state(baked, &reading);
-        let bytes = packed::bytes_of(&baked.table, path, out, args.class)?;
+        let bytes = packed::bytes_of(&baked.table, path, out, class)?;
         // Proofs that contradict the table leave an older one untouched.
         let proofs = args.certify.write(path, out, &baked, options.threads, &kept, show_progress)?;
         output::save(out, &bytes)?;
@@ -184,7 +199,8 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
             Bakeable::Scene(file) => Some(Surfaces::new(file).with_backs(&baked.table, &file.scene)),
             _ => None,
         };
-        Ok(Built { auto, outcome, viewers, placed, surfaces, given_doors, stab, proofs, verbose })
+        let peak_bytes = memory::peak_bytes();
+        Ok(Built { auto, outcome, viewers, placed, surfaces, given_doors, stab, proofs, peak_bytes, verbose })
     };
     let made = made();
     match kept.finish(made.is_ok()) {
@@ -193,22 +209,57 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
     }
 }
 
+/// What to do where there is no room for a build.
+const FEWER_CELLS: &str = "allow more, or take fewer cells";
+const BY_ROWS: &str = "allow more, take fewer cells, or, by a method that looks from whole cells, name the output .pvz, which is written row by row";
+
 impl BuildArgs {
-    /// What decides the results of units: the files, how they are read, and how they are baked; not the number of threads.
-    fn identity(&self, source: &Source, options: &BakeOptions<'_>) -> Result<Identity, InputError> {
-        let mut identity = Identity::new("build");
-        source.identify(&self.input, &mut identity)?;
-        identity.debug("reading", &(&self.map, &self.surfaces, &self.plans));
+    /// What decides the results of units: the files, how they are read, and how they are baked; not the number of threads. A new argument or option does not
+    /// compile until it is decided whether it is part of that.
+    fn identity(&self, inputs: &Inputs, source: &Source, options: &BakeOptions<'_>) -> Identity {
+        // What `bake` and `region` say is in the options, and doors are shut after the bake.
+        #[rustfmt::skip]
+        let Self {
+            input: _, map, prt: _, surfaces, plans, bake: _, region: _, time_limit: _, doors: _, memory: _, resume: _, output: _,
+            class: _, stab_trees, certify, json: _,
+        } = self;
+        let mut identity = Identity::new("build", inputs);
+        source.identify(&mut identity);
+        identity.debug("reading", &(map, surfaces, plans));
         // What changes nothing but the time is left out, and the address of a function with `buffers.warn`.
-        let BakeOptions { subdivide, cut, chords, gap, frame, digest, portals, method, cells, split, fast, .. } =
-            options;
-        let BakeOptions { buffers, threads: _, progress: _, budget: _, units: _, .. } = options;
+        #[rustfmt::skip]
+        let BakeOptions {
+            subdivide, cut, chords, gap, frame, digest, portals, method, cells, buffers, split, fast,
+            threads: _, progress: _, budget: _, units: _,
+        } = options;
         identity.debug("cells", &(subdivide, cut, gap, frame, digest, cells));
         identity.debug("method", &(chords, portals, method, split, fast));
         let BufferOptions { measure, planes, texels, occluders, carry, sheets, line_space, backend, warn: _ } = buffers;
         identity.debug("buffers", &(measure, planes, texels, occluders, carry, sheets, line_space, backend));
-        identity.debug("more", &(self.stab_trees, self.certify.is_given()));
-        Ok(identity)
+        identity.debug("more", &(stab_trees, certify.is_given()));
+        identity
+    }
+
+    /// Whether nothing but the table is made, so that rows need not be kept.
+    fn is_alone(&self) -> bool {
+        self.doors.is_empty() && !self.certify.is_given()
+    }
+
+    /// Chooses what fits into the memory that may be used: the number of threads, and for a packed table the layout that is written row by row.
+    fn fit(&self, source: &Source, options: &mut BakeOptions<'_>) -> Result<Option<Class>, Error> {
+        let by_rows = |class| self.is_alone() && packed::of_rows(source, options, &self.output, class).is_some();
+        let mut class = self.class;
+        let all = needs::of(source, options, by_rows(class));
+        if class.is_none() && !self.memory.has_room(all) && by_rows(Some(Class::Large)) {
+            class = Some(Class::Large);
+            tracing::warn!("{}: written row by row, as --class large does, for --memory", self.output.display());
+        }
+        let needs = needs::of(source, options, by_rows(class));
+        options.threads = self.memory.threads(options.threads, needs).map_err(|source| {
+            let advice = if packed::is_packed(&self.output) { FEWER_CELLS } else { BY_ROWS };
+            Error::Memory { path: self.input.clone(), source, advice }
+        })?;
+        Ok(class)
     }
 
     /// Refuses options that mean nothing for an input.
@@ -317,6 +368,8 @@ pub(crate) struct Built {
     stab: Option<stab::Added>,
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     proofs: Option<certify::Certified>,
+    /// The most memory that was in use at once; null where the system does not report it.
+    peak_bytes: Option<u64>,
     /// Whether people get all facts, rather than a few lines; programs always do.
     #[serde(skip)]
     verbose: bool,

@@ -4,7 +4,6 @@ use super::announce::{Announcer, Plan};
 use super::{BakeArgs, Error, plan, quake, space};
 use crate::buffers::MethodFailed;
 use crate::clusters::warn_of_repeats;
-use crate::error::InputError;
 use crate::input;
 use crate::kept::Identity;
 use crate::map_portals::{portal_file, portals_for};
@@ -55,22 +54,12 @@ impl Source {
         Ok(Self { content, portals, is_made })
     }
 
-    /// Adds all that decides what is baked from it to what tells the results of one command from those of another.
-    pub(super) fn identify(&self, path: &Path, identity: &mut Identity) -> Result<(), InputError> {
-        identity.file(path)?;
-        if let Some(portals) = self.portals.as_deref().filter(|portals| *portals != path) {
-            identity.file(portals)?;
-        }
+    /// Adds what decides what is baked from it, beside the files, to what tells the results of one command from those of another.
+    pub(super) fn identify(&self, identity: &mut Identity) {
         // Files that a scene names are part of it too.
         if let Bakeable::Scene(_) = &self.content {
             identity.debug("content", &self.content);
         }
-        Ok(())
-    }
-
-    /// The files that it comes from.
-    pub(super) fn portals(&self) -> Option<&Path> {
-        self.portals.as_deref()
     }
 
     /// The error, with the name of the file that it is about.

@@ -52,6 +52,11 @@ pub(crate) enum Error {
     /// The program was interrupted.
     #[error("interrupted; parts that are written stay: the same command goes on from there")]
     Interrupted,
+    /// The program used too much memory.
+    #[error(
+        "stopped: {0}; what is done stays: the same command with a larger --memory or fewer --threads goes on from there"
+    )]
+    Memory(String),
 }
 
 from_file_error!(Error);

@@ -5,6 +5,7 @@ use super::outcome::{ShardDone, ShardsDone, ranges};
 use super::task::Task;
 use super::{Error, absolute, open};
 use crate::kept::{Identity, JobSlot, Keeping};
+use crate::memory::MemoryArgs;
 use crate::output;
 use crate::{Answer, interrupt};
 use sightlines::checkpoint::{Job, JobStore, Outcome, Role, ShardState};
@@ -24,6 +25,8 @@ pub(crate) struct ShardArgs {
     /// Number of threads; 0 uses every core
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 1, value_parser = crate::numbers::threads)]
     threads: usize,
+    #[command(flatten)]
+    memory: MemoryArgs,
     /// Seconds after which results are kept for a later run of the same shard
     #[arg(long, help_heading = "Resuming", value_name = "SECONDS", default_value_t = 10)]
     save_after: u64,
@@ -64,7 +67,7 @@ pub(crate) fn run(args: &ShardArgs, show_progress: bool) -> Result<Answer, Error
 
 /// Computes shards of one phase.
 fn compute(job: &Job, name: &Path, shards: Vec<usize>, args: &ShardArgs, show_progress: bool) -> Result<(), Error> {
-    let task = Task::of(job)?.with_threads(Some(args.threads));
+    let task = Task::of(job)?.with_threads(Some(args.threads)).with_memory(args.memory);
     let slot = JobSlot::default();
     let after = Duration::from_secs(args.save_after);
     let open = |identity: &Identity| {
@@ -84,7 +87,7 @@ fn compute(job: &Job, name: &Path, shards: Vec<usize>, args: &ShardArgs, show_pr
                 ranges(&missing)
             )))
         }
-        _ if interrupt::requested() => Err(Error::Interrupted),
+        _ if interrupt::requested() => Err(interrupt::memory().map_or(Error::Interrupted, Error::Memory)),
         _ => {
             made?;
             Err(Error::NeverBegun { path: name.to_owned(), shard: shards[0] })

@@ -4,6 +4,7 @@ use super::Error;
 use crate::commands::tiles::TilesCommand;
 use crate::commands::{build, reject, tiles, vis};
 use crate::kept::{Keeping, KeptError};
+use crate::memory::MemoryArgs;
 use clap::{Parser, Subcommand};
 use sightlines::checkpoint::Job;
 use std::fmt;
@@ -119,6 +120,18 @@ impl Task {
             Self::Vis(args) => &mut args.threads,
         };
         *own = threads.unwrap_or(*own);
+        self
+    }
+
+    /// The same with another budget of memory, if one is given.
+    pub(super) fn with_memory(mut self, memory: MemoryArgs) -> Self {
+        let own = match &mut self {
+            Self::Build(args) => &mut args.memory,
+            Self::Reject(args) => &mut args.memory,
+            Self::Tiles(args) => &mut args.memory,
+            Self::Vis(args) => &mut args.memory,
+        };
+        *own = memory.or(*own);
         self
     }
 

@@ -6,13 +6,19 @@ use crate::Answer;
 use crate::file_error::{FileError, from_file_error};
 use crate::folder::NewFolder;
 use crate::input;
+use crate::kept::{Identity, Inputs, Interrupted, Keeping, Kept, KeptError, ResumeArgs};
+use crate::memory::{MemoryArgs, Needs, Size, TooLarge};
 use crate::output;
 use crate::progress::Bar;
 use crate::simplification::{self, HowArgs, OutFormat, ReadScene, SimplificationError, read, written};
 use outcome::Outcome;
+use sightlines::cells::Scene;
 use sightlines::formats::levels::{INDEX_NAME, LevelFile, LevelsIndex, write_levels_index};
+use sightlines::formats::{GltfSource, SceneFile};
 use sightlines::multifocal::FromRegion;
-use sightlines::simplify::{HiddenBy, LevelOptions, MakeMethod, SimplifyError, SimplifyOptions, levels};
+use sightlines::simplify::{
+    Effort, HiddenBy, LevelOptions, Levels, MakeMethod, SimplifyError, SimplifyOptions, levels_with,
+};
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -28,6 +34,15 @@ pub(crate) enum Error {
     /// A scene that cannot be simplified.
     #[error(transparent)]
     Simplification(#[from] SimplificationError),
+    /// Results cannot be kept, or taken up.
+    #[error(transparent)]
+    Kept(#[from] KeptError),
+    /// There is no room for it in the memory that may be used.
+    #[error("{}: {source}; allow more", path.display())]
+    Memory { path: PathBuf, source: TooLarge },
+    /// The program was interrupted.
+    #[error("{0}")]
+    Interrupted(Interrupted),
 }
 
 from_file_error!(Error);
@@ -52,6 +67,11 @@ pub(crate) struct LevelsArgs {
     /// Maximum size of the triangles of all levels together, in bytes, without textures
     #[arg(long, help_heading = "Method", value_name = "BYTES", default_value_t = LevelOptions::default().memory)]
     memory: u64,
+    /// Memory that the program may use, such as 2GiB or 800MB, as --memory of `build`: --memory is about levels here
+    #[arg(long, help_heading = "Method", value_name = "SIZE")]
+    work_memory: Option<Size>,
+    #[command(flatten)]
+    resume: ResumeArgs,
     /// The folder to write: a new one, or one that contains only levels, which are replaced
     #[arg(short, long, help_heading = "Output", value_name = "FOLDER")]
     output: PathBuf,
@@ -67,8 +87,14 @@ fn is_ours(name: &str) -> bool {
 }
 
 pub(crate) fn run(args: &LevelsArgs, show_progress: bool) -> Result<Answer, Error> {
+    let work_memory = MemoryArgs::of(args.work_memory);
+    work_memory.watch();
     // Outputs that cannot be written are reported before the work is done.
     let folder = NewFolder::new(&args.output, is_ours)?;
+    let keeping = Keeping::File(&args.resume);
+    let is_there = args.table.exists() && args.scene.exists();
+    let inputs = [&args.scene, &args.table].map(PathBuf::as_path);
+    let inputs = Inputs::look(keeping, inputs.into_iter().filter(|_| is_there))?;
     let table = input::table(&args.table)?;
     // What was see-through for the table must not count as a wall here.
     let ReadScene { file, source } = read(&args.scene, &args.how.surfaces.options_with(table.info()))?;
@@ -84,14 +110,58 @@ pub(crate) fn run(args: &LevelsArgs, show_progress: bool) -> Result<Answer, Erro
     let simplify = args.how.options(standard.simplify.n_parts);
     let options =
         LevelOptions { simplify: SimplifyOptions { n_rays: N_RAYS, ..simplify }, memory: args.memory, ..standard };
+    // What each cell sees, in bytes and in bits, and what is left of it.
+    let seen = table.n_cells() as u64 * scene.n_triangles() as u64;
+    let needs = Needs { shared: seen + seen / 4, per_thread: (4 << 20) + 64 * scene.n_triangles() as u64 };
+    let too_large = |source| Error::Memory { path: args.scene.clone(), source };
+    let threads = work_memory.threads(options.simplify.threads, needs).map_err(too_large)?;
+    let options = LevelOptions { simplify: SimplifyOptions { threads, ..options.simplify }, ..options };
     let start = Instant::now();
+    let kept = Kept::open(keeping, &inputs, &[&args.output], || args.identity(&inputs, &options, &file))?;
     let bar = Bar::new("levels", show_progress);
-    let made = levels(scene, table, &by, &options).map_err(|source| {
+    let effort = Effort { observer: Some(&bar), units: kept.units() };
+    let made = levels_with(scene, table, &by, &options, &effort).map_err(|source| {
         let of_table = matches!(source, SimplifyError::OtherScene(_) | SimplifyError::Views(_));
         let path = if of_table { &args.table } else { &args.scene };
-        SimplificationError::Simplify { path: path.clone(), source }
-    })?;
+        Error::from(SimplificationError::Simplify { path: path.clone(), source })
+    });
     drop(bar);
+    let made = made.and_then(|made| {
+        let outcome = write(args, (scene, method), (&file, source.as_ref()), (&made, is_framed), folder, start)?;
+        Ok(outcome)
+    });
+    match kept.finish(made.is_ok()) {
+        Some(interrupted) => return Err(Error::Interrupted(interrupted)),
+        None => output::print(args.json, &made?)?,
+    }
+    Ok(Answer::Yes)
+}
+
+impl LevelsArgs {
+    /// What decides the results of units. A new argument does not compile until it is decided whether it is part of that.
+    fn identity(&self, inputs: &Inputs, options: &LevelOptions, file: &SceneFile) -> Identity {
+        #[rustfmt::skip]
+        let Self { scene: _, table: _, how, memory: _, work_memory: _, resume: _, output: _, json: _ } = self;
+        let LevelOptions { simplify, memory, bytes_per_triangle } = *options;
+        let simplify = SimplifyOptions { threads: 0, ..simplify };
+        let mut identity = Identity::new("levels", inputs);
+        // Files that a scene names are part of it.
+        identity.debug("content", &file.scene);
+        identity.debug("how", &how.for_any_threads());
+        identity.debug("options", &(simplify, memory, bytes_per_triangle));
+        identity
+    }
+}
+
+/// Writes the folder.
+fn write(
+    args: &LevelsArgs,
+    (scene, method): (&Scene, &'static str),
+    (file, source): (&SceneFile, Option<&GltfSource>),
+    (made, is_framed): (&Levels, bool),
+    folder: NewFolder,
+    start: Instant,
+) -> Result<Outcome, Error> {
     let mut index = LevelsIndex {
         n_triangles: scene.n_triangles() as u64,
         budget: args.how.budget(),
@@ -100,7 +170,7 @@ pub(crate) fn run(args: &LevelsArgs, show_progress: bool) -> Result<Answer, Erro
     };
     let (mut n_bytes, mut roundings) = (0, Vec::new());
     for (k, level) in made.levels.iter().enumerate() {
-        let written = written(&args.scene, &file.scene, source.as_ref(), &level.simplified, is_framed, OutFormat::Glb)?;
+        let written = written(&args.scene, &file.scene, source, &level.simplified, is_framed, OutFormat::Glb)?;
         let file = format!("level_{k}.glb");
         folder.save(&file, &written.bytes)?;
         n_bytes += written.bytes.len() as u64;
@@ -116,6 +186,5 @@ pub(crate) fn run(args: &LevelsArgs, show_progress: bool) -> Result<Answer, Erro
     folder.save(INDEX_NAME, write_levels_index(&index).as_bytes())?;
     let outcome = Outcome::new(args, (scene, method), &index, (n_bytes, roundings), start.elapsed());
     folder.finish()?;
-    output::print(args.json, &outcome)?;
-    Ok(Answer::Yes)
+    Ok(outcome)
 }

@@ -1,6 +1,7 @@
 //! What levels were made, in numbers.
 
 use super::LevelsArgs;
+use crate::memory;
 use crate::output::{bytes, count, percent, seconds};
 use crate::simplification::{Rounded, SingleSided};
 use serde::Serialize;
@@ -35,6 +36,8 @@ pub(super) struct Outcome {
     #[serde(skip_serializing_if = "Option::is_none")]
     rounded: Option<Rounded>,
     seconds: f64,
+    /// The most memory that was in use at once; null where the system does not report it.
+    peak_bytes: Option<u64>,
 }
 
 impl Outcome {
@@ -64,6 +67,7 @@ impl Outcome {
             rounded: Rounded::of(roundings),
             bound: index.levels.iter().map(|level| level.bound).fold(0.0, f64::max),
             seconds: time.as_secs_f64(),
+            peak_bytes: memory::peak_bytes(),
         }
     }
 }

@@ -7,7 +7,8 @@ use super::outcome::Outcome;
 use super::scenes::Scenes;
 use crate::commands::build::region::RegionArgs;
 use crate::error::{InputError, OutputError};
-use crate::kept::{Identity, Keeping, Kept, PROGRAM, UNITS};
+use crate::kept::{Identity, Inputs, Keeping, Kept, PROGRAM, UNITS};
+use crate::memory::MemoryArgs;
 use crate::output;
 use crate::progress::Bar;
 use crate::surfaces::SurfaceArgs;
@@ -52,6 +53,8 @@ pub(crate) struct TilesBuildArgs {
     /// Number of threads; 0 uses every core
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::numbers::threads)]
     pub(crate) threads: usize,
+    #[command(flatten)]
+    pub(crate) memory: MemoryArgs,
     /// The folder of the world: a new one, or that of an earlier bake, from which tiles that have not changed are kept
     #[arg(short, long, help_heading = "Output", value_name = "FOLDER")]
     pub(crate) output: PathBuf,
@@ -81,6 +84,8 @@ impl Observer for Quiet {
 /// Reads, bakes and writes. Prints nothing but progress and warnings.
 pub(crate) fn make(args: &TilesBuildArgs, keeping: Keeping<'_>, show_progress: bool) -> Result<Outcome, Error> {
     let start = Instant::now();
+    crate::threads::use_only(args.threads);
+    args.memory.watch();
     if args.region.names_a_file() {
         return Err(Error::Cells(args.world.clone()));
     }
@@ -92,7 +97,13 @@ pub(crate) fn make(args: &TilesBuildArgs, keeping: Keeping<'_>, show_progress: b
     }
     let are_cells_named = args.region.names_cells();
     let reading = args.surfaces.options();
+    let files = input::files(&args.world, &input::plan(&args.world)?);
+    let looked_at = Inputs::look(keeping, files.iter().map(PathBuf::as_path))?;
+    // As it was looked at.
     let plan = input::plan(&args.world)?;
+    if files != input::files(&args.world, &plan) {
+        return Err(Error::Changed(args.world.clone()));
+    }
     let threads = if args.threads == 0 { thread::available_parallelism().map_or(1, usize::from) } else { args.threads };
     let looked = on_threads(threads, plan.tiles.len(), |tile| {
         if interrupt::requested() {
@@ -107,9 +118,7 @@ pub(crate) fn make(args: &TilesBuildArgs, keeping: Keeping<'_>, show_progress: b
     hasher.value("units", &UNITS.to_le_bytes());
     hash_options(&mut hasher, &options, are_cells_named);
     let keys = keys(&inputs, near_tiles(&bounds, plan.border), &hasher);
-    let identify = || identity(&args.world, &inputs, &keys);
-    let files: Vec<&Path> = vec![&args.world];
-    let kept = Kept::open(keeping, &args.output, &files, identify)?;
+    let kept = Kept::open(keeping, &looked_at, &[&args.output], || identity(&looked_at, &keys))?;
     let mut world = World { args, border: plan.border, inputs: &inputs, keys: &keys, missing: Vec::new() };
     world.find()?;
     let made = world.bake((&options, are_cells_named), (&reading, threads), kept.units(), show_progress);
@@ -118,22 +127,18 @@ pub(crate) fn make(args: &TilesBuildArgs, keeping: Keeping<'_>, show_progress: b
         Some(_) => {
             world.find()?;
             let n = inputs.len();
-            Err(Error::Interrupted { n_done: n - world.missing.iter().flatten().count(), n })
+            let n_done = n - world.missing.iter().flatten().count();
+            Err(Error::Interrupted { why: interrupt::memory(), n_done, n })
         }
         None => made,
     }
 }
 
 /// What decides the results of units.
-fn identity(world: &Path, inputs: &[TileInput], keys: &[TileKeys]) -> Result<Identity, InputError> {
-    let mut identity = Identity::new("tiles");
-    identity.file(world)?;
-    for tile in inputs {
-        identity.file(&tile.scene)?;
-        tile.cells.iter().try_for_each(|cells| identity.file(cells))?;
-    }
+fn identity(inputs: &Inputs, keys: &[TileKeys]) -> Identity {
+    let mut identity = Identity::new("tiles", inputs);
     keys.iter().for_each(|keys| identity.debug("tile", &(keys.key, keys.far_key)));
-    Ok(identity)
+    identity
 }
 
 /// Refuses scenes with other axes or units than the first.

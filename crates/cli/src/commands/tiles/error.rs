@@ -56,8 +56,8 @@ pub(crate) enum Error {
     #[error(transparent)]
     Halted(#[from] Halt),
     /// The program was interrupted.
-    #[error("interrupted; the same command goes on from the {n_done} of {n} tiles that are done")]
-    Interrupted { n_done: usize, n: usize },
+    #[error("{}; the same command goes on from the {n_done} of {n} tiles that are done", why.as_ref().map_or_else(|| "interrupted".to_owned(), |why| format!("stopped: {why}")))]
+    Interrupted { why: Option<String>, n_done: usize, n: usize },
 }
 
 from_file_error!(Error);

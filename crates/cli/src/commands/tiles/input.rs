@@ -46,14 +46,23 @@ pub(super) fn plan(path: &Path) -> Result<WorldPlan, Error> {
     WorldPlan::parse(&text).map_err(|source| Error::World { path: path.to_owned(), source })
 }
 
+/// The plan, and all files that it names.
+pub(super) fn files(world: &Path, plan: &WorldPlan) -> Vec<PathBuf> {
+    let named = plan.tiles.iter().flat_map(|tile| [Some(&tile.scene), tile.cells.as_ref()]).flatten();
+    std::iter::once(world.to_owned()).chain(named.map(|name| beside(world, name))).collect()
+}
+
+fn beside(world: &Path, name: &str) -> PathBuf {
+    world.parent().unwrap_or(Path::new("")).join(name)
+}
+
 /// The tile of a plan, `tile` in it; warns of what a user should hear of its file.
 pub(super) fn look(
     world: &Path,
     (tile, plan): (usize, TilePlan),
     reading: &SceneReadOptions,
 ) -> Result<TileInput, Error> {
-    let beside = |name: &str| world.parent().unwrap_or(Path::new("")).join(name);
-    let (scene, cells) = (beside(&plan.scene), plan.cells.as_deref().map(beside));
+    let (scene, cells) = (beside(world, &plan.scene), plan.cells.as_deref().map(|name| beside(world, name)));
     let loaded = load(&scene, cells.as_deref(), &plan, reading, true)?;
     let extent = tile_extent(&loaded.scene, &[ViewCell { id: String::new(), bounds: loaded.viewers }]);
     let is_flat = (0..3).any(|k| loaded.viewers.min[k] >= loaded.viewers.max[k]);

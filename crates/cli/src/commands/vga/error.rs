@@ -2,6 +2,7 @@
 
 use crate::file_error::{FileError, from_file_error};
 use crate::kept::{Interrupted, KeptError};
+use crate::memory::TooLarge;
 use crate::place::LookupError;
 use sightlines::isovist::{EyeError, MeshError};
 use sightlines::visibility_graph::{GraphError, GridError, PointsError};
@@ -37,6 +38,9 @@ pub(crate) enum Error {
     /// The program was interrupted.
     #[error("{0}")]
     Interrupted(Interrupted),
+    /// There is no room for it in the memory that may be used.
+    #[error("{}: {source}; allow more, or take fewer points", path.display())]
+    Memory { path: PathBuf, source: TooLarge },
     /// An output of no known kind.
     #[error("{}: the name of the output ends in .csv, .geojson, .svg or .png", .0.display())]
     Kind(PathBuf),

@@ -1,13 +1,15 @@
 //! `vga`: visibility graph analysis of a floor plan.
 
 mod error;
+mod kind;
 mod outcome;
 mod points;
 
 use crate::Answer;
 use crate::error::InputError;
 use crate::input;
-use crate::kept::{Identity, Keeping, Kept, ResumeArgs};
+use crate::kept::{Identity, Inputs, Keeping, Kept, ResumeArgs};
+use crate::memory::{self, MemoryArgs, Needs};
 use crate::named::one_of;
 use crate::output;
 use crate::picture::PictureError;
@@ -15,6 +17,7 @@ use crate::place::Point;
 use crate::plans::PlanArgs;
 use crate::progress::Bar;
 use error::Error;
+use kind::Kind;
 use outcome::{Outcome, Range};
 use sightlines::bake::Bakeable;
 use sightlines::cells::Plan;
@@ -85,6 +88,8 @@ pub(crate) struct VgaArgs {
     /// Number of threads; 0 uses every core
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::numbers::threads)]
     threads: usize,
+    #[command(flatten)]
+    memory: MemoryArgs,
     #[command(flatten)]
     resume: ResumeArgs,
     /// The measure that a picture shows [default: the first of --measures, else connectivity]
@@ -173,32 +178,8 @@ const fn touch_about(touch: Touch) -> &'static str {
     }
 }
 
-/// What is written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
-    Csv,
-    GeoJson,
-    Svg,
-    Png,
-}
-
-impl Kind {
-    fn of(path: &Path) -> Result<Self, Error> {
-        match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
-            Some("csv") => Ok(Self::Csv),
-            Some("geojson" | "json") => Ok(Self::GeoJson),
-            Some("svg") => Ok(Self::Svg),
-            Some("png") => Ok(Self::Png),
-            _ => Err(Error::Kind(path.to_owned())),
-        }
-    }
-
-    fn is_picture(self) -> bool {
-        matches!(self, Self::Svg | Self::Png)
-    }
-}
-
 pub(crate) fn run(args: &VgaArgs, show_progress: bool) -> Result<Answer, Error> {
+    args.memory.watch();
     let kind = Kind::of(&args.output)?;
     let inputs: Vec<&Path> = std::iter::once(&args.plan).chain(&args.points).map(PathBuf::as_path).collect();
     output::check(&inputs, &[&args.output])?;
@@ -208,6 +189,8 @@ pub(crate) fn run(args: &VgaArgs, show_progress: bool) -> Result<Answer, Error> 
     if args.measure.is_some() && !kind.is_picture() {
         return Err(Error::Measure(args.output.clone()));
     }
+    let keeping = Keeping::File(&args.resume);
+    let looked = Inputs::look(keeping, inputs)?;
     let plan = plan_of(args)?;
     let (points, grid) = match (&args.points, args.spacing) {
         (None, Some(spacing)) => {
@@ -220,8 +203,13 @@ pub(crate) fn run(args: &VgaArgs, show_progress: bool) -> Result<Answer, Error> 
     let measures = measures(args, kind);
     let drawn = kind.is_picture().then(|| shown(args, &measures));
 
-    let kept = Kept::open(Keeping::File(&args.resume), &args.output, &inputs, || args.identity())?;
-    let analysed = analyse(args, &plan, &points, &measures, (&kept, show_progress));
+    // Paths keep a length, a node and an entry of a heap for each point; a column has a number, and a value that may be missing.
+    let n = points.len() as u64;
+    let needs = Needs { shared: 24 * n * measures.len() as u64, per_thread: (4 << 20) + 48 * n };
+    let too_large = |source| Error::Memory { path: args.plan.clone(), source };
+    let threads = args.memory.threads(args.threads, needs).map_err(too_large)?;
+    let kept = Kept::open(keeping, &looked, &[&args.output], || args.identity(&looked))?;
+    let analysed = analyse(args, &plan, &points, &measures, (&kept, threads, show_progress));
     let written = analysed.and_then(|analysed| {
         let columns = columns_of(&analysed.analysis, &measures);
         output::save(&args.output, &written(args, kind, &plan, &points, &columns, drawn)?)?;
@@ -246,6 +234,7 @@ pub(crate) fn run(args: &VgaArgs, show_progress: bool) -> Result<Answer, Error> 
         measure_seconds,
         drawn: drawn.map(Measure::name),
         file: args.output.display().to_string(),
+        peak_bytes: memory::peak_bytes(),
     };
     output::print(args.json, &outcome)?;
     Ok(Answer::Yes)
@@ -269,11 +258,11 @@ fn analyse(
     plan: &Plan,
     points: &Points,
     measures: &[Measure],
-    (kept, show_progress): (&Kept<'_>, bool),
+    (kept, threads, show_progress): (&Kept<'_>, usize, bool),
 ) -> Result<Analysed, Error> {
     let bar = Bar::new("visibility graph", show_progress);
     let units = kept.units();
-    let effort = Effort { threads: args.threads, observer: Some(&bar), units };
+    let effort = Effort { threads, observer: Some(&bar), units };
     let start = Instant::now();
     let graph = graph(args, plan, points, &effort)?;
     let graph_seconds = start.elapsed().as_secs_f64();
@@ -290,15 +279,18 @@ fn analyse(
 }
 
 impl VgaArgs {
-    /// What decides the results of units: the files, how they are read, and what is measured; not the number of threads.
-    fn identity(&self) -> Result<Identity, InputError> {
-        let mut identity = Identity::new("vga");
-        identity.file(&self.plan)?;
-        self.points.iter().try_for_each(|points| identity.file(points))?;
-        identity.debug("points", &(&self.map, &self.plans, self.spacing, &self.seed));
-        let Self { measures, measure, radius, metric_radius, angular_radius, turns, touch, .. } = self;
+    /// What decides the results of units: the files, how they are read, and what is measured; not the number of threads. A new argument does not compile until
+    /// it is decided whether it is part of that.
+    fn identity(&self, inputs: &Inputs) -> Identity {
+        #[rustfmt::skip]
+        let Self {
+            plan: _, map, plans, spacing, seed, points: _, measures, radius, metric_radius, angular_radius, turns, touch,
+            threads: _, memory: _, resume: _, measure, size: _, output: _, json: _,
+        } = self;
+        let mut identity = Identity::new("vga", inputs);
+        identity.debug("points", &(map, plans, spacing, seed));
         identity.debug("measures", &(measures, measure, radius, metric_radius, angular_radius, turns, touch));
-        Ok(identity)
+        identity
     }
 }
 

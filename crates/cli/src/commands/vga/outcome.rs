@@ -26,6 +26,8 @@ pub(super) struct Outcome {
     /// The measure of a picture; null for tables.
     pub(super) drawn: Option<&'static str>,
     pub(super) file: String,
+    /// The most memory that was in use at once; null where the system does not report it.
+    pub(super) peak_bytes: Option<u64>,
 }
 
 /// The values of a measure.

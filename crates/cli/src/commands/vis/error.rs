@@ -2,6 +2,7 @@
 
 use crate::file_error::{FileError, from_file_error};
 use crate::kept::{Interrupted, KeptError};
+use crate::memory::TooLarge;
 use sightlines::bake::PrtBakeError;
 use sightlines::bake::quake::StateError;
 use std::fmt;
@@ -23,6 +24,9 @@ pub(crate) enum Error {
     /// Results cannot be kept, or taken up.
     #[error(transparent)]
     Kept(#[from] KeptError),
+    /// There is no room for it in the memory that may be used.
+    #[error("{}: {source}; allow more", path.display())]
+    Memory { path: PathBuf, source: TooLarge },
     /// The program was interrupted.
     #[error("{0}")]
     Interrupted(Interrupted),

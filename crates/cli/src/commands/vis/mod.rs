@@ -13,11 +13,13 @@ pub(crate) use sounds::Sound;
 
 use crate::Answer;
 use crate::clusters::warn_of_repeats;
+use crate::commands::build::needs::of_clusters;
 use crate::error::{InputError, OutputError};
 use crate::input;
 use crate::interrupt;
-use crate::kept::{Identity, Interrupted, Keeping, Kept};
+use crate::kept::{Identity, Inputs, Interrupted, Keeping, Kept};
 use crate::map_portals::{MapPortals, portal_file, portals_for};
+use crate::memory::MemoryArgs;
 use crate::output;
 use crate::progress::Bar;
 use certify::certify;
@@ -49,6 +51,8 @@ pub(crate) struct VisArgs {
     /// Number of threads; 0 uses every core
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::numbers::threads)]
     pub(crate) threads: usize,
+    #[command(flatten)]
+    pub(crate) memory: MemoryArgs,
     /// Resume an interrupted run with the same portals and options
     #[arg(long, help_heading = "Resuming")]
     pub(crate) resume: bool,
@@ -80,6 +84,7 @@ impl VisArgs {
             prt: None,
             fast: false,
             threads: 0,
+            memory: MemoryArgs::default(),
             resume: false,
             state: None,
             save_every: 30,
@@ -131,6 +136,7 @@ pub(crate) fn make(args: &VisArgs, keeping: Keeping<'_>, show_progress: bool) ->
 pub(crate) fn compute(args: &VisArgs, manner: Manner<'_, '_>) -> Result<Outcome, Error> {
     crate::threads::use_only(args.threads);
     let start = Instant::now();
+    args.memory.watch();
     if args.prt.is_none() && args.map.is_file() && input::kind_of(&args.map)? == Some(InputKind::Prt) {
         return Err(Error::PortalsForMap { path: args.map.clone(), command: "sightlines vis" });
     }
@@ -141,6 +147,8 @@ pub(crate) fn compute(args: &VisArgs, manner: Manner<'_, '_>) -> Result<Outcome,
     // without.
     let beside = [file.as_ref(), Some(&state_path)];
     output::check(&beside.into_iter().flatten().map(PathBuf::as_path).collect::<Vec<_>>(), &[out])?;
+    let inputs =
+        Inputs::look(manner.keeping, [Some(&args.map), file.as_ref()].into_iter().flatten().map(PathBuf::as_path))?;
     let bsp = read_bsp(&args.map)?;
     let portals = portals_for(&bsp, &args.map, args.prt.as_deref())?;
     let format = portals.format();
@@ -151,8 +159,10 @@ pub(crate) fn compute(args: &VisArgs, manner: Manner<'_, '_>) -> Result<Outcome,
     check_portals(&bsp, &prt).map_err(|source| InputError::of_portals(&prt_path, &args.map, Box::new(source)))?;
     warn_of_repeats(&prt_path, &prt);
 
+    let too_large = |source| Error::Memory { path: args.map.clone(), source };
+    let threads = args.memory.threads(args.threads, of_clusters(&prt)).map_err(too_large)?;
     let key = StateKey::new(&text, args.fast);
-    let kept = Kept::open(manner.keeping, out, &[], || args.identity(&text, &prt_path))?;
+    let kept = Kept::open(manner.keeping, &inputs, &[out], || args.identity(&text, &inputs))?;
     drop(text);
     let every = Duration::from_secs(args.save_every);
     let (mut saved, from) = Saved::open(state_path, every, key, &graph_of_prt(&prt), manner.states)?;
@@ -175,7 +185,7 @@ pub(crate) fn compute(args: &VisArgs, manner: Manner<'_, '_>) -> Result<Outcome,
         _ => ControlFlow::Continue(()),
     };
     let sounds = sounds::all_but(&args.silence);
-    let search = ConvexOptions { fast: args.fast, threads: args.threads };
+    let search = ConvexOptions { fast: args.fast, threads };
     let units = kept.units();
     let options = PrtOptions { search, from, progress: Some(&observer), after_step: Some(&mut save), units, sounds };
     let map = vis_map(&bsp, &prt, options);
@@ -201,16 +211,16 @@ pub(crate) fn compute(args: &VisArgs, manner: Manner<'_, '_>) -> Result<Outcome,
 }
 
 impl VisArgs {
-    /// What decides the results of units.
-    fn identity(&self, portals: &[u8], prt: &Path) -> Result<Identity, InputError> {
-        let mut identity = Identity::new("vis");
-        identity.file(&self.map)?;
-        if prt != self.map {
-            identity.file(prt)?;
-        }
+    /// What decides the results of units. A new argument does not compile until it is decided whether it is part of that.
+    fn identity(&self, portals: &[u8], inputs: &Inputs) -> Identity {
+        #[rustfmt::skip]
+        let Self {
+            map: _, prt: _, fast, threads: _, memory: _, resume: _, state: _, save_every: _, certify: _, silence: _, output: _, json: _,
+        } = self;
+        let mut identity = Identity::new("vis", inputs);
         identity.debug("portals", &portals);
-        identity.debug("options", &self.fast);
-        Ok(identity)
+        identity.debug("options", fast);
+        identity
     }
 }
 

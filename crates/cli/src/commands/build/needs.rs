@@ -1,0 +1,48 @@
+//! The memory that a build is known to need, before it begins.
+
+use super::source::Source;
+use crate::memory::Needs;
+use sightlines::bake::methods::OcclusionMethod;
+use sightlines::bake::{BakeOptions, Bakeable, SceneMethod};
+use sightlines::formats::quake::Prt;
+
+/// Stacks, and what an allocator keeps for a thread.
+const OF_A_THREAD: u64 = 4 << 20;
+/// What a query keeps for each triangle of the scene, in each thread: where sheets were looked for, and whether it was seen.
+const OF_A_TRIANGLE: u64 = 64;
+/// What a row of runs takes, of a cell in a city.
+const OF_A_ROW: u64 = 512;
+/// Squares that are there at once while cells are asked about: what is possible, what is proven and what is left open, before this question and behind it.
+const SQUARES: u64 = 5;
+
+/// What decides about scenes by from-region queries, or about a Quake map, needs. Of other inputs nothing is known before they are cut.
+///
+/// * `by_rows`: for a table that is written row by row
+pub(super) fn of(source: &Source, options: &BakeOptions<'_>, by_rows: bool) -> Needs {
+    match &source.content {
+        Bakeable::Scene(file) => {
+            let Some(n) = options.cells.most() else { return Needs::default() };
+            let n_objects = file.scene.objects().len() as u64;
+            let has_buffers =
+                matches!(options.method, SceneMethod::Both | SceneMethod::FromRegion(OcclusionMethod::Multifocal));
+            let buffers = if has_buffers { options.buffers.bytes_per_thread() } else { 0 };
+            let of_triangles = OF_A_TRIANGLE * file.scene.n_triangles() as u64;
+            // Four flags for each cell and object.
+            let per_thread = OF_A_THREAD + buffers + of_triangles + 4 * (n + n_objects);
+            if by_rows {
+                return Needs { shared: n * OF_A_ROW, per_thread };
+            }
+            let needs = Needs { shared: 0, per_thread };
+            needs.and_bits(SQUARES, n, n).and_bits(SQUARES, n, n_objects)
+        }
+        Bakeable::Portals(prt) | Bakeable::Map(_, prt) => of_clusters(prt),
+        Bakeable::Plan { .. } => Needs::default(),
+    }
+}
+
+/// What the search of a portal file needs: two squares of clusters, a row for each side of a portal, and the table.
+pub(crate) fn of_clusters(prt: &Prt) -> Needs {
+    let [n, n_gates] = [prt.n_clusters() as u64, 2 * prt.n_portals() as u64];
+    let needs = Needs { shared: 0, per_thread: OF_A_THREAD + n };
+    needs.and_bits(3, n, n).and_bits(1, n_gates, n)
+}
