@@ -38,7 +38,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let bounds: Vec<TileBounds> = tiles.iter().map(|tile| tile.3).collect();
     let near_of = near_tiles(&bounds, 20.0);
     let options = BakeOptions { method: SceneMethod::FromRegion(OcclusionMethod::LineSpace), ..BakeOptions::default() };
-    let mut index = WorldIndex { border: 20.0, tiles: Vec::new() };
+    let mut index = WorldIndex { border: 20.0, reach: None, tiles: Vec::new() };
     for (k, (name, scene, cells, bounds)) in (0u32..).zip(&tiles) {
         let near: Vec<usize> = near_of[k as usize].iter().map(|&near| near as usize).collect();
         let far: Vec<usize> = (0..tiles.len()).filter(|other| *other != k as usize && !near.contains(other)).collect();

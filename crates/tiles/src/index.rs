@@ -2,7 +2,7 @@
 
 use crate::error::WorldError;
 use crate::near::TileBounds;
-use crate::plan::{BoxText, VERSION, check_names, check_version};
+use crate::plan::{BoxText, VERSION, check_distances, check_names, check_version};
 use serde::{Deserialize, Serialize};
 
 /// The name of the index in the folder.
@@ -38,6 +38,8 @@ impl TilePart {
 pub struct WorldIndex {
     /// How far away what a tile contains is near another.
     pub border: f64,
+    /// How far viewers see at most, along each axis; `None`: to the end of the world.
+    pub reach: Option<f64>,
     /// The tiles.
     pub tiles: Vec<TileEntry>,
 }
@@ -85,6 +87,8 @@ impl TileEntry {
 struct Text {
     sightlines_world: u32,
     border: f64,
+    #[serde(default)]
+    reach: Option<f64>,
     tiles: Vec<EntryText>,
 }
 
@@ -125,13 +129,15 @@ impl WorldIndex {
     /// [`WorldError::Syntax`], [`WorldError::Version`], [`WorldError::Tile`].
     pub fn parse(text: &[u8]) -> Result<Self, WorldError> {
         check_version(text)?;
-        let Text { border, tiles, .. } = serde_json::from_slice(text).map_err(|error| WorldError::syntax(&error))?;
+        let Text { border, reach, tiles, .. } =
+            serde_json::from_slice(text).map_err(|error| WorldError::syntax(&error))?;
+        check_distances(border, reach)?;
         check_names(tiles.iter().map(|tile| &*tile.name))?;
         let tiles = tiles
             .into_iter()
             .enumerate()
             .map(|(tile, text)| text.checked().map_err(|what| WorldError::Tile { tile, what }));
-        Ok(Self { border, tiles: tiles.collect::<Result<_, _>>()? })
+        Ok(Self { border, reach, tiles: tiles.collect::<Result<_, _>>()? })
     }
 
     /// The index as text, a line for each tile.
@@ -150,9 +156,10 @@ impl WorldIndex {
             format!("    {}", serde_json::to_string(&text).expect("numbers and texts are JSON"))
         };
         let lines: Vec<String> = self.tiles.iter().map(line).collect();
-        let border = serde_json::to_string(&self.border).expect("a number is JSON");
+        let [border, reach] =
+            [Some(self.border), self.reach].map(|x| serde_json::to_string(&x).expect("a number is JSON"));
         format!(
-            "{{\n  \"sightlines_world\": {VERSION},\n  \"border\": {border},\n  \"tiles\": [\n{}\n  ]\n}}\n",
+            "{{\n  \"sightlines_world\": {VERSION},\n  \"border\": {border},\n  \"reach\": {reach},\n  \"tiles\": [\n{}\n  ]\n}}\n",
             lines.join(",\n")
         )
     }
@@ -174,7 +181,7 @@ mod tests {
             n_cells: 7,
             n_objects: 0,
         };
-        let index = WorldIndex { border: 0.3, tiles: vec![tile("a", 1), tile("b-c", 255)] };
+        let index = WorldIndex { border: 0.3, reach: Some(0.7), tiles: vec![tile("a", 1), tile("b-c", 255)] };
         let text = index.to_json();
         assert_eq!(WorldIndex::parse(text.as_bytes()).unwrap(), index);
         (0..text.trim_end().len()).for_each(|n| assert!(WorldIndex::parse(&text.as_bytes()[..n]).is_err(), "{n}"));

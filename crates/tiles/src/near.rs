@@ -19,9 +19,7 @@ pub fn near_tiles(tiles: &[TileBounds], border: f64) -> Vec<Vec<u32>> {
     let extents: Vec<Aabb<3>> = tiles.iter().map(|tile| tile.extent).collect();
     let tree = BoxTree::build(&extents, 4);
     let near = |(tile, bounds): (u32, &TileBounds)| {
-        let b = bounds.viewers;
-        let meets =
-            |other: &Aabb<3>| (0..3).all(|k| other.min[k] <= b.max[k] + border && b.min[k] - border <= other.max[k]);
+        let meets = |other: &Aabb<3>| is_within(&bounds.viewers, other, border);
         let mut found = Vec::new();
         tree.visit(meets, |other| {
             if other != tile && meets(&extents[other as usize]) {
@@ -32,6 +30,11 @@ pub fn near_tiles(tiles: &[TileBounds], border: f64) -> Vec<Vec<u32>> {
         found
     };
     (0..).zip(tiles).map(near).collect()
+}
+
+/// Whether a box is at most so far away from another, along each axis.
+pub(crate) fn is_within(viewers: &Aabb<3>, other: &Aabb<3>, distance: f64) -> bool {
+    (0..3).all(|k| other.min[k] <= viewers.max[k] + distance && viewers.min[k] - distance <= other.max[k])
 }
 
 #[cfg(test)]

@@ -14,7 +14,8 @@
 //! Each tile is a scene in a file, which `at` moves to its place in the world; without it the scene is there already. Eyes can be in `viewers`, a
 //! box in the world, which is cut into cells; or in `cells`, a file of view cells in coordinates of the scene, moved with it. With neither, viewers
 //! can be anywhere in the box of the scene. Boxes of viewers may touch and overlap. Names of files are relative to the plan. A tile is near another if what it contains is at most
-//! `border` away, along each axis, from the box of the other's viewers; 0 by default: those that touch it.
+//! `border` away, along each axis, from the box of the other's viewers; 0 by default: those that touch it. `reach`, if it is there, states that
+//! viewers see no farther than that along any axis from their tile's box of viewers, for a far plane or fog.
 
 use crate::error::WorldError;
 use serde::{Deserialize, Serialize};
@@ -32,6 +33,9 @@ const LONGEST_NAME: usize = 100;
 pub struct WorldPlan {
     /// How far away, along each axis, what a tile contains is near another, in scene units.
     pub border: f64,
+    /// How far viewers see at most, along each axis, in scene units: a premise, under which tiles farther away are never seen. At least the border. `None`: to
+    /// the end of the world.
+    pub reach: Option<f64>,
     /// The tiles; at least one.
     pub tiles: Vec<TilePlan>,
 }
@@ -58,6 +62,8 @@ struct Text {
     sightlines_world: u32,
     #[serde(default)]
     border: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    reach: Option<f64>,
     tiles: Vec<TileText>,
 }
 
@@ -129,10 +135,8 @@ impl WorldPlan {
         let syntax = |error: serde_json::Error| WorldError::syntax(&error);
         // The version first: another one may have other members.
         check_version(text)?;
-        let Text { border, tiles, .. } = serde_json::from_slice(text).map_err(syntax)?;
-        if !(border >= 0.0 && border.is_finite()) {
-            return Err(WorldError::World("\"border\" is a number from 0 on"));
-        }
+        let Text { border, reach, tiles, .. } = serde_json::from_slice(text).map_err(syntax)?;
+        check_distances(border, reach)?;
         if tiles.is_empty() {
             return Err(WorldError::World("there are no tiles"));
         }
@@ -141,7 +145,7 @@ impl WorldPlan {
             .into_iter()
             .enumerate()
             .map(|(tile, text)| text.checked().map_err(|what| WorldError::Tile { tile, what }));
-        Ok(Self { border, tiles: tiles.collect::<Result<_, _>>()? })
+        Ok(Self { border, reach, tiles: tiles.collect::<Result<_, _>>()? })
     }
 
     /// The plan as text.
@@ -154,9 +158,20 @@ impl WorldPlan {
             cells: tile.cells.clone(),
         };
         let tiles = self.tiles.iter().map(tile).collect();
-        let text = Text { sightlines_world: VERSION, border: self.border, tiles };
+        let text = Text { sightlines_world: VERSION, border: self.border, reach: self.reach, tiles };
         serde_json::to_string_pretty(&text).expect("numbers and texts are JSON") + "\n"
     }
+}
+
+/// Refuses distances that are none.
+pub(crate) fn check_distances(border: f64, reach: Option<f64>) -> Result<(), WorldError> {
+    if !(border >= 0.0 && border.is_finite()) {
+        return Err(WorldError::World("\"border\" is a number from 0 on"));
+    }
+    if reach.is_some_and(|reach| !(reach >= border && reach.is_finite())) {
+        return Err(WorldError::World("\"reach\" is a number from \"border\" on"));
+    }
+    Ok(())
 }
 
 /// Refuses a text that is of another version.
@@ -204,6 +219,7 @@ mod tests {
     fn what_is_wrong_is_named() {
         let cases = [
             ("\"border\": 0.1", "\"border\": -1", "\"border\" is a number from 0 on"),
+            ("\"border\": 0.1", "\"border\": 2, \"reach\": 1", "\"reach\" is a number from \"border\" on"),
             ("\"a.glb\", ", "\"a.glb\" ", "line 2 column 44: expected `,` or `}`"),
             ("\"b\", ", "\"A\", ", "tile 1: tile 0 has the name \"A\" too"),
             (
@@ -222,7 +238,7 @@ mod tests {
             (
                 "\"border\"",
                 "\"boarder\"",
-                "line 1 column 35: unknown field `boarder`, expected one of `sightlines_world`, `border`, `tiles`",
+                "line 1 column 35: unknown field `boarder`, expected one of `sightlines_world`, `border`, `reach`, `tiles`",
             ),
         ];
         for (old, new, expected) in cases {

@@ -2,6 +2,7 @@
 
 use crate::error::WorldError;
 use crate::index::TilePart;
+use crate::near::is_within;
 use crate::world::{TileId, World};
 use sightlines_packed::Packed;
 use sightlines_packed::PackedError;
@@ -66,7 +67,7 @@ pub struct TileTables {
     far: Across<File>,
     near_ids: Vec<TileId>,
     far_ids: Vec<TileId>,
-    /// Tiles that this one does not know of.
+    /// Tiles within reach that this one does not know of.
     unknown: Vec<TileId>,
     paths: [PathBuf; 3],
 }
@@ -88,7 +89,11 @@ impl TileTables {
         let near_ids: Vec<TileId> = near_ids.collect::<Option<_>>()?;
         let far_ids: Vec<TileId> = far.columns().far.iter().map(|name| world.named(name)).collect::<Option<_>>()?;
         let known: BTreeSet<TileId> = near_ids.iter().chain(&far_ids).copied().chain([tile]).collect();
-        let unknown = world.tiles().filter(|other| !known.contains(other)).collect();
+        let viewers = world.tile(tile)?.bounds.viewers;
+        let reach = world.index().reach.unwrap_or(f64::INFINITY);
+        let is_in_reach =
+            |other: TileId| world.tile(other).is_some_and(|other| is_within(&viewers, &other.bounds.extent, reach));
+        let unknown = world.tiles().filter(|other| !known.contains(other) && is_in_reach(*other)).collect();
         let paths = TilePart::ALL.map(|part| world.path(tile, part));
         Some(Self { tile, table, near, far, near_ids, far_ids, unknown, paths })
     }

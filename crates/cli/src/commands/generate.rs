@@ -117,7 +117,7 @@ fn write_world(args: &WorldArgs) -> Result<Answer, Error> {
     let options = CityOptions { seed, blocks_x: blocks, blocks_z: blocks, detail };
     let tiles = city_tiles(options, per_tile)?;
     fs::create_dir_all(output).map_err(|source| OutputError::Folder { path: output.clone(), source })?;
-    let mut plan = WorldPlan { border, tiles: Vec::new() };
+    let mut plan = WorldPlan { border, reach: None, tiles: Vec::new() };
     let mut outcome =
         WorldOutcome { out: output.display().to_string(), seed, n_tiles: tiles.len(), ..WorldOutcome::default() };
     for CityTile { name, scene, cells } in tiles {

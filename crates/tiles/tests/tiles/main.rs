@@ -47,7 +47,7 @@ fn bake(folder: &Path) {
         .collect();
     let near_of = near_tiles(&bounds, 20.0);
     let options = BakeOptions { method: SceneMethod::FromRegion(OcclusionMethod::Shafts), ..BakeOptions::default() };
-    let mut index = WorldIndex { border: 20.0, tiles: Vec::new() };
+    let mut index = WorldIndex { border: 20.0, reach: None, tiles: Vec::new() };
     for (k, tile) in tiles.iter().enumerate() {
         let near: Vec<usize> = near_of[k].iter().map(|&near| near as usize).collect();
         let far: Vec<usize> = (0..tiles.len()).filter(|other| *other != k && !near.contains(other)).collect();
@@ -177,6 +177,15 @@ fn tiles_that_are_not_known_are_seen() {
     let (mut seen, mut scratch) = (Seen::default(), TileScratch::default());
     world.load(TileId(12), 0).unwrap().see_from(CellId(0), &mut seen, &mut scratch).unwrap();
     assert!(seen.tiles.contains(&TileId(25)));
+    // The block 12 is two blocks away from the first: beyond a reach of less than that it is known not to be seen.
+    for (reach, is_seen) in [(30.0, false), (60.0, true)] {
+        more.reach = Some(reach);
+        fs::write(copy.path().join(INDEX_NAME), more.to_json()).unwrap();
+        let world = World::open(copy.path()).unwrap();
+        seen.clear();
+        world.load(TileId(12), 0).unwrap().see_from(CellId(0), &mut seen, &mut scratch).unwrap();
+        assert_eq!(seen.tiles.contains(&TileId(25)), is_seen, "{reach}");
+    }
 
     let mut fewer = index.clone();
     fewer.tiles.pop();

@@ -16,6 +16,8 @@ use std::sync::Arc;
 #[derive(Debug)]
 pub(super) struct TileKeys {
     pub(super) near: Vec<u32>,
+    /// Those farther away that may be seen.
+    pub(super) far: Vec<u32>,
     pub(super) key: [u8; 16],
     pub(super) far_key: [u8; 16],
 }
@@ -48,7 +50,16 @@ pub(super) fn hash_options(hasher: &mut KeyHasher, options: &BakeOptions<'_>, ar
 }
 
 /// The keys of all tiles.
-pub(super) fn keys(inputs: &[TileInput], near: Vec<Vec<u32>>, options: &KeyHasher) -> Vec<TileKeys> {
+///
+/// * `near`: for each tile those nearby
+/// * `reached`: for each tile those within reach of viewers; `None` for all
+pub(super) fn keys(
+    inputs: &[TileInput],
+    near: Vec<Vec<u32>>,
+    reached: Option<Vec<Vec<u32>>>,
+    options: &KeyHasher,
+) -> Vec<TileKeys> {
+    let all = || (0..inputs.len() as u32).collect::<Vec<u32>>();
     let of = |(tile, near): (usize, Vec<u32>)| {
         let mut hasher = options.clone();
         hasher.value("tile", &inputs[tile].key.0);
@@ -57,19 +68,16 @@ pub(super) fn keys(inputs: &[TileInput], near: Vec<Vec<u32>>, options: &KeyHashe
             hasher.value("near", &inputs[other as usize].key.0);
         }
         let key = hasher.finish().0;
-        for other in far(tile, &near, inputs.len()) {
-            let Aabb { min, max } = inputs[other].bounds.extent;
-            hasher.value("far", inputs[other].plan.name.as_bytes());
+        let mut far = reached.as_ref().map_or_else(all, |reached| reached[tile].clone());
+        far.retain(|&other| other as usize != tile && near.binary_search(&other).is_err());
+        for &other in &far {
+            let Aabb { min, max } = inputs[other as usize].bounds.extent;
+            hasher.value("far", inputs[other as usize].plan.name.as_bytes());
             min.into_iter().chain(max).for_each(|x| hasher.value("far", &x.to_le_bytes()));
         }
-        TileKeys { near, key, far_key: hasher.finish().0 }
+        TileKeys { near, far, key, far_key: hasher.finish().0 }
     };
     near.into_iter().enumerate().map(of).collect()
-}
-
-/// The tiles that are neither the tile nor near it.
-fn far(tile: usize, near: &[u32], n: usize) -> impl Iterator<Item = usize> + '_ {
-    (0..n).filter(move |&other| other != tile && near.binary_search(&(other as u32)).is_err())
 }
 
 /// The files of a tile that were made: all, or the last one alone.
@@ -119,8 +127,7 @@ pub(super) fn bake(
     let near: Vec<Arc<Ready>> = keys.near.iter().map(|&k| scenes.get(k as usize)).collect::<Result<_, _>>()?;
     let of_near: Vec<NearTile<'_>> =
         near.iter().map(|near| NearTile { scene: &near.loaded.scene, cells: &near.cells }).collect();
-    let far: Vec<usize> = far(tile, &keys.near, inputs.len()).collect();
-    let of_far: Vec<Aabb<3>> = far.iter().map(|&k| inputs[k].bounds.extent).collect();
+    let of_far: Vec<Aabb<3>> = keys.far.iter().map(|&k| inputs[k as usize].bounds.extent).collect();
     let (scene, file) = (&own.loaded.scene, Some(&own.loaded.info));
     let parts = Tile { scene, file, cells: &own.cells, near: &of_near, far: &of_far };
     let failed = |source: BakeError| match source {
@@ -128,7 +135,7 @@ pub(super) fn bake(
         BakeError::Method(source) => MethodFailed { path: input.scene.clone(), source }.into(),
         source => Error::Bake { path: input.scene.clone(), source },
     };
-    let names = || far.iter().map(|&k| inputs[k].plan.name.clone()).collect();
+    let names = || keys.far.iter().map(|&k| inputs[k as usize].plan.name.clone()).collect();
     let write = |source: TileFileError| Error::Write { tile: input.plan.name.clone(), source };
     if only_far {
         let rows = bake_far(&parts, options).map_err(failed)?;

@@ -36,7 +36,7 @@ use std::time::Instant;
                   \"scene\": \"market.glb\", \"at\": [100, 0, 0], \"viewers\": {\"min\": [100, 0, 0], \"max\": [200, 30, 100]}}]}. \
                   Files are beside the plan. `at` moves a scene to its place; `viewers` is where eyes can be, or `cells` a file of \
                   view cells. Tiles at most `border` away from a tile's viewers hide for it, and what they see of it is told apart; of \
-                  others is only known whether anything is seen of them. A tile is baked again if something in it or nearby has changed."
+                  others is only known whether anything is seen of them; none are seen beyond \"reach\", if the plan has one. A tile is baked again if something in it or nearby has changed."
 )]
 pub(crate) struct TilesBuildArgs {
     /// The plan of the world, as JSON
@@ -117,9 +117,11 @@ pub(crate) fn make(args: &TilesBuildArgs, keeping: Keeping<'_>, show_progress: b
     let mut hasher = KeyHasher::new(PROGRAM);
     hasher.value("units", &UNITS.to_le_bytes());
     hash_options(&mut hasher, &options, are_cells_named);
-    let keys = keys(&inputs, near_tiles(&bounds, plan.border), &hasher);
+    let reached = plan.reach.map(|reach| near_tiles(&bounds, reach));
+    let keys = keys(&inputs, near_tiles(&bounds, plan.border), reached, &hasher);
     let kept = Kept::open(keeping, &looked_at, &[&args.output], || identity(&looked_at, &keys))?;
-    let mut world = World { args, border: plan.border, inputs: &inputs, keys: &keys, missing: Vec::new() };
+    let mut world =
+        World { args, distances: (plan.border, plan.reach), inputs: &inputs, keys: &keys, missing: Vec::new() };
     world.find()?;
     let made = world.bake((&options, are_cells_named), (&reading, threads), kept.units(), show_progress);
     let made = made.and_then(|()| world.finish(start));
@@ -187,7 +189,8 @@ enum Missing {
 /// A world that is baked.
 struct World<'a> {
     args: &'a TilesBuildArgs,
-    border: f64,
+    /// The border, and how far viewers see.
+    distances: (f64, Option<f64>),
     inputs: &'a [TileInput],
     keys: &'a [TileKeys],
     /// What is to be made of each tile.
@@ -298,7 +301,8 @@ impl World<'_> {
     fn finish(&self, start: Instant) -> Result<Outcome, Error> {
         let out = &self.args.output;
         let mut outcome = Outcome::new(&self.args.world, out);
-        let mut index = WorldIndex { border: self.border, tiles: Vec::new() };
+        let (border, reach) = self.distances;
+        let mut index = WorldIndex { border, reach, tiles: Vec::new() };
         for (tile, (input, keys)) in self.inputs.iter().zip(self.keys).enumerate() {
             let path = self.path(tile, TilePart::Table);
             let open = |source| InputError::Open { path: path.clone(), source };
