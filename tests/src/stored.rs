@@ -49,7 +49,7 @@ fn job(folder: &Path) -> Job {
     let run =
         |role| bake(&JobStore::new(Job::open(folder, PROGRAM).expect("a job"), role, Duration::ZERO).expect("a role"));
     assert_eq!(run(Role::Merge), Err(Halt::Shared));
-    (0..3).for_each(|shard| assert_eq!(run(Role::Shard(shard)), Err(Halt::Shared)));
+    (0..3).for_each(|shard| assert_eq!(run(Role::shard(shard)), Err(Halt::Shared)));
     job
 }
 
@@ -155,7 +155,7 @@ pub fn check_manifest(bytes: &[u8]) -> bool {
     for shard in (0..n.min(50)).chain([n]) {
         assert_eq!(job.state(shard).is_ok(), shard < n);
         assert_eq!(job.has_damaged_part(shard).is_ok(), shard < n);
-        let store = JobStore::new(job.clone(), Role::Shard(shard), Duration::ZERO);
+        let store = JobStore::new(job.clone(), Role::shard(shard), Duration::ZERO);
         assert_eq!(store.is_ok(), shard < n);
         // A shard does its part, or is of another bake.
         if let Ok(store) = store {

@@ -103,7 +103,8 @@ pub struct CityTile {
 pub fn city_tiles(options: CityOptions, per_tile: u32) -> Result<Vec<CityTile>, SceneError> {
     let [n_x, n_z, _] = checked(&options)?;
     let per_tile = i32::try_from(check_range("per_tile", per_tile, 1, 64)?).expect("a small number");
-    let mut houses = city(options)?.objects()[1..].to_vec().into_iter();
+    let whole = city(options)?;
+    let mut houses = whole.objects()[1..].iter().cloned();
     let mut of_blocks: BTreeMap<[i32; 2], Vec<SceneObject>> = BTreeMap::new();
     for (z, x) in (0..n_z).flat_map(|z| (0..n_x).map(move |x| (z, x))) {
         of_blocks.insert([z, x], houses.by_ref().take(4).collect());

@@ -73,14 +73,46 @@ pub struct TileTables {
 }
 
 impl TileTables {
+    /// Opens the files of a tile. At most `cache_bytes` of unpacked blocks of its table are kept.
+    ///
+    /// # Errors
+    /// [`WorldError::Io`], [`WorldError::Table`], [`WorldError::Across`]; [`WorldError::Mixed`] if the files are not those of the index.
+    ///
+    /// # Panics
+    /// If there is no such tile.
+    pub fn load(world: &World, tile: TileId, cache_bytes: usize) -> Result<Self, WorldError> {
+        let entry = &world.index().tiles[tile.0 as usize];
+        let open = |part: TilePart| {
+            let path = world.path(tile, part);
+            match File::open(&path) {
+                Ok(file) => Ok((file, path)),
+                Err(source) => Err(WorldError::Io { path, source }),
+            }
+        };
+        let (file, path) = open(TilePart::Table)?;
+        let table = match Packed::open(file, cache_bytes) {
+            Ok(table) => table,
+            Err(source) => return Err(WorldError::Table { path, source }),
+        };
+        let is_of = table.info().contains(&World::stated(entry.key)) && table.n_objects() == entry.n_objects as usize;
+        if !is_of || table.n_cells() != entry.n_cells as usize {
+            return Err(WorldError::Mixed { path });
+        }
+        let across = |part: TilePart| {
+            let (file, path) = open(part)?;
+            let key = if part == TilePart::Far { entry.far_key } else { entry.key };
+            match Across::open(file) {
+                Ok(across) if across.columns().key == key && across.n_rows() == table.n_cells() => Ok(across),
+                Ok(_) => Err(WorldError::Mixed { path }),
+                Err(source) => Err(WorldError::Across { path, source }),
+            }
+        };
+        let (near, far) = (across(TilePart::Near)?, across(TilePart::Far)?);
+        Self::new(world, tile, table, near, far).ok_or(WorldError::Mixed { path })
+    }
+
     /// `None` if tiles nearby are not those of the world.
-    pub(crate) fn new(
-        world: &World,
-        tile: TileId,
-        table: Packed<File>,
-        near: Across<File>,
-        far: Across<File>,
-    ) -> Option<Self> {
+    fn new(world: &World, tile: TileId, table: Packed<File>, near: Across<File>, far: Across<File>) -> Option<Self> {
         let near_ids = near.columns().near.iter().map(|near| {
             let id = world.named(&near.name)?;
             let entry = world.tile(id)?;

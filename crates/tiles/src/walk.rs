@@ -38,7 +38,7 @@ impl Prepare for Loader {
     type Error = WorldError;
 
     fn prepare(&mut self, tile: CellId) -> Result<TileTables, WorldError> {
-        self.world.load(TileId(tile.0), self.cache_bytes)
+        TileTables::load(&self.world, TileId(tile.0), self.cache_bytes)
     }
 
     fn n_bytes(tables: &TileTables) -> usize {

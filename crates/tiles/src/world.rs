@@ -2,12 +2,9 @@
 
 use crate::error::WorldError;
 use crate::index::{INDEX_NAME, TileEntry, TilePart, WorldIndex};
-use crate::tables::TileTables;
 use sightlines_geometry::{Aabb, BoxTree};
-use sightlines_packed::Packed;
-use sightlines_packed::across::Across;
 use std::collections::HashMap;
-use std::fs::{self, File};
+use std::fs;
 use std::path::{Path, PathBuf};
 
 /// A tile, by its place in the index.
@@ -88,44 +85,6 @@ impl World {
                 show(TileId(tile));
             }
         });
-    }
-
-    /// Opens the files of a tile. At most `cache_bytes` of unpacked blocks of its table are kept.
-    ///
-    /// # Errors
-    /// [`WorldError::Io`], [`WorldError::Table`], [`WorldError::Across`]; [`WorldError::Mixed`] if the files are not those of the index.
-    ///
-    /// # Panics
-    /// If there is no such tile.
-    pub fn load(&self, tile: TileId, cache_bytes: usize) -> Result<TileTables, WorldError> {
-        let entry = &self.index.tiles[tile.0 as usize];
-        let open = |part: TilePart| {
-            let path = self.folder.join(entry.file_name(part));
-            match File::open(&path) {
-                Ok(file) => Ok((file, path)),
-                Err(source) => Err(WorldError::Io { path, source }),
-            }
-        };
-        let (file, path) = open(TilePart::Table)?;
-        let table = match Packed::open(file, cache_bytes) {
-            Ok(table) => table,
-            Err(source) => return Err(WorldError::Table { path, source }),
-        };
-        let is_of = table.info().contains(&Self::stated(entry.key)) && table.n_objects() == entry.n_objects as usize;
-        if !is_of || table.n_cells() != entry.n_cells as usize {
-            return Err(WorldError::Mixed { path });
-        }
-        let across = |part: TilePart| {
-            let (file, path) = open(part)?;
-            let key = if part == TilePart::Far { entry.far_key } else { entry.key };
-            match Across::open(file) {
-                Ok(across) if across.columns().key == key && across.n_rows() == table.n_cells() => Ok(across),
-                Ok(_) => Err(WorldError::Mixed { path }),
-                Err(source) => Err(WorldError::Across { path, source }),
-            }
-        };
-        let (near, far) = (across(TilePart::Near)?, across(TilePart::Far)?);
-        TileTables::new(self, tile, table, near, far).ok_or(WorldError::Mixed { path })
     }
 
     /// The path of a file of a tile.

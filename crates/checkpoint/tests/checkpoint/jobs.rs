@@ -179,7 +179,6 @@ fn other_inputs_and_programs_are_refused() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(32))]
     /// Invariant: however shards are grouped, each part has the bytes that a process of its own writes, and so has the merge.
     #[test]
     fn groups_of_shards_make_the_same_parts(n in [1..16_usize, 1..16_usize], max_shards in 1..8_usize, groups in any::<u64>()) {

@@ -8,8 +8,8 @@ use sightlines_geometry::{Aabb, Random};
 use sightlines_pvs::CellId;
 use sightlines_scenes::{CityOptions, CityTile, city_tiles};
 use sightlines_tiles::{
-    INDEX_NAME, Seen, TileBounds, TileEntry, TileId, TilePart, TileScratch, TileWalk, TileWalkOptions, World,
-    WorldError, WorldIndex, far_bytes, near_bytes, near_tiles, table_bytes,
+    INDEX_NAME, Seen, TileBounds, TileEntry, TileId, TilePart, TileScratch, TileTables, TileWalk, TileWalkOptions,
+    World, WorldError, WorldIndex, far_bytes, near_bytes, near_tiles, table_bytes,
 };
 use sightlines_walkthrough::Answer;
 use std::collections::BTreeSet;
@@ -85,7 +85,7 @@ fn bake(folder: &Path) {
 fn by_loops(world: &World, eye: [f64; 3]) -> Option<Seen> {
     let (mut seen, mut scratch, mut is_inside) = (Seen::default(), TileScratch::default(), false);
     for tile in world.tiles() {
-        let tables = world.load(tile, 0).unwrap();
+        let tables = TileTables::load(world, tile, 0).unwrap();
         for cell in (0..tables.table().n_cells() as u32).map(CellId) {
             let (min, max) = tables.table().cell_box(cell).unwrap();
             if (Aabb { min, max }).contains(eye) {
@@ -175,7 +175,7 @@ fn tiles_that_are_not_known_are_seen() {
     fs::write(copy.path().join(INDEX_NAME), more.to_json()).unwrap();
     let world = World::open(copy.path()).unwrap();
     let (mut seen, mut scratch) = (Seen::default(), TileScratch::default());
-    world.load(TileId(12), 0).unwrap().see_from(CellId(0), &mut seen, &mut scratch).unwrap();
+    TileTables::load(&world, TileId(12), 0).unwrap().see_from(CellId(0), &mut seen, &mut scratch).unwrap();
     assert!(seen.tiles.contains(&TileId(25)));
     // The block 12 is two blocks away from the first: beyond a reach of less than that it is known not to be seen.
     for (reach, is_seen) in [(30.0, false), (60.0, true)] {
@@ -183,19 +183,24 @@ fn tiles_that_are_not_known_are_seen() {
         fs::write(copy.path().join(INDEX_NAME), more.to_json()).unwrap();
         let world = World::open(copy.path()).unwrap();
         seen.clear();
-        world.load(TileId(12), 0).unwrap().see_from(CellId(0), &mut seen, &mut scratch).unwrap();
+        TileTables::load(&world, TileId(12), 0).unwrap().see_from(CellId(0), &mut seen, &mut scratch).unwrap();
         assert_eq!(seen.tiles.contains(&TileId(25)), is_seen, "{reach}");
     }
 
     let mut fewer = index.clone();
     fewer.tiles.pop();
     fs::write(copy.path().join(INDEX_NAME), fewer.to_json()).unwrap();
-    assert!(matches!(World::open(copy.path()).unwrap().load(TileId(0), 0), Err(WorldError::Mixed { .. })));
+    assert!(matches!(
+        TileTables::load(&World::open(copy.path()).unwrap(), TileId(0), 0),
+        Err(WorldError::Mixed { .. })
+    ));
     let mut other = index.clone();
     other.tiles[13].n_cells += 1;
     fs::write(copy.path().join(INDEX_NAME), other.to_json()).unwrap();
     let world = World::open(copy.path()).unwrap();
     // Its own table has another number, and to those nearby it is another tile.
-    assert!([12, 13].iter().all(|&tile| matches!(world.load(TileId(tile), 0), Err(WorldError::Mixed { .. }))));
-    assert!(world.load(TileId(0), 0).is_ok());
+    assert!(
+        [12, 13].iter().all(|&tile| matches!(TileTables::load(&world, TileId(tile), 0), Err(WorldError::Mixed { .. })))
+    );
+    assert!(TileTables::load(&world, TileId(0), 0).is_ok());
 }

@@ -5,7 +5,7 @@ use crate::Answer;
 use crate::output::{self, bytes, count};
 use crate::progress::Bar;
 use serde::Serialize;
-use sightlines::tiles::World;
+use sightlines::tiles::{TileTables, World};
 use std::fmt;
 use std::path::PathBuf;
 
@@ -38,7 +38,7 @@ pub(super) fn run(args: &TilesCheckArgs, show_progress: bool) -> Result<Answer, 
         Checked { world: args.world.display().to_string(), n_tiles, n_cells: 0, n_objects: 0, n_resident_bytes: 0 };
     let bar = Bar::new("tiles", show_progress);
     for (k, tile) in world.tiles().enumerate() {
-        let tables = world.load(tile, 0).map_err(Error::Tables)?;
+        let tables = TileTables::load(&world, tile, 0).map_err(Error::Tables)?;
         tables.verify().map_err(Error::Tables)?;
         checked.n_cells += tables.table().n_cells();
         checked.n_objects += tables.table().n_objects();

@@ -9,7 +9,7 @@ use sightlines::cells::Scene;
 use sightlines::checkpoint::{Key, KeyHasher};
 use sightlines::formats::scene::{SceneReadOptions, read_scene_with};
 use sightlines::formats::view_cells::read_view_cells;
-use sightlines::formats::{ReadError, SceneInfo, ViewCell, ViewCells};
+use sightlines::formats::{SceneInfo, ViewCell, ViewCells};
 use sightlines::geometry::Aabb;
 use sightlines::tiles::{TileBounds, TilePlan, WorldError, WorldPlan};
 use std::fs;
@@ -125,7 +125,7 @@ fn load(
     reading: &SceneReadOptions,
     warn: bool,
 ) -> Result<Loaded, Error> {
-    let file = read_scene_with(scene, reading).map_err(ReadError::from)?;
+    let file = read_scene_with(scene, reading)?;
     crate::input::check_occluder(scene, &file)?;
     if warn {
         surfaces::warn(scene, &file);

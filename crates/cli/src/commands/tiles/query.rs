@@ -4,7 +4,7 @@ use super::Error;
 use crate::output::{self, count};
 use crate::{Answer, place::Point};
 use serde::Serialize;
-use sightlines::tiles::{Seen, TileId, TileScratch, World};
+use sightlines::tiles::{Seen, TileId, TileScratch, TileTables, World};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::path::PathBuf;
@@ -55,7 +55,7 @@ pub(super) fn run(args: &TilesQueryArgs) -> Result<Answer, Error> {
     let (mut at, mut inside, mut seen, mut scratch) = (Vec::new(), Vec::new(), Seen::default(), TileScratch::default());
     world.tiles_at(eye, &mut at);
     for &tile in &at {
-        let tables = world.load(tile, CACHE).map_err(Error::Tables)?;
+        let tables = TileTables::load(&world, tile, CACHE).map_err(Error::Tables)?;
         if tables.see(eye, &mut seen, &mut scratch).map_err(Error::Tables)? {
             inside.push(tile);
         }
