@@ -146,6 +146,10 @@ impl Umbra for LineUmbra<'_> {
         self.method.box_from(&self.volume, target, budget, Patience::WhileItPays) == Outcome::Hidden
     }
 
+    fn forget(&mut self) {
+        self.method.search.forget();
+    }
+
     fn hides_points(&mut self, points: &[Point3]) -> bool {
         let budget = self.method.effort.triangle_cells;
         match *points {

@@ -54,6 +54,10 @@ pub trait Umbra {
         self.hides(&Aabb::around(points.iter().copied()))
     }
 
+    /// Forgets what earlier questions have taught, which may make later ones quicker and other targets hidden: what is answered from here on does not depend
+    /// on what was asked before.
+    fn forget(&mut self) {}
+
     /// The same by every method, if there are several of which only some are asked about points.
     fn hides_points_by_any(&mut self, points: &[sightlines_geometry::Point3]) -> bool {
         self.hides_points(points)

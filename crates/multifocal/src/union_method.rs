@@ -63,6 +63,10 @@ impl Umbra for AnyUmbra<'_> {
         self.umbrae.iter_mut().take(self.n_about_points).any(|umbra| umbra.hides_points(points))
     }
 
+    fn forget(&mut self) {
+        self.umbrae.iter_mut().for_each(|umbra| umbra.forget());
+    }
+
     fn hides_points_by_any(&mut self, points: &[Point3]) -> bool {
         self.umbrae.iter_mut().any(|umbra| umbra.hides_points(points))
     }

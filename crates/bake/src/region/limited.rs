@@ -76,6 +76,12 @@ impl Umbra for LimitedUmbra<'_, '_> {
         !self.limit.refuses() && self.inner.as_mut().is_some_and(|umbra| umbra.hides_box_of(target, n_triangles))
     }
 
+    fn forget(&mut self) {
+        if let Some(umbra) = &mut self.inner {
+            umbra.forget();
+        }
+    }
+
     fn hides_points(&mut self, points: &[Point3]) -> bool {
         !self.limit.refuses() && self.inner.as_mut().is_some_and(|umbra| umbra.hides_points(points))
     }

@@ -277,10 +277,17 @@ fn see_from(
     let mut see_cells = |umbra: &mut dyn Umbra| {
         // Objects have half of what there is.
         limit.set(unit.part(0.5));
+        // What is found of one list must not depend on the others.
+        let forget = |umbra: &mut dyn Umbra| {
+            if !scene.regions.is_empty() {
+                umbra.forget();
+            }
+        };
         for (first, tree) in scene.trees.iter().filter(|(_, tree)| !tree.order().is_empty()) {
             let members = |node: &BoxNode<3>| {
                 tree.order()[node.start as usize..node.end as usize].iter().map(|&member| first + member as usize)
             };
+            forget(umbra);
             // Groups of cells first: what hides the box of a group hides all of it.
             let mut pending = vec![0u32];
             while let Some(k) = pending.pop() {
@@ -311,6 +318,7 @@ fn see_from(
                 }
             }
         }
+        forget(umbra);
         limit.set(unit);
         limit.take_refused();
     };

@@ -3,7 +3,7 @@
 use crate::common::Folder;
 
 /// All commands, with those that have others below them.
-const COMMANDS: [&str; 29] = [
+const COMMANDS: [&str; 33] = [
     "build",
     "reject",
     "vis",
@@ -14,6 +14,9 @@ const COMMANDS: [&str; 29] = [
     "job merge",
     "job submit",
     "job status",
+    "tiles build",
+    "tiles query",
+    "tiles check",
     "verify",
     "isovist",
     "query",
@@ -32,6 +35,7 @@ const COMMANDS: [&str; 29] = [
     "levels",
     "info",
     "generate tower",
+    "generate world",
     "demo",
 ];
 

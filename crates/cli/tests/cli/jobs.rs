@@ -194,7 +194,7 @@ fn wrong_usage_is_refused() {
         folder.refused(&args)
     };
     for (command, reason) in [
-        ("info tower.glb", "info: only build, vis and reject can be shared"),
+        ("info tower.glb", "info: only build, vis, reject and tiles build can be shared"),
         ("build tower.glb -o out.pvs --time-limit 5", "--time-limit means nothing for a job"),
         ("build tower.glb -o out.pvs --resume", "--resume or --state means nothing for a job"),
         ("vis map.bsp --resume", "--resume means nothing for a job"),
