@@ -44,10 +44,13 @@ fn demo() -> Result<(), Failure> {
     step::run(cargo().args(["run", "--release", "--", "demo"]))
 }
 
-/// The tests of the program as it is installed by default: without the features that the step of all tests turns on, and
-/// without those on real maps, which know no difference.
+/// Tests of the program that take long and know no difference between its features: those on real maps, and those of work that is stopped or shared.
+const SAME_WITH_ALL_FEATURES: [&str; 6] = ["real", "resume::", "jobs::", "slurm::", "memory::", "tiles::"];
+
+/// The tests of the program as it is installed by default: without the features that the step of all tests turns on.
 fn default_program() -> Result<(), Failure> {
-    step::run(cargo().args(["test", "--release", "-p", "sightlines-cli", "--test", "cli", "--", "--skip", "real"]))
+    let skipped = SAME_WITH_ALL_FEATURES.iter().flat_map(|name| ["--skip", name]);
+    step::run(cargo().args(["test", "--release", "-p", "sightlines-cli", "--test", "cli", "--"]).args(skipped))
 }
 
 /// Everything, up to the first failure; the tests last, so that their summary is the last line.

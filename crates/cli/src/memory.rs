@@ -193,8 +193,8 @@ mod tests {
         let used = resident_bytes().unwrap_or(0);
         let memory = |n: u64| MemoryArgs::of(Some(Size(used + n)));
         let needs = Needs { shared: 1 << 40, per_thread: 1 << 40 };
-        let of = |n: u64, threads| memory(n << 40).threads(threads, needs);
-        // What this program uses changes a little.
+        // What this program uses changes a little: half of what a thread needs is to spare.
+        let of = |n: u64, threads| memory((n << 40) + (1 << 39)).threads(threads, needs);
         assert_eq!([of(5, 4), of(10, 4), of(4, 4), of(9, 9)].map(Result::ok), [Some(4), Some(4), Some(3), Some(8)]);
         assert!(of(1, 4).is_err() && !memory(1 << 40).has_room(needs) && memory(3 << 40).has_room(needs));
         assert_eq!(MemoryArgs::of(None).threads(7, needs), Ok(7));
