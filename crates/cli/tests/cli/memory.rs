@@ -128,10 +128,14 @@ fn levels_go_on_where_they_were_killed() {
         }
     }
     eprintln!("killed {n_kills} times in {:?}", begin.elapsed());
-    assert!(n_kills > 0 && folder.path("out.state").exists());
-    let other = folder.refused(&with("out", &["--resume", "--flat"]));
-    assert!(other.starts_with("out.state: the results are of another input or of other options"), "{other}");
-    folder.run(&with("out", &["--resume"])).expect(0);
+    assert!(n_kills > 0);
+    // The last run may have come to its end before it was killed.
+    if !folder.path("out").exists() {
+        assert!(folder.path("out.state").exists());
+        let other = folder.refused(&with("out", &["--resume", "--flat"]));
+        assert!(other.starts_with("out.state: the results are of another input or of other options"), "{other}");
+        folder.run(&with("out", &["--resume"])).expect(0);
+    }
     let files = |name: &str| {
         let entries = std::fs::read_dir(folder.path(name)).unwrap().map(|entry| entry.unwrap().path());
         let mut all: Vec<_> =
