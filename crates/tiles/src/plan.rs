@@ -220,7 +220,7 @@ mod tests {
         let cases = [
             ("\"border\": 0.1", "\"border\": -1", "\"border\" is a number from 0 on"),
             ("\"border\": 0.1", "\"border\": 2, \"reach\": 1", "\"reach\" is a number from \"border\" on"),
-            ("\"a.glb\", ", "\"a.glb\" ", "line 2 column 44: expected `,` or `}`"),
+            ("\"a.glb\", ", "\"a.glb\" ", "line 2 column 40: expected `,` or `}`"),
             ("\"b\", ", "\"A\", ", "tile 1: tile 0 has the name \"A\" too"),
             (
                 "\"b\", ",
@@ -238,7 +238,7 @@ mod tests {
             (
                 "\"border\"",
                 "\"boarder\"",
-                "line 1 column 35: unknown field `boarder`, expected one of `sightlines_world`, `border`, `reach`, `tiles`",
+                "line 1 column 33: unknown field `boarder`, expected one of `sightlines_world`, `border`, `reach`, `tiles`",
             ),
         ];
         for (old, new, expected) in cases {
