@@ -191,30 +191,31 @@ pub fn reject_wad(wad: &Wad, options: &RejectOptions<'_>) -> Result<RejectOutcom
     let is_named = !options.maps.is_empty();
     // A map may be skipped among others, but to do nothing at all is an error.
     let insist = is_named || !chosen.iter().any(|m| is_readable(m));
-    let mut maps = Vec::with_capacity(chosen.len());
-    let (mut lumps, mut n_bytes) = (Vec::new(), 0u64);
     let costs: Vec<f64> = chosen.iter().map(|map| kept::cost(wad, map)).collect();
-    options.units.begin(&Phase { name: kept::PHASE, costs: &costs })?;
-    for (unit, map) in chosen.into_iter().enumerate() {
-        let start = Instant::now();
-        let do_map = || match do_map(wad, map, insist, options) {
-            Err(error) if insist || options.strict || matches!(error, RejectError::Rmb(_)) => Err(error),
-            Err(error) => Ok((0, MapStatus::Failed(Box::new(error)), None)),
-            Ok(done) => Ok(done),
-        };
-        let done =
-            if options.units.are_kept() { kept::get(options.units, unit, map, do_map)? } else { Some(do_map()?) };
-        // A map that is for another process.
-        let Some((n_sectors, status, bytes)) = done else { continue };
-        n_bytes += bytes.as_ref().map_or(0, |b| b.len() as u64);
-        // A file with maps that share their lumps may ask for any number of large tables.
-        if i32::try_from(n_bytes).is_err() {
-            return Err(WadError::TooLarge { lump: lumps.len(), end: n_bytes }.into());
+    let (maps, lumps) = options.units.through(&Phase { name: kept::PHASE, costs: &costs }, || {
+        let mut maps = Vec::with_capacity(chosen.len());
+        let (mut lumps, mut n_bytes) = (Vec::new(), 0u64);
+        for (unit, map) in chosen.iter().copied().enumerate() {
+            let start = Instant::now();
+            let do_map = || match do_map(wad, map, insist, options) {
+                Err(error) if insist || options.strict || matches!(error, RejectError::Rmb(_)) => Err(error),
+                Err(error) => Ok((0, MapStatus::Failed(Box::new(error)), None)),
+                Ok(done) => Ok(done),
+            };
+            let done =
+                if options.units.are_kept() { kept::get(options.units, unit, map, do_map)? } else { Some(do_map()?) };
+            // A map that is for another process.
+            let Some((n_sectors, status, bytes)) = done else { continue };
+            n_bytes += bytes.as_ref().map_or(0, |b| b.len() as u64);
+            // A file with maps that share their lumps may ask for any number of large tables.
+            if i32::try_from(n_bytes).is_err() {
+                return Err(WadError::TooLarge { lump: lumps.len(), end: n_bytes }.into());
+            }
+            lumps.extend(bytes.map(|b| (map, b)));
+            maps.push(MapOutcome { name: map.name(), n_sectors, status, time: start.elapsed() });
         }
-        lumps.extend(bytes.map(|b| (map, b)));
-        maps.push(MapOutcome { name: map.name(), n_sectors, status, time: start.elapsed() });
-    }
-    options.units.end(kept::PHASE)?;
+        Ok::<_, RejectError>((maps, lumps))
+    })?;
     let is_done = |m: &MapOutcome| matches!(m.status, MapStatus::Written(_) | MapStatus::KeptHandMade);
     let first_failure = maps.iter().find_map(|m| match &m.status {
         MapStatus::Failed(error) => Some(error),

@@ -7,17 +7,17 @@ use std::time::Duration;
 /// The sum of the squares of the numbers below 12, one unit for each.
 fn sum(units: Units<'_>) -> Result<u64, Halt> {
     let costs: Vec<f64> = (0..12).map(f64::from).collect();
-    units.begin(&Phase { name: "squares", costs: &costs })?;
-    let mut sum = 0;
-    for unit in 0..costs.len() {
-        let square = || Ok::<_, Halt>((unit as u64 * unit as u64).to_le_bytes().to_vec());
-        if let Some(result) = units.get("squares", unit, square)? {
-            let bytes = result.try_into().map_err(|_| Halt::Store(format!("unit {unit} is damaged")))?;
-            sum += u64::from_le_bytes(bytes);
+    units.through(&Phase { name: "squares", costs: &costs }, || {
+        let mut sum = 0;
+        for unit in 0..costs.len() {
+            let square = || Ok::<_, Halt>((unit as u64 * unit as u64).to_le_bytes().to_vec());
+            if let Some(result) = units.get("squares", unit, square)? {
+                let bytes = result.try_into().map_err(|_| Halt::Store(format!("unit {unit} is damaged")))?;
+                sum += u64::from_le_bytes(bytes);
+            }
         }
-    }
-    units.end("squares")?;
-    Ok(sum)
+        Ok(sum)
+    })
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -6,7 +6,7 @@ use crate::index::Results;
 use crate::key::Key;
 use crate::lock::{lock, new_mark};
 use crate::records::{self, DIVISION, Owner, Place, record};
-use sightlines_progress::{Halt, Phase, UnitStore};
+use sightlines_progress::{Halt, Pass, Phase, UnitStore};
 use std::collections::BTreeMap;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
@@ -302,8 +302,8 @@ impl UnitStore for Journal {
         self.keep(phase, unit as u64, result)
     }
 
-    fn end(&self, _: &'static str) -> Result<(), Halt> {
-        Ok(())
+    fn end(&self, _: &'static str) -> Result<Pass, Halt> {
+        Ok(Pass::Last)
     }
 }
 

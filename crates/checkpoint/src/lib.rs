@@ -18,6 +18,8 @@ mod lock;
 mod records;
 
 pub use error::StateError;
-pub use job::{InputFile, Job, JobError, JobStore, Manifest, Outcome, PhasePlan, Role, ShardPlan, ShardState, cut};
+pub use job::{
+    InputFile, Job, JobError, JobStore, Manifest, Outcome, PhasePlan, Role, ShardPlan, ShardState, batch, cut,
+};
 pub use journal::{Journal, Opening};
 pub use key::{Key, KeyHasher, ParseKeyError};

@@ -103,6 +103,9 @@ pub(crate) enum KeptError {
     /// A state that would replace something.
     #[error(transparent)]
     Output(#[from] OutputError),
+    /// Another worker of the job writes what the command makes.
+    #[error("another process writes the output")]
+    Elsewhere,
 }
 
 fn advice(error: &StateError) -> &'static str {
@@ -265,6 +268,11 @@ impl<'a> Kept<'a> {
     pub(crate) fn units(&self) -> Units<'_> {
         let journal = self.journal.as_ref().map(|journal| journal as &dyn UnitStore);
         Units(journal.or(self.job.map(|job| job as _)))
+    }
+
+    /// Before anything is written that the command makes: an error if another process writes it.
+    pub(crate) fn before_writing(&self) -> Result<(), KeptError> {
+        if self.units().may_write() { Ok(()) } else { Err(KeptError::Elsewhere) }
     }
 
     /// After the end: results are of no use any more if all went well. Otherwise, if the program was interrupted, they are kept; returns what to say of that.

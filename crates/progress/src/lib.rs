@@ -11,7 +11,7 @@ mod budget;
 mod units;
 
 pub use budget::{Allowance, Budget, Shares, scattered};
-pub use units::{Halt, Phase, UnitStore, Units, shares_of};
+pub use units::{Halt, Pass, Phase, UnitStore, Units, shares_of};
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};

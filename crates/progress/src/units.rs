@@ -35,11 +35,20 @@ impl Halt {
     }
 }
 
+/// Whether a process goes through a phase once more.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Pass {
+    /// It does not: the pass that ends has all results.
+    Last,
+    /// It does, from the beginning of the phase. What the pass has found counts for nothing, but for the results that are kept.
+    Again,
+}
+
 /// Keeps the results of units, and says which of them a process computes.
 ///
 /// A bake calls [`UnitStore::begin`] once for each phase, in order; then, for its units in any order and from any thread,
 /// [`UnitStore::load`], and where that has nothing and [`UnitStore::wants`] says so, [`UnitStore::save`] with the result; then
-/// [`UnitStore::end`]. A phase of one unit is what all later ones need: whoever divides the others among processes computes it first. Equal input, options and program give equal phases and equal results, whoever computes them.
+/// [`UnitStore::end`], which may ask for the same once more ([`Units::through`]). A phase of one unit is what all later ones need: whoever divides the others among processes computes it first. Equal input, options and program give equal phases and equal results, whoever computes them.
 pub trait UnitStore: Sync {
     /// A phase begins.
     ///
@@ -66,7 +75,7 @@ pub trait UnitStore: Sync {
     ///
     /// # Errors
     /// [`Halt::Shared`] if others are missing, which ends the bake; any other [`Halt`] does too.
-    fn end(&self, phase: &'static str) -> Result<(), Halt>;
+    fn end(&self, phase: &'static str) -> Result<Pass, Halt>;
 
     /// The units of a phase that has begun that this process goes through, as runs, in order. The results of a run may not depend on what the process found
     /// in another. `None` for all units, in any order.
@@ -76,6 +85,11 @@ pub trait UnitStore: Sync {
 
     /// Whether the costs of the phase that begins next matter; if not, any finite ones will do.
     fn needs_costs(&self) -> bool {
+        true
+    }
+
+    /// Whether this process writes what the bake makes; if not, another one does.
+    fn may_write(&self) -> bool {
         true
     }
 }
@@ -121,6 +135,34 @@ impl Units<'_> {
         }
     }
 
+    /// As [`UnitStore::may_write`].
+    pub fn may_write(&self) -> bool {
+        self.0.is_none_or(UnitStore::may_write)
+    }
+
+    /// Before anything is written that the bake makes.
+    ///
+    /// # Errors
+    /// [`Halt::Shared`] if another process writes it.
+    pub fn write(&self) -> Result<(), Halt> {
+        if self.may_write() { Ok(()) } else { Err(Halt::Shared) }
+    }
+
+    /// Goes through a phase: begins it, calls `pass`, and ends it; and calls `pass` again as often as the store asks for it. Returns what the last pass found.
+    /// Each pass goes through all units as if none had been before.
+    ///
+    /// # Errors
+    /// [`Halt`] of the store, or an error of `pass`.
+    pub fn through<T, E: From<Halt>>(&self, phase: &Phase<'_>, mut pass: impl FnMut() -> Result<T, E>) -> Result<T, E> {
+        self.begin(phase)?;
+        loop {
+            let found = pass()?;
+            if self.end(phase.name)? == Pass::Last {
+                return Ok(found);
+            }
+        }
+    }
+
     /// As [`UnitStore::begin`].
     ///
     /// # Errors
@@ -155,8 +197,8 @@ impl Units<'_> {
     ///
     /// # Errors
     /// [`Halt`] of the store.
-    pub fn end(&self, phase: &'static str) -> Result<(), Halt> {
-        self.0.map_or(Ok(()), |store| store.end(phase))
+    pub fn end(&self, phase: &'static str) -> Result<Pass, Halt> {
+        self.0.map_or(Ok(Pass::Last), |store| store.end(phase))
     }
 }
 
@@ -189,8 +231,8 @@ mod tests {
             Ok(())
         }
 
-        fn end(&self, _: &'static str) -> Result<(), Halt> {
-            if self.0.lock().unwrap().len() == *self.1.lock().unwrap() { Ok(()) } else { Err(Halt::Shared) }
+        fn end(&self, _: &'static str) -> Result<Pass, Halt> {
+            if self.0.lock().unwrap().len() == *self.1.lock().unwrap() { Ok(Pass::Last) } else { Err(Halt::Shared) }
         }
     }
 
@@ -211,7 +253,7 @@ mod tests {
         assert_eq!(*n_computed.lock().unwrap(), 2);
         assert_eq!(units.end("numbers"), Err(Halt::Shared));
         [1, 3].iter().for_each(|&unit| store.save("numbers", unit, &[9]).unwrap());
-        assert_eq!((units.end("numbers"), get(1)), (Ok(()), Some(vec![9])));
+        assert_eq!((units.end("numbers"), get(1)), (Ok(Pass::Last), Some(vec![9])));
     }
 
     #[test]
@@ -231,8 +273,8 @@ mod tests {
             fn save(&self, _: &'static str, _: usize, _: &[u8]) -> Result<(), Halt> {
                 Ok(())
             }
-            fn end(&self, _: &'static str) -> Result<(), Halt> {
-                Ok(())
+            fn end(&self, _: &'static str) -> Result<Pass, Halt> {
+                Ok(Pass::Last)
             }
             fn runs(&self, _: &'static str) -> Option<Vec<Range<usize>>> {
                 Some(vec![5..7, 1..3])
@@ -245,6 +287,45 @@ mod tests {
             assert_eq!((units.runs("numbers"), units.in_order("numbers", any())), (None, vec![3, 1, 2]));
         }
         assert_eq!((Units(Some(&even)).need_costs(), Units::default().need_costs()), (true, false));
+    }
+
+    /// A store that asks for three passes: the last one has what the others have found.
+    #[test]
+    fn passes_go_on_until_the_store_has_enough() {
+        #[derive(Default)]
+        struct Thrice(Even, Mutex<usize>);
+        impl UnitStore for Thrice {
+            fn begin(&self, phase: &Phase<'_>) -> Result<(), Halt> {
+                self.0.begin(phase)
+            }
+            fn wants(&self, _: &'static str, unit: usize) -> bool {
+                unit == *self.1.lock().unwrap()
+            }
+            fn load(&self, phase: &'static str, unit: usize) -> Result<Option<Vec<u8>>, Halt> {
+                self.0.load(phase, unit)
+            }
+            fn save(&self, phase: &'static str, unit: usize, result: &[u8]) -> Result<(), Halt> {
+                self.0.save(phase, unit, result)
+            }
+            fn end(&self, _: &'static str) -> Result<Pass, Halt> {
+                let mut n = self.1.lock().unwrap();
+                *n += 1;
+                Ok(if *n < 3 { Pass::Again } else { Pass::Last })
+            }
+            fn may_write(&self) -> bool {
+                false
+            }
+        }
+        let store = Thrice::default();
+        let units = Units(Some(&store));
+        let mut n_passes = 0;
+        let found = units.through(&Phase { name: "numbers", costs: &[1.0; 3] }, || {
+            n_passes += 1;
+            (0..3).map(|unit| units.get("numbers", unit, || Ok::<_, Halt>(vec![unit as u8]))).collect()
+        });
+        let all: Vec<Option<Vec<u8>>> = (0..3).map(|unit| Some(vec![unit])).collect();
+        assert_eq!((found, n_passes, units.write()), (Ok(all), 3, Err(Halt::Shared)));
+        assert_eq!(Units::default().through(&Phase { name: "numbers", costs: &[] }, || Ok::<_, Halt>(7)), Ok(7));
     }
 
     #[test]
@@ -260,6 +341,6 @@ mod tests {
         units.begin(&Phase { name: "numbers", costs: &[] }).unwrap();
         assert_eq!(units.get("numbers", 7, || Ok::<_, Halt>(vec![1])), Ok(Some(vec![1])));
         assert_eq!(units.get("numbers", 7, || Err(Halt::Cancelled(Cancelled))), Err(Halt::Cancelled(Cancelled)));
-        assert_eq!(units.end("numbers"), Ok(()));
+        assert_eq!((units.end("numbers"), units.write()), (Ok(Pass::Last), Ok(())));
     }
 }

@@ -201,7 +201,6 @@ impl LevelBuilder<'_> {
         let all: Vec<CellId> = (0..self.table.n_cells() as u32).map(CellId).collect();
         let parts: Vec<&[CellId]> = all.chunks(N_TOGETHER).collect();
         let costs: Vec<f64> = parts.iter().map(|cells| cells.len() as f64).collect();
-        units.begin(&Phase { name: FACES, costs: &costs })?;
         let counter = Counter::new(observer, "visible faces", parts.len());
         let part = |(unit, cells): (usize, &&[CellId])| {
             counter.check().map_err(Halt::from)?;
@@ -230,8 +229,9 @@ impl LevelBuilder<'_> {
             counter.step().map_err(Halt::from)?;
             Ok(found)
         };
-        let found = parts.par_iter().enumerate().map(part).collect::<Result<Vec<Vec<_>>, SimplifyError>>()?;
-        units.end(FACES)?;
+        let found = units.through(&Phase { name: FACES, costs: &costs }, || {
+            parts.par_iter().enumerate().map(part).collect::<Result<Vec<Vec<_>>, SimplifyError>>()
+        })?;
         Ok(found.into_iter().flatten().collect())
     }
 

@@ -1,8 +1,9 @@
 //! Bakes whose results are kept by units of work: stopped and taken up again, or shared by processes, they end with the same bytes.
 
-use sightlines_progress::{Cancelled, Halt, Phase, UnitStore, Units};
+use sightlines_progress::{Cancelled, Halt, Pass, Phase, UnitStore, Units};
 use std::collections::BTreeMap;
 use std::fmt::{Debug, Display};
+use std::ops::Range;
 use std::sync::Mutex;
 
 /// Results of units, by phase and unit.
@@ -18,6 +19,10 @@ pub struct Memory {
     stop_after: Option<usize>,
     /// Which of how many processes this is.
     part: Option<(usize, usize)>,
+    /// How many passes compute a run of units each, before one reads all.
+    n_passes: usize,
+    /// How many of them are over.
+    n_passed: Mutex<usize>,
 }
 
 impl UnitStore for Memory {
@@ -26,14 +31,18 @@ impl UnitStore for Memory {
         let mut sizes = self.sizes.lock().unwrap();
         assert!(sizes.iter().all(|(name, _)| *name != phase.name), "{} begins twice", phase.name);
         sizes.push((phase.name, phase.costs.to_vec()));
+        *self.n_passed.lock().unwrap() = 0;
         Ok(())
     }
 
-    fn wants(&self, _: &'static str, unit: usize) -> bool {
-        self.part.is_none_or(|(part, of)| unit % of == part)
+    fn wants(&self, phase: &'static str, unit: usize) -> bool {
+        self.part.is_none_or(|(part, of)| unit % of == part) && self.is_of_pass(phase, unit)
     }
 
     fn load(&self, phase: &'static str, unit: usize) -> Result<Option<Vec<u8>>, Halt> {
+        if !self.is_of_pass(phase, unit) {
+            return Ok(None);
+        }
         Ok(self.results.lock().unwrap().get(&(phase, unit)).cloned())
     }
 
@@ -47,11 +56,18 @@ impl UnitStore for Memory {
         Ok(())
     }
 
-    fn end(&self, phase: &'static str) -> Result<(), Halt> {
-        let results = self.results.lock().unwrap();
-        let size = self.sizes.lock().unwrap().last().map(|(name, costs)| (*name, costs.len()));
-        let n = size.filter(|(name, _)| *name == phase).expect("a phase that has begun").1;
-        if (0..n).all(|unit| results.contains_key(&(phase, unit))) { Ok(()) } else { Err(Halt::Shared) }
+    fn end(&self, phase: &'static str) -> Result<Pass, Halt> {
+        let (results, n) = (self.results.lock().unwrap(), self.n_units(phase));
+        let mut n_passed = self.n_passed.lock().unwrap();
+        if *n_passed < self.n_passes {
+            *n_passed += 1;
+            return Ok(Pass::Again);
+        }
+        if (0..n).all(|unit| results.contains_key(&(phase, unit))) { Ok(Pass::Last) } else { Err(Halt::Shared) }
+    }
+
+    fn runs(&self, phase: &'static str) -> Option<Vec<Range<usize>>> {
+        (self.n_passes > 0).then(|| vec![self.run_of_pass(phase)])
     }
 }
 
@@ -71,6 +87,31 @@ impl Memory {
     #[must_use]
     pub fn of_part(self, part: usize, of: usize) -> Self {
         Self { part: Some((part, of)), ..self }
+    }
+
+    /// The same, but it goes through each phase so many times, from the last units to the first, before it has all results.
+    #[must_use]
+    pub fn in_passes(self, n_passes: usize) -> Self {
+        Self { n_passes, ..self }
+    }
+
+    /// How many units the phase has that has begun.
+    fn n_units(&self, phase: &'static str) -> usize {
+        let size = self.sizes.lock().unwrap().last().map(|(name, costs)| (*name, costs.len()));
+        size.filter(|(name, _)| *name == phase).expect("a phase that has begun").1
+    }
+
+    fn run_of_pass(&self, phase: &'static str) -> Range<usize> {
+        let (n, passed) = (self.n_units(phase), *self.n_passed.lock().unwrap());
+        if passed == self.n_passes {
+            return 0..n;
+        }
+        let left = self.n_passes - passed;
+        n * (left - 1) / self.n_passes..n * left / self.n_passes
+    }
+
+    fn is_of_pass(&self, phase: &'static str, unit: usize) -> bool {
+        self.n_passes == 0 || self.run_of_pass(phase).contains(&unit)
     }
 
     /// The phases that have begun, each with the costs of its units.
@@ -121,6 +162,17 @@ pub fn check_units<E: Display + Debug>(
         assert!(n_stops < 9, "it does not go on where it was stopped");
     };
     assert!(resumed == plain && n_stops > 2, "{n_stops} stops");
+
+    // Phases gone through several times, each time with results of a part alone, and in the end with all.
+    for n_passes in [1, 3] {
+        let store = Memory::default().in_passes(n_passes);
+        assert!(bytes(&store, 2).unwrap() == plain, "{n_passes} passes give something else");
+        // What is not found in a pass may be looked for again in another, so results may differ in their effort.
+        assert!(store.into_results().keys().eq(all.keys()), "{n_passes} passes keep results of other units");
+        // Whatever is found, results of another process count.
+        let store = Memory::with(&all).in_passes(n_passes).stopping_after(0);
+        assert!(bytes(&store, 1).unwrap() == plain, "{n_passes} passes over kept results give something else");
+    }
 
     // Shared by three processes that know only what earlier phases have found.
     let (mut results, mut rounds) = (BTreeMap::new(), 0);

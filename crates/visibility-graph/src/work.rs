@@ -88,7 +88,6 @@ impl Effort<'_> {
             (0..n).step_by(stage.size).map(|first| first..n.min(first + stage.size)).collect();
         let costs: Vec<f64> = ranges.iter().map(|range| range.clone().map(stage.cost).sum()).collect();
         let shares = shares_of(&costs);
-        self.units.begin(&Phase { name: stage.phase, costs: &costs })?;
         let counter = Counter::new(self.observer, stage.title, ranges.len());
         let step = |state: &mut Option<S>, unit: usize| -> Result<Result<Vec<R>, E>, Halt> {
             counter.check()?;
@@ -125,8 +124,9 @@ impl Effort<'_> {
             let units = (0..ranges.len()).into_par_iter().with_max_len(1);
             units.map_init(|| None, step).collect::<Result<Vec<Result<Vec<R>, E>>, Halt>>()
         };
-        let found = self.on_threads(all)?.into_iter().collect::<Result<Vec<Vec<R>>, E>>()?;
-        self.units.end(stage.phase)?;
+        let found = self.units.through(&Phase { name: stage.phase, costs: &costs }, || {
+            self.on_threads(all)?.into_iter().collect::<Result<Vec<Vec<R>>, E>>()
+        })?;
         Ok(found.into_iter().flatten().collect())
     }
 

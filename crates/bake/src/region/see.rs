@@ -134,36 +134,41 @@ pub(super) fn see_all(
     let sizes = [scene.n_boxes() as u32, scene.occludees.len() as u32];
     let costs = threads::on(options.threads, || costs_of(scene, options.units.need_costs()));
     let shares_of_time = shares_of(&costs);
-    options.units.begin(&Phase { name: PHASE, costs: &costs })?;
-    let counter = Counter::new(options.progress, "cells", n).of(Work::Deciding);
-    let cells = options.units.in_order(PHASE, scattered(n));
-    let next = AtomicUsize::new(0);
-    let one = |method: &mut Option<Box<dyn FromRegion + Send>>| {
-        counter.check()?;
-        // Whichever thread is free takes the next one, so that those that come first are done first.
-        let cell = cells[next.fetch_add(1, Relaxed)];
-        let mut computed = None;
-        let result = options.units.get(PHASE, cell, || {
-            let method = method.get_or_insert_with(make);
-            let row = see_from(scene, &mut **method, options, cell, known, Allowance::default())?;
-            let bytes = if options.units.are_kept() { row.to_bytes() } else { Vec::new() };
-            computed = Some(row);
-            Ok::<_, BakeError>(bytes)
-        })?;
-        let is_kept = computed.is_none();
-        let row = match (computed, result) {
-            (Some(row), _) => Some(row),
-            (None, Some(bytes)) => Some(CellRow::from_bytes(&bytes, sizes).ok_or_else(|| unfit(cell))?),
-            (None, None) => None,
+    let pass = || -> Result<Vec<(usize, Option<CellRow>)>, BakeError> {
+        let counter = Counter::new(options.progress, "cells", n).of(Work::Deciding);
+        let cells = options.units.in_order(PHASE, scattered(n));
+        let next = AtomicUsize::new(0);
+        let one = |method: &mut Option<Box<dyn FromRegion + Send>>| {
+            counter.check()?;
+            // Whichever thread is free takes the next one, so that those that come first are done first.
+            let cell = cells[next.fetch_add(1, Relaxed)];
+            let mut computed = None;
+            let result = options.units.get(PHASE, cell, || {
+                let method = method.get_or_insert_with(make);
+                let row = see_from(scene, &mut **method, options, cell, known, Allowance::default())?;
+                let bytes = if options.units.are_kept() { row.to_bytes() } else { Vec::new() };
+                computed = Some(row);
+                Ok::<_, BakeError>(bytes)
+            })?;
+            let is_kept = computed.is_none();
+            let row = match (computed, result) {
+                (Some(row), _) => Some(row),
+                (None, Some(bytes)) => Some(CellRow::from_bytes(&bytes, sizes).ok_or_else(|| unfit(cell))?),
+                (None, None) => None,
+            };
+            counter.step_by(shares_of_time[cell], is_kept)?;
+            Ok((cell, row))
         };
-        counter.step_by(shares_of_time[cell], is_kept)?;
-        Ok((cell, row))
+        threads::on(options.threads, || {
+            cells
+                .par_iter()
+                .with_max_len(1)
+                .map_init(|| None, |method, _| one(method))
+                .collect::<Result<_, BakeError>>()
+        })
     };
-    let found: Vec<(usize, Option<CellRow>)> = threads::on(options.threads, || {
-        cells.par_iter().with_max_len(1).map_init(|| None, |method, _| one(method)).collect::<Result<_, BakeError>>()
-    })?;
-    // If others have cells to do, this ends the bake.
-    options.units.end(PHASE)?;
+    // If others have cells to do, this may end the bake.
+    let found = options.units.through(&Phase { name: PHASE, costs: &costs }, pass)?;
     let mut rows: Vec<CellRow> = vec![CellRow::default(); n];
     found.into_iter().for_each(|(cell, row)| rows[cell] = row.expect("a phase that ends has all its results"));
     Ok(rows)

@@ -2,13 +2,15 @@
 //!
 //! The manifest ([`MANIFEST`]) has the command, the key of its results, and the phases that are known, each cut into shards. A phase is known once all
 //! earlier ones are complete, so a job takes as many rounds as its bake has phases. The part of shard `n` is `parts/n.part`: the results of its units, in
-//! order. Beside it lie journals of processes that are at work on it, or were stopped.
+//! order. Beside it lie journals of processes that are at work on it, or were stopped, and files that workers lock while a shard is theirs.
 
+mod claims;
 mod cut;
 mod manifest;
 mod own;
 mod store;
 
+pub use claims::batch;
 pub use cut::cut;
 pub use manifest::{InputFile, Manifest, PhasePlan, ShardPlan};
 pub use store::{JobStore, Outcome, Role};
@@ -263,6 +265,16 @@ impl Job {
             // Another process that is at the same shard goes on with its own, and writes the same part.
             let _ = fs::remove_file(journal);
         }
+        Ok(())
+    }
+
+    /// Reads the manifest again: another process may have added phases.
+    fn read_again(&mut self) -> Result<(), JobError> {
+        let found = Self::open(&self.folder, &self.manifest.program)?;
+        if found.key != self.key {
+            return Err(JobError::OtherJob(self.folder.join(MANIFEST)));
+        }
+        *self = found;
         Ok(())
     }
 

@@ -1,23 +1,33 @@
 //! The store of a bake that is part of a job.
 
+use super::claims::{Claim, Claims, batch};
 use super::cut::cut;
 use super::manifest::PhasePlan;
 use super::own::OwnShards;
 use super::{Job, JobError, ShardState};
 use crate::index::Results;
-use sightlines_progress::{Halt, Phase, UnitStore};
+use sightlines_progress::{Cancelled, Halt, Pass, Phase, UnitStore};
 use std::ops::Range;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread::sleep;
 use std::time::Duration;
 
 /// What a process does for a job.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone)]
 pub enum Role {
     /// Goes through the bake with the results of all parts: it ends at the first phase that is not complete, and plans one that is not known.
     Merge,
     /// Computes the units of these shards, which are all of one phase: one shard after the other, in ascending order. Each part is written as soon as its units are done,
     /// and does not depend on which other shards the process does.
     Shards(Vec<usize>),
+    /// Goes through all of the bake with others of its kind: of each phase it computes shards that nobody has claimed, some at once; waits until the others are done, or
+    /// claims those of processes that have ended; and goes on with the results of all. One of them writes what the bake makes.
+    Worker {
+        /// How many there are, about.
+        n_workers: usize,
+        /// Whether to end while it waits.
+        stop: fn() -> bool,
+    },
 }
 
 impl Role {
@@ -45,15 +55,21 @@ pub enum Outcome {
         /// The shards, and what there is of each.
         shards: Vec<(usize, ShardState)>,
     },
-    /// The parts of all shards of the process are written.
+    /// The parts of all shards of the process are written; for a worker, those of all phases, and another process writes what the bake makes.
     Done,
 }
+
+/// How long a worker waits between two looks at the parts of others: at first, and at most.
+const LOOKS: [Duration; 2] = [Duration::from_millis(5), Duration::from_millis(200)];
 
 /// A store of units in the folder of a job.
 #[derive(Debug)]
 pub struct JobStore {
     role: Role,
-    own: Option<OwnShards>,
+    /// How long results of a shard are only in memory.
+    after: Duration,
+    /// The shards that the process computes now.
+    own: Mutex<Option<Arc<OwnShards>>>,
     state: Mutex<State>,
 }
 
@@ -64,6 +80,10 @@ struct State {
     n_begun: usize,
     /// Those of the phase under way, if it is complete.
     parts: Option<Parts>,
+    /// Of a worker: those of its shards.
+    claims: Claims,
+    /// Of the worker that writes.
+    writing: Option<Claim>,
     outcome: Option<Outcome>,
 }
 
@@ -84,16 +104,11 @@ impl JobStore {
     /// [`JobError::NoShard`], and [`JobError::TwoPhases`].
     pub fn new(job: Job, role: Role, after: Duration) -> Result<Self, JobError> {
         let own = match &role {
-            Role::Merge => None,
-            Role::Shards(shards) => Some(OwnShards::new(&job, shards, after)?),
+            Role::Merge | Role::Worker { .. } => None,
+            Role::Shards(shards) => Some(Arc::new(OwnShards::new(&job, shards, after)?)),
         };
-        let state = State { job, n_begun: 0, parts: None, outcome: None };
-        Ok(Self { role, own, state: Mutex::new(state) })
-    }
-
-    /// What the process does.
-    pub fn role(&self) -> &Role {
-        &self.role
+        let state = State { job, n_begun: 0, parts: None, claims: Claims::default(), writing: None, outcome: None };
+        Ok(Self { role, after, own: Mutex::new(own), state: Mutex::new(state) })
     }
 
     /// Why the bake ended early, if the store ended it.
@@ -111,20 +126,101 @@ impl JobStore {
     /// # Errors
     /// [`Halt::Store`] if they cannot be written.
     pub fn flush(&self) -> Result<(), Halt> {
-        self.own.as_ref().map_or(Ok(()), OwnShards::flush)
+        self.own().map_or(Ok(()), |own| own.flush())
     }
 
     fn lock(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    fn own(&self) -> Option<Arc<OwnShards>> {
+        self.own.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
     /// The shards of this process, if they are of a phase.
-    fn own_of(&self, phase: &str) -> Option<&OwnShards> {
-        self.own.as_ref().filter(|own| own.are_of(phase))
+    fn own_of(&self, phase: &str) -> Option<Arc<OwnShards>> {
+        self.own().filter(|own| own.are_of(phase))
+    }
+
+    fn set_own(&self, own: Option<OwnShards>) {
+        *self.own.lock().unwrap_or_else(PoisonError::into_inner) = own.map(Arc::new);
+    }
+
+    /// What a worker does next for a phase: shards that it claims, or, once all are done, everything.
+    fn next_pass(&self, state: &mut State, phase: usize, n_workers: usize, stop: fn() -> bool) -> Result<(), Halt> {
+        // Others may claim what was this worker's from here on.
+        state.claims = Claims::default();
+        self.set_own(None);
+        let shards = state.job.manifest.shards_of(phase);
+        let n = shards.len();
+        let (mut left, mut look) = (shards.collect::<Vec<usize>>(), LOOKS[0]);
+        loop {
+            if stop() {
+                return Err(Halt::Cancelled(Cancelled));
+            }
+            left.retain(|&shard| !state.job.part_path(shard).is_file());
+            if left.is_empty() {
+                return state.open(phase);
+            }
+            let claims = Claims::of(&state.job, &left, batch(left.len(), n, n_workers)).map_err(failed)?;
+            if !claims.shards.is_empty() {
+                let own = OwnShards::new(&state.job, &claims.shards, self.after).map_err(failed)?;
+                own.take_up(&state.job);
+                state.claims = claims;
+                self.set_own(Some(own));
+                return Ok(());
+            }
+            sleep(look);
+            look = (look * 2).min(LOOKS[1]);
+        }
     }
 }
 
+fn failed(error: JobError) -> Halt {
+    Halt::Store(error.to_string())
+}
+
 impl State {
+    /// Opens the parts of a phase; without all of them this process ends.
+    fn open(&mut self, phase: usize) -> Result<(), Halt> {
+        match self.open_parts(phase) {
+            Ok(parts) => self.parts = Some(parts),
+            Err(shards) => return Err(self.end_with(Outcome::Missing { phase, shards })),
+        }
+        Ok(())
+    }
+
+    /// Plans a phase together with other workers: one does it, and the others take what it has written.
+    fn plan_together(&mut self, phase: &Phase<'_>, place: usize, stop: fn() -> bool) -> Result<(), Halt> {
+        let path = self.job.folder().join("planning.claim");
+        let _claim = loop {
+            if let Some(claim) = Claim::of(path.clone()).map_err(failed)? {
+                break claim;
+            }
+            if stop() {
+                return Err(Halt::Cancelled(Cancelled));
+            }
+            sleep(LOOKS[0]);
+        };
+        self.job.read_again().map_err(failed)?;
+        if self.job.manifest.phases.len() <= place {
+            self.plan(phase).map_err(failed)?;
+        }
+        Ok(())
+    }
+
+    /// Cuts a phase into shards, and adds it to the manifest.
+    fn plan(&mut self, phase: &Phase<'_>) -> Result<(), JobError> {
+        let shards = cut(phase.costs, self.job.manifest.max_shards);
+        self.job.add_phase(PhasePlan { name: phase.name.to_owned(), n_units: phase.costs.len(), shards })?;
+        if phase.costs.is_empty() {
+            // Nobody has anything to do for it.
+            let mut shards = self.job.manifest.shards_of(self.job.manifest.phases.len() - 1);
+            shards.try_for_each(|shard| self.job.save_part(shard, phase.name, &[]))?;
+        }
+        Ok(())
+    }
+
     fn end_with(&mut self, outcome: Outcome) -> Halt {
         self.outcome = Some(outcome);
         Halt::Shared
@@ -161,21 +257,21 @@ impl UnitStore for JobStore {
         let place = state.n_begun;
         state.n_begun += 1;
         if state.job.manifest.phases.len() <= place {
-            if self.own.is_some() {
-                return Err(Halt::Store(format!("the job has no phase {} yet", phase.name)));
+            match self.role {
+                Role::Shards(_) => return Err(Halt::Store(format!("the job has no phase {} yet", phase.name))),
+                Role::Worker { stop, .. } => state.plan_together(phase, place, stop)?,
+                Role::Merge => {
+                    state.plan(phase).map_err(failed)?;
+                    let shards = state.job.manifest.shards_of(place);
+                    if !phase.costs.is_empty() {
+                        return Err(state.end_with(Outcome::Planned { phase: place, shards }));
+                    }
+                }
             }
-            let shards = cut(phase.costs, state.job.manifest.max_shards);
-            let plan = PhasePlan { name: phase.name.to_owned(), n_units: phase.costs.len(), shards };
-            state.job.add_phase(plan).map_err(|error| Halt::Store(error.to_string()))?;
-            let shards = state.job.manifest.shards_of(place);
-            if !phase.costs.is_empty() {
-                return Err(state.end_with(Outcome::Planned { phase: place, shards }));
-            }
-            // Nobody has anything to do for it.
-            let saved = shards.into_iter().try_for_each(|shard| state.job.save_part(shard, phase.name, &[]));
-            saved.map_err(|error| Halt::Store(error.to_string()))?;
         }
-        let plan = &state.job.manifest.phases[place];
+        let Some(plan) = state.job.manifest.phases.get(place) else {
+            return Err(Halt::Store(format!("the manifest of the job has lost the phase before {}", phase.name)));
+        };
         if plan.name != phase.name || plan.n_units != phase.costs.len() {
             let (name, n, found) = (&plan.name, plan.n_units, phase.costs.len());
             return Err(Halt::Store(format!(
@@ -187,11 +283,10 @@ impl UnitStore for JobStore {
             own.take_up(&state.job);
             return Ok(());
         }
-        match state.open_parts(place) {
-            Ok(parts) => state.parts = Some(parts),
-            Err(shards) => return Err(state.end_with(Outcome::Missing { phase: place, shards })),
+        match self.role {
+            Role::Worker { n_workers, stop } => self.next_pass(&mut state, place, n_workers, stop),
+            _ => state.open(place),
         }
-        Ok(())
     }
 
     fn wants(&self, phase: &'static str, unit: usize) -> bool {
@@ -216,15 +311,18 @@ impl UnitStore for JobStore {
         }
     }
 
-    fn end(&self, phase: &'static str) -> Result<(), Halt> {
+    fn end(&self, phase: &'static str) -> Result<Pass, Halt> {
         let mut state = self.lock();
         let Some(own) = self.own_of(phase) else {
             // Nothing of the phase is loaded any more, and open files are few.
             state.parts = None;
-            return Ok(());
+            return Ok(Pass::Last);
         };
         own.end(&state.job, phase)?;
-        Err(state.end_with(Outcome::Done))
+        let Role::Worker { n_workers, stop } = self.role else { return Err(state.end_with(Outcome::Done)) };
+        let place = state.n_begun - 1;
+        self.next_pass(&mut state, place, n_workers, stop)?;
+        Ok(Pass::Again)
     }
 
     fn runs(&self, phase: &'static str) -> Option<Vec<Range<usize>>> {
@@ -236,7 +334,28 @@ impl UnitStore for JobStore {
     }
 
     fn needs_costs(&self) -> bool {
-        let state = self.lock();
+        let mut state = self.lock();
+        if state.job.manifest.phases.len() <= state.n_begun && matches!(self.role, Role::Worker { .. }) {
+            // Another worker may have planned it. If that cannot be read, costs are only computed for nothing.
+            let _ = state.job.read_again();
+        }
         state.job.manifest.phases.len() <= state.n_begun
+    }
+
+    fn may_write(&self) -> bool {
+        if !matches!(self.role, Role::Worker { .. }) {
+            return true;
+        }
+        let mut state = self.lock();
+        if state.writing.is_none() {
+            // Who cannot claim it for another reason finds out what is wrong when it writes.
+            let claim = Claim::of(state.job.folder().join("writing.claim"));
+            match claim {
+                Ok(None) => drop(state.end_with(Outcome::Done)),
+                Ok(claim) => state.writing = claim,
+                Err(_) => return true,
+            }
+        }
+        state.writing.is_some()
     }
 }

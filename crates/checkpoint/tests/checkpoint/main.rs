@@ -4,3 +4,4 @@ mod damage;
 mod jobs;
 mod journals;
 mod toy;
+mod workers;

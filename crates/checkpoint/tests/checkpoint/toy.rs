@@ -33,19 +33,19 @@ fn mix(seed: u64, unit: usize) -> Vec<u8> {
 impl Toy {
     fn phase(&self, units: Units<'_>, name: &'static str, n: usize, seed: u64) -> Result<Vec<u8>, Halt> {
         let costs: Vec<f64> = (0..n).map(|unit| (n - unit) as f64).collect();
-        units.begin(&Phase { name, costs: &costs })?;
-        let mut all = Vec::new();
-        for unit in 0..n {
-            let result = units.get(name, unit, || {
-                if self.n_computed.fetch_add(1, Relaxed) >= self.stop_after {
-                    return Err(Halt::Store("killed".to_owned()));
-                }
-                Ok(mix(seed, unit))
-            })?;
-            all.extend(result.unwrap_or_default());
-        }
-        units.end(name)?;
-        Ok(all)
+        units.through(&Phase { name, costs: &costs }, || {
+            let mut all = Vec::new();
+            for unit in 0..n {
+                let result = units.get(name, unit, || {
+                    if self.n_computed.fetch_add(1, Relaxed) >= self.stop_after {
+                        return Err(Halt::Store("killed".to_owned()));
+                    }
+                    Ok(mix(seed, unit))
+                })?;
+                all.extend(result.unwrap_or_default());
+            }
+            Ok(all)
+        })
     }
 
     pub(crate) fn bake(&self, store: Option<&dyn UnitStore>) -> Result<Vec<u8>, Halt> {

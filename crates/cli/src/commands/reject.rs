@@ -103,6 +103,7 @@ pub(crate) fn make(args: &RejectArgs, keeping: Keeping<'_>, show_progress: bool)
             };
             Error::Reject { path: path.clone(), source: Box::new(source) }
         })?;
+        kept.before_writing()?;
         output::save(&args.output, &outcome.bytes)?;
         warn(&args.input, &outcome.maps);
         let maps = outcome.maps.iter().map(Map::from).collect();

@@ -222,7 +222,7 @@ fn the_guide_for_quake_works() {
 #[test]
 fn the_guide_for_clusters_works() {
     let folder = Folder::new();
-    assert_eq!(follow(&folder, "when-one-machine-is-not-enough.md"), 18);
+    assert_eq!(follow(&folder, "when-one-machine-is-not-enough.md"), 20);
     assert!(folder.read("tower.pvs") == folder.read("whole.pvs"));
     assert!(!folder.path("tower.pvs.state").exists());
 }

@@ -53,3 +53,4 @@ mod vis_program;
 mod vis_program_errors;
 mod vis_real;
 mod walk;
+mod workers;

@@ -2,6 +2,7 @@
 
 use crate::common::Folder;
 use crate::jobs::{COMMANDS, inputs};
+use crate::workers::{bytes, commands};
 use std::net::TcpListener;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
@@ -153,15 +154,15 @@ impl Drop for Cluster {
     }
 }
 
-/// Numbers of processes that do shards of a job.
-fn shard_processes(job: &Path) -> Vec<u32> {
+/// Numbers of processes that do `what` for a job.
+fn processes(job: &Path, what: &[u8]) -> Vec<u32> {
     let job = job.display().to_string();
     let processes = std::fs::read_dir("/proc").into_iter().flatten().flatten();
     let pid = |entry: std::fs::DirEntry| entry.file_name().to_str()?.parse().ok();
     let does = |pid: &u32| {
         let line = std::fs::read(format!("/proc/{pid}/cmdline")).unwrap_or_default();
         let words: Vec<&[u8]> = line.split(|&byte| byte == 0).collect();
-        words.windows(3).any(|w| w[0] == b"job" && w[1] == b"shard" && w[2] == job.as_bytes())
+        words.windows(3).any(|w| w[0] == b"job" && w[1] == what && w[2] == job.as_bytes())
     };
     processes.filter_map(pid).filter(does).collect()
 }
@@ -169,6 +170,38 @@ fn shard_processes(job: &Path) -> Vec<u32> {
 fn n_parts(folder: &Folder) -> usize {
     let names = crate::common::names(&folder.path("job/parts"));
     names.iter().filter(|name| name.ends_with(".part")).count()
+}
+
+/// Workers as tasks of an array, the first of which is killed, end with the bytes that each kind of command writes.
+fn workers_on_slurm(folder: &Folder, cluster: &Cluster) {
+    folder.run(&["generate", "world", "--blocks", "2", "--per-tile", "1", "-o", "city"]).expect(0);
+    let program = env!("CARGO_BIN_EXE_sightlines");
+    let kill =
+        |pid: u32| Command::new("kill").args(["-9", &pid.to_string()]).status().is_ok_and(|status| status.success());
+    let mut n_killed = 0;
+    for (k, (command, out)) in commands().into_iter().enumerate() {
+        let words =
+            |out| -> Vec<&str> { command.split(' ').map(|word| if word == "OUT" { out } else { word }).collect() };
+        let (alone, shared) = (format!("alone{k}-{out}"), format!("workers{k}-{out}"));
+        folder.run(&words(&alone)).expect(0);
+        let name = format!("job{k}");
+        folder.run(&[&["job", "plan", "-o", &name, "--shards", "24"][..], &words(&shared)].concat()).expect(0);
+        let job = folder.path(&name).canonicalize().unwrap();
+        let line = format!("'{program}' job work '{}' --workers 3 -q", job.display());
+        let logs = format!("--output={}/worker-%a.log", job.display());
+        let number = cluster.ask(&["sbatch", "--parsable", "--array=0-2", &logs, "--wrap", &line]);
+        assert!(number.parse::<u64>().is_ok(), "{number}");
+        let is_over = || cluster.ask(&["squeue", "-h", "-j", &number]).is_empty();
+        wait_for("a worker that can be killed", || {
+            let was_killed = processes(&job, b"work").first().is_some_and(|&pid| kill(pid));
+            n_killed += usize::from(was_killed);
+            was_killed || is_over()
+        });
+        wait_for("the end of all workers", is_over);
+        assert!(bytes(folder, &shared) == bytes(folder, &alone), "{command}");
+    }
+    eprintln!("workers on Slurm: {} commands, {n_killed} workers killed", commands().len());
+    assert!(n_killed >= 3, "{n_killed}");
 }
 
 /// With this variable set, the controller and a node are killed too. Slurm 22.05 may then keep a task of the dead node for ever, or hold one that it could
@@ -201,7 +234,7 @@ fn a_job_on_slurm_gives_the_bytes_of_a_build() {
     let job = folder.path("job").canonicalize().unwrap();
     let mut n_killed = 0;
     wait_for("a shard that can be killed", || {
-        n_killed += shard_processes(&job).first().is_some_and(|&pid| kill(pid)) as usize;
+        n_killed += processes(&job, b"shard").first().is_some_and(|&pid| kill(pid)) as usize;
         n_killed > 0
     });
     let (mut at_controller, mut at_node) = (0, 0);
@@ -229,8 +262,9 @@ fn a_job_on_slurm_gives_the_bytes_of_a_build() {
     assert_eq!(ended.status.code(), Some(0), "{out}{err}");
     assert!(folder.read("out.pvs") == whole);
     assert!(at_controller < 24 && at_node < 24, "the daemons were killed too late: {at_controller}, {at_node}");
+    workers_on_slurm(&folder, &cluster);
     eprintln!(
-        "{TEST}: a shard killed; the controller after {at_controller} parts of 24, a node after {at_node}; {:.1} s",
+        "{TEST}: a shard and a worker killed; the controller after {at_controller} parts of 24, a node after {at_node}; {:.1} s",
         start.elapsed().as_secs_f64()
     );
 }

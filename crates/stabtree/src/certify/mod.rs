@@ -89,23 +89,29 @@ const PHASE: &str = "proofs";
 pub(crate) fn kept<P, N: Error + 'static>(
     units: Units<'_>,
     find: impl FnOnce() -> Result<P, CertifyError<N>>,
-    write: impl FnOnce(&P) -> Vec<u8>,
-    read: impl FnOnce(&[u8]) -> Option<P>,
+    write: impl Fn(&P) -> Vec<u8>,
+    read: impl Fn(&[u8]) -> Option<P>,
 ) -> Result<P, CertifyError<N>> {
-    units.begin(&Phase { name: PHASE, costs: &[1.0] })?;
-    let mut found = None;
-    let result = units.get(PHASE, 0, || {
-        let proofs = find()?;
-        let bytes = if units.are_kept() { write(&proofs) } else { Vec::new() };
-        found = Some(proofs);
-        Ok::<_, CertifyError<N>>(bytes)
+    let mut find = Some(find);
+    let found = units.through(&Phase { name: PHASE, costs: &[1.0] }, || {
+        let mut found = None;
+        let result = units.get(PHASE, 0, || {
+            let find = find.take().ok_or(Halt::Store("proofs were found, and are lost".to_owned()))?;
+            let proofs = find()?;
+            let bytes = if units.are_kept() { write(&proofs) } else { Vec::new() };
+            found = Some(proofs);
+            Ok::<_, CertifyError<N>>(bytes)
+        })?;
+        match (found, result) {
+            (None, Some(bytes)) => {
+                let unfit = || {
+                    Halt::Store(format!("the kept result of unit 0 of the phase '{PHASE}' does not fit these cells"))
+                };
+                Ok::<_, CertifyError<N>>(Some(read(&bytes).ok_or_else(unfit)?))
+            }
+            (found, _) => Ok(found),
+        }
     })?;
-    if let (None, Some(bytes)) = (&found, result) {
-        let unfit =
-            || Halt::Store(format!("the kept result of unit 0 of the phase '{PHASE}' does not fit these cells"));
-        found = Some(read(&bytes).ok_or_else(unfit)?);
-    }
-    units.end(PHASE)?;
     // A phase that ends has all its results.
     Ok(found.ok_or(Halt::Shared)?)
 }

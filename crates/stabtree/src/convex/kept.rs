@@ -37,36 +37,24 @@ fn divided<const K: usize>(
     phases.map(phase).into()
 }
 
-/// Runs of units, each of which begins with what earlier phases have found.
-struct Apart {
-    runs: Vec<Range<usize>>,
-    /// What they have found; none if there is one run.
-    before: Option<ConvexState>,
-}
+/// What earlier phases have found, which every run of units begins with.
+#[derive(Default)]
+struct Before(Option<ConvexState>);
 
-impl Apart {
-    /// The runs of a phase with so many units.
-    fn new(runs: Option<Vec<Range<usize>>>, n_units: usize) -> Self {
-        Self { runs: runs.unwrap_or_else(|| std::iter::once(0..n_units).collect()), before: None }
-    }
-
-    fn are_several(&self) -> bool {
-        self.runs.len() > 1
-    }
-
-    /// The units in order, and whether a run begins with each.
-    fn units(&self) -> Vec<(usize, bool)> {
-        self.runs.iter().flat_map(|run| run.clone().map(|unit| (unit, unit == run.start))).collect()
-    }
-
-    /// A run begins; whether there was one before, whose results are forgotten.
-    fn begin(&mut self, state: &mut ConvexState) -> bool {
-        match &self.before {
-            Some(before) => state.clone_from(before),
-            None if self.are_several() => self.before = Some(state.clone()),
-            None => {}
+impl Before {
+    /// The runs of a pass through a phase with so many units. A store that has runs may ask for several passes.
+    fn runs(&mut self, state: &ConvexState, runs: Option<Vec<Range<usize>>>, n_units: usize) -> Vec<Range<usize>> {
+        if runs.is_some() && self.0.is_none() {
+            self.0 = Some(state.clone());
         }
-        self.before.is_some()
+        runs.unwrap_or_else(|| std::iter::once(0..n_units).collect())
+    }
+
+    /// A run begins: forgets what others have found.
+    fn restore(&self, state: &mut ConvexState) {
+        if let Some(before) = &self.0 {
+            state.clone_from(before);
+        }
     }
 }
 
@@ -97,20 +85,21 @@ impl ConvexSearch {
     }
 
     fn first_in_units(&mut self, observer: Option<&dyn Observer>, units: Units<'_>) -> Result<(), Halt> {
-        units.begin(&Phase { name: FIRST, costs: &[1.0] })?;
-        let mut is_computed = false;
-        let result = units.get(FIRST, 0, || {
-            is_computed = true;
-            while self.state.stage < 2 {
-                self.tell(observer)?;
-                self.advance();
+        units.through(&Phase { name: FIRST, costs: &[1.0] }, || {
+            let mut is_computed = false;
+            let result = units.get(FIRST, 0, || {
+                is_computed = true;
+                while self.state.stage < 2 {
+                    self.tell(observer)?;
+                    self.advance();
+                }
+                Ok::<_, Halt>(self.first_result())
+            })?;
+            if let Some(bytes) = result.filter(|_| !is_computed) {
+                self.restore_first(&bytes).ok_or_else(|| unfit(FIRST, 0))?;
             }
-            Ok::<_, Halt>(self.first_result())
-        })?;
-        if let Some(bytes) = result.filter(|_| !is_computed) {
-            self.restore_first(&bytes).ok_or_else(|| unfit(FIRST, 0))?;
-        }
-        units.end(FIRST)
+            Ok(())
+        })
     }
 
     /// The state behind the first two stages.
@@ -149,43 +138,54 @@ impl ConvexSearch {
             // Time grows with the square of what lies behind a gate.
             let cost = |&gate: &u32| (self.state.through.count_row(gate as usize) as f64).powi(2);
             let costs: Vec<f64> = ranges.iter().map(|range| self.order[range.clone()].iter().map(cost).sum()).collect();
-            units.begin(&Phase { name: phase, costs: &costs })?;
-            let mut apart = Apart::new(units.runs(phase), ranges.len());
-            let was_done = if apart.are_several() { is_done.clone() } else { Vec::new() };
-            for (unit, begins) in apart.units() {
-                if begins && apart.begin(&mut self.state) {
-                    is_done.clone_from(&was_done);
-                }
-                let range = ranges[unit].clone();
-                let (mut found, n_cells) = (None, self.gates.n_cells());
-                let result = units.get(phase, unit, || {
-                    let (traced, counters): (Vec<Traced>, Vec<ConvexCounters>) =
-                        self.beams_of(range.clone()).into_iter().unzip();
-                    let mut all = ConvexCounters::default();
-                    counters.into_iter().for_each(|counters| all += counters);
-                    let bytes = beams_to_bytes(&traced, all);
-                    found = Some((traced, all));
-                    Ok::<_, Halt>(bytes)
-                })?;
-                let found = match (found, result) {
-                    (None, Some(bytes)) => {
-                        let read = beams_from_bytes(&bytes, range.len(), n_cells, &self.gates);
-                        Some(read.ok_or_else(|| unfit(phase, unit))?)
+            let (mut before, were_done) = (Before::default(), is_done.clone());
+            units.through(&Phase { name: phase, costs: &costs }, || {
+                for run in before.runs(&self.state, units.runs(phase), ranges.len()) {
+                    before.restore(&mut self.state);
+                    is_done.clone_from(&were_done);
+                    for unit in run {
+                        self.beams_in_unit((phase, unit), ranges[unit].clone(), &mut is_done, units)?;
+                        self.tell(observer)?;
                     }
-                    (found, _) => found,
-                };
-                self.state.done = range.end as u64;
-                if let Some((traced, counters)) = found {
-                    self.state.counters += counters;
-                    self.order[range.clone()].iter().for_each(|&gate| is_done[gate as usize] = true);
-                    self.apply_beams(range, &traced, &is_done);
                 }
-                self.tell(observer)?;
-            }
-            units.end(phase)?;
+                Ok::<_, Halt>(())
+            })?;
         }
         self.set_possible();
         self.next_stage();
+        Ok(())
+    }
+
+    fn beams_in_unit(
+        &mut self,
+        (phase, unit): (&'static str, usize),
+        range: Range<usize>,
+        is_done: &mut [bool],
+        units: Units<'_>,
+    ) -> Result<(), Halt> {
+        let (mut found, n_cells) = (None, self.gates.n_cells());
+        let result = units.get(phase, unit, || {
+            let (traced, counters): (Vec<Traced>, Vec<ConvexCounters>) =
+                self.beams_of(range.clone()).into_iter().unzip();
+            let mut all = ConvexCounters::default();
+            counters.into_iter().for_each(|counters| all += counters);
+            let bytes = beams_to_bytes(&traced, all);
+            found = Some((traced, all));
+            Ok::<_, Halt>(bytes)
+        })?;
+        let found = match (found, result) {
+            (None, Some(bytes)) => {
+                let read = beams_from_bytes(&bytes, range.len(), n_cells, &self.gates);
+                Some(read.ok_or_else(|| unfit(phase, unit))?)
+            }
+            (found, _) => found,
+        };
+        self.state.done = range.end as u64;
+        if let Some((traced, counters)) = found {
+            self.state.counters += counters;
+            self.order[range.clone()].iter().for_each(|&gate| is_done[gate as usize] = true);
+            self.apply_beams(range, &traced, is_done);
+        }
         Ok(())
     }
 
@@ -194,24 +194,25 @@ impl ConvexSearch {
             let chunks: Vec<Vec<u32>> = ranges.into_iter().map(|range| self.scattered[range].to_vec()).collect();
             let cost = |cells: &Vec<u32>| cells.iter().map(|&cell| self.pairs_in_doubt(cell).len() as f64).sum();
             let costs: Vec<f64> = chunks.iter().map(cost).collect();
-            units.begin(&Phase { name: phase, costs: &costs })?;
-            let mut apart = Apart::new(units.runs(phase), chunks.len());
-            for (unit, begins) in apart.units() {
-                if begins {
-                    apart.begin(&mut self.state);
+            let mut before = Before::default();
+            units.through(&Phase { name: phase, costs: &costs }, || {
+                for run in before.runs(&self.state, units.runs(phase), chunks.len()) {
+                    before.restore(&mut self.state);
+                    for unit in run {
+                        let (cells, mut is_computed) = (&chunks[unit], false);
+                        let result = units.get(phase, unit, || {
+                            is_computed = true;
+                            Ok::<_, Halt>(self.decide_cells(cells))
+                        })?;
+                        if let Some(bytes) = result.filter(|_| !is_computed) {
+                            self.restore_cells(cells, &bytes).ok_or_else(|| unfit(phase, unit))?;
+                        }
+                        self.state.done += cells.len() as u64;
+                        self.tell(observer)?;
+                    }
                 }
-                let (cells, mut is_computed) = (&chunks[unit], false);
-                let result = units.get(phase, unit, || {
-                    is_computed = true;
-                    Ok::<_, Halt>(self.decide_cells(cells))
-                })?;
-                if let Some(bytes) = result.filter(|_| !is_computed) {
-                    self.restore_cells(cells, &bytes).ok_or_else(|| unfit(phase, unit))?;
-                }
-                self.state.done += cells.len() as u64;
-                self.tell(observer)?;
-            }
-            units.end(phase)?;
+                Ok::<_, Halt>(())
+            })?;
         }
         self.next_stage();
         Ok(())

@@ -27,56 +27,57 @@ impl SpaceSearch<'_> {
     /// Decides pairs of groups. What is left when the allowance is over counts as visible.
     pub(super) fn settle_pairs(
         &self,
-        tasks: Vec<Pair>,
+        all: Vec<Pair>,
         threads: usize,
         allowance: Allowance<'_>,
         counter: &Counter<'_>,
         units: Units<'_>,
     ) -> Result<Done, Halt> {
-        let (mut done, mut is_first) = (Vec::new(), true);
-        let costs: Vec<f64> = tasks.iter().map(|pair| self.cost_of(*pair)).collect();
+        let costs: Vec<f64> = all.iter().map(|pair| self.cost_of(*pair)).collect();
         let shares_of_time = shares_of(&costs);
-        units.begin(&Phase { name: kept::PAIRS, costs: &costs })?;
-        let order = units.in_order(kept::PAIRS, 0..tasks.len());
-        let mut tasks: Vec<(usize, Pair)> = order.into_iter().map(|unit| (unit, tasks[unit])).collect();
-        while is_first || (!tasks.is_empty() && !allowance.is_over()) {
-            let shares = Shares::new(allowance, tasks.len(), threads);
-            let (begun, next) = (std::mem::take(&mut tasks), AtomicUsize::new(0));
-            let turn = (0..begun.len()).into_par_iter().with_max_len(1).map_init(
-                || self.worker(),
-                |worker, _| {
-                    // The observer may have cancelled while others were at work.
-                    counter.check()?;
-                    // Whichever thread is free takes the next one, so that those that come first are done first.
-                    let place = next.fetch_add(1, Relaxed);
-                    let (unit, task) = begun[place];
-                    let before = worker.shaft.counters();
-                    let (mut rest, mut is_computed) = (Vec::new(), false);
-                    let result = units.get(kept::PAIRS, unit, || {
-                        is_computed = true;
-                        rest = self.settle_below(task, worker, shares.next_unit(), allowance);
-                        Ok::<_, Halt>(if units.are_kept() { self.result_of_pairs(task) } else { Vec::new() })
-                    })?;
-                    if let Some(bytes) = result.filter(|_| !is_computed) {
-                        self.restore_pairs(task, &bytes).ok_or_else(|| kept::unfit(kept::PAIRS, unit))?;
-                    }
-                    if is_first {
-                        counter.step_by(PAIRS * shares_of_time[unit], !is_computed)?
-                    } else {
-                        counter.check()?
-                    }
-                    Ok((place, (unit, rest), (worker.shaft.counters() - before, worker.take_log())))
-                },
-            );
-            let mut turn = turn.collect::<Result<Vec<_>, Halt>>()?;
-            turn.sort_unstable_by_key(|(place, ..)| *place);
-            for (_, (unit, rest), did) in turn {
-                tasks.extend(rest.into_iter().map(|pair| (unit, pair)));
-                done.push(did);
+        let (tasks, done) = units.through(&Phase { name: kept::PAIRS, costs: &costs }, || {
+            let order = units.in_order(kept::PAIRS, 0..all.len());
+            let mut tasks: Vec<(usize, Pair)> = order.into_iter().map(|unit| (unit, all[unit])).collect();
+            let (mut done, mut is_first) = (Vec::new(), true);
+            while is_first || (!tasks.is_empty() && !allowance.is_over()) {
+                let shares = Shares::new(allowance, tasks.len(), threads);
+                let (begun, next) = (std::mem::take(&mut tasks), AtomicUsize::new(0));
+                let turn = (0..begun.len()).into_par_iter().with_max_len(1).map_init(
+                    || self.worker(),
+                    |worker, _| {
+                        // The observer may have cancelled while others were at work.
+                        counter.check()?;
+                        // Whichever thread is free takes the next one, so that those that come first are done first.
+                        let place = next.fetch_add(1, Relaxed);
+                        let (unit, task) = begun[place];
+                        let before = worker.shaft.counters();
+                        let (mut rest, mut is_computed) = (Vec::new(), false);
+                        let result = units.get(kept::PAIRS, unit, || {
+                            is_computed = true;
+                            rest = self.settle_below(task, worker, shares.next_unit(), allowance);
+                            Ok::<_, Halt>(if units.are_kept() { self.result_of_pairs(task) } else { Vec::new() })
+                        })?;
+                        if let Some(bytes) = result.filter(|_| !is_computed) {
+                            self.restore_pairs(task, &bytes).ok_or_else(|| kept::unfit(kept::PAIRS, unit))?;
+                        }
+                        if is_first {
+                            counter.step_by(PAIRS * shares_of_time[unit], !is_computed)?
+                        } else {
+                            counter.check()?
+                        }
+                        Ok((place, (unit, rest), (worker.shaft.counters() - before, worker.take_log())))
+                    },
+                );
+                let mut turn = turn.collect::<Result<Vec<_>, Halt>>()?;
+                turn.sort_unstable_by_key(|(place, ..)| *place);
+                for (_, (unit, rest), did) in turn {
+                    tasks.extend(rest.into_iter().map(|pair| (unit, pair)));
+                    done.push(did);
+                }
+                is_first = false;
             }
-            is_first = false;
-        }
-        units.end(kept::PAIRS)?;
+            Ok::<_, Halt>((tasks, done))
+        })?;
         self.give_up_pairs(tasks.iter().map(|(_, pair)| *pair));
         Ok(done)
     }
@@ -134,48 +135,49 @@ impl SpaceSearch<'_> {
         counter: &Counter<'_>,
         units: Units<'_>,
     ) -> Result<Done, Halt> {
-        let (mut done, mut is_first) = (Vec::new(), true);
         let costs: Vec<f64> = (0..self.boxes.len()).map(|object| self.cost_of_object(object)).collect();
         let shares_of_time = shares_of(&costs);
-        units.begin(&Phase { name: kept::OBJECTS, costs: &costs })?;
-        let order = units.in_order(kept::OBJECTS, 0..self.boxes.len());
-        let mut tasks: Vec<(usize, Vec<u32>)> = order.into_iter().map(|object| (object, vec![0])).collect();
-        while is_first || (!tasks.is_empty() && !allowance.is_over()) {
-            let shares = Shares::new(allowance, tasks.len(), threads);
-            let (begun, next) = (std::mem::take(&mut tasks), AtomicUsize::new(0));
-            let turn = (0..begun.len()).into_par_iter().with_max_len(4).map_init(
-                || self.worker(),
-                |worker, _| {
-                    counter.check()?;
-                    let place = next.fetch_add(1, Relaxed);
-                    let (object, nodes) = (begun[place].0, begun[place].1.clone());
-                    let before = worker.shaft.counters();
-                    let (mut rest, mut is_computed) = (Vec::new(), false);
-                    let result = units.get(kept::OBJECTS, object, || {
-                        is_computed = true;
-                        rest = self.settle_object(object, worker, nodes, shares.next_unit(), allowance);
-                        Ok::<_, Halt>(if units.are_kept() { self.result_of_object(object) } else { Vec::new() })
-                    })?;
-                    if let Some(bytes) = result.filter(|_| !is_computed) {
-                        self.restore_object(object, &bytes).ok_or_else(|| kept::unfit(kept::OBJECTS, object))?;
-                    }
-                    if is_first {
-                        counter.step_by((1.0 - PAIRS) * shares_of_time[object], !is_computed)?
-                    } else {
-                        counter.check()?
-                    }
-                    Ok((place, (object, rest), (worker.shaft.counters() - before, worker.take_log())))
-                },
-            );
-            let mut turn = turn.collect::<Result<Vec<_>, Halt>>()?;
-            turn.sort_unstable_by_key(|(place, ..)| *place);
-            for (_, rest, did) in turn {
-                tasks.extend(Some(rest).filter(|(_, nodes)| !nodes.is_empty()));
-                done.push(did);
+        let (tasks, done) = units.through(&Phase { name: kept::OBJECTS, costs: &costs }, || {
+            let order = units.in_order(kept::OBJECTS, 0..self.boxes.len());
+            let mut tasks: Vec<(usize, Vec<u32>)> = order.into_iter().map(|object| (object, vec![0])).collect();
+            let (mut done, mut is_first) = (Vec::new(), true);
+            while is_first || (!tasks.is_empty() && !allowance.is_over()) {
+                let shares = Shares::new(allowance, tasks.len(), threads);
+                let (begun, next) = (std::mem::take(&mut tasks), AtomicUsize::new(0));
+                let turn = (0..begun.len()).into_par_iter().with_max_len(4).map_init(
+                    || self.worker(),
+                    |worker, _| {
+                        counter.check()?;
+                        let place = next.fetch_add(1, Relaxed);
+                        let (object, nodes) = (begun[place].0, begun[place].1.clone());
+                        let before = worker.shaft.counters();
+                        let (mut rest, mut is_computed) = (Vec::new(), false);
+                        let result = units.get(kept::OBJECTS, object, || {
+                            is_computed = true;
+                            rest = self.settle_object(object, worker, nodes, shares.next_unit(), allowance);
+                            Ok::<_, Halt>(if units.are_kept() { self.result_of_object(object) } else { Vec::new() })
+                        })?;
+                        if let Some(bytes) = result.filter(|_| !is_computed) {
+                            self.restore_object(object, &bytes).ok_or_else(|| kept::unfit(kept::OBJECTS, object))?;
+                        }
+                        if is_first {
+                            counter.step_by((1.0 - PAIRS) * shares_of_time[object], !is_computed)?
+                        } else {
+                            counter.check()?
+                        }
+                        Ok((place, (object, rest), (worker.shaft.counters() - before, worker.take_log())))
+                    },
+                );
+                let mut turn = turn.collect::<Result<Vec<_>, Halt>>()?;
+                turn.sort_unstable_by_key(|(place, ..)| *place);
+                for (_, rest, did) in turn {
+                    tasks.extend(Some(rest).filter(|(_, nodes)| !nodes.is_empty()));
+                    done.push(did);
+                }
+                is_first = false;
             }
-            is_first = false;
-        }
-        units.end(kept::OBJECTS)?;
+            Ok::<_, Halt>((tasks, done))
+        })?;
         self.give_up_objects(&tasks);
         Ok(done)
     }

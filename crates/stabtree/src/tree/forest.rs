@@ -103,7 +103,6 @@ pub fn stab_trees<C: Space, F: Follower>(
     // What a cell may see bounds the cells of its sequences.
     let costs: Vec<f64> = (0..n).map(|cell| rows.count_row(cell) as f64).collect();
     let shares = shares_of(&costs);
-    units.begin(&Phase { name: PHASE, costs: &costs })?;
     let counter = Counter::new(options.progress, "stab trees", n);
     let one = |follower: &mut F, cell: usize| -> Result<Option<Folded>, Halt> {
         counter.check()?;
@@ -125,34 +124,35 @@ pub fn stab_trees<C: Space, F: Follower>(
         counter.step_by(shares[cell], is_kept)?;
         Ok(folded)
     };
-    let mut shared = Shared::default();
-    let mut forest = StabParts { first_root: vec![0], ..StabParts::default() };
-    let mut summary = StabTreesSummary::default();
-    for first in (0..n).step_by(BATCH) {
-        // In the order of cells, so that ids do not depend on which finished first.
-        for tree in workers.map(first..n.min(first + BATCH), || follower.clone(), one) {
-            // Without one that is for another process this ends below.
-            let Some(tree) = tree? else { continue };
-            let fits = shared.len() + tree.shared.len() <= MOST
-                && shared.children.len() + tree.shared.children.len() <= MOST
-                && forest.roots.len() + tree.roots.len() <= MOST;
-            if fits {
-                let ids = shared.absorb(&tree.shared);
-                let from = forest.roots.len();
-                forest.roots.extend(tree.roots.iter().map(|&root| ids[root as usize]));
-                forest.roots[from..].sort_unstable();
-                summary += tree.counts;
-            } else {
-                summary += StabTreesSummary { n_cut_cells: 1, n_largest: 1, ..StabTreesSummary::default() };
+    units.through(&Phase { name: PHASE, costs: &costs }, || {
+        let mut shared = Shared::default();
+        let mut forest = StabParts { first_root: vec![0], ..StabParts::default() };
+        let mut summary = StabTreesSummary::default();
+        for first in (0..n).step_by(BATCH) {
+            // In the order of cells, so that ids do not depend on which finished first.
+            for tree in workers.map(first..n.min(first + BATCH), || follower.clone(), one) {
+                // Without one that is for another process this ends below.
+                let Some(tree) = tree? else { continue };
+                let fits = shared.len() + tree.shared.len() <= MOST
+                    && shared.children.len() + tree.shared.children.len() <= MOST
+                    && forest.roots.len() + tree.roots.len() <= MOST;
+                if fits {
+                    let ids = shared.absorb(&tree.shared);
+                    let from = forest.roots.len();
+                    forest.roots.extend(tree.roots.iter().map(|&root| ids[root as usize]));
+                    forest.roots[from..].sort_unstable();
+                    summary += tree.counts;
+                } else {
+                    summary += StabTreesSummary { n_cut_cells: 1, n_largest: 1, ..StabTreesSummary::default() };
+                }
+                forest.root_open.push(tree.root_open || !fits);
+                forest.first_root.push(forest.roots.len() as u32);
             }
-            forest.root_open.push(tree.root_open || !fits);
-            forest.first_root.push(forest.roots.len() as u32);
         }
-    }
-    units.end(PHASE)?;
-    forest.first_child = shared.first_child();
-    (forest.gates, forest.children, forest.open) = (shared.gates, shared.children, shared.open);
-    Ok((forest, summary))
+        forest.first_child = shared.first_child();
+        (forest.gates, forest.children, forest.open) = (shared.gates, shared.children, shared.open);
+        Ok((forest, summary))
+    })
 }
 
 fn unfit(cell: usize) -> Halt {

@@ -170,7 +170,7 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
         let options = BakeOptions { units, ..options.clone() };
         let plan = announce::Plan::new(&source.content, &options, auto.as_ref(), args.time_limit);
         if let Some(file) = packed::of_rows(&source, &options, out, class).filter(|_| args.is_alone()) {
-            let outcome = packed::write_rows(path, file, &options, plan, (out, show_progress))?;
+            let outcome = packed::write_rows(path, file, &options, plan, (out, show_progress), &kept)?;
             return Ok(Built {
                 auto: None,
                 outcome: Outcome::Rows(Box::new(outcome)),
@@ -191,6 +191,7 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
         let (baked, given_doors) = doors::add(path, baked, &args.doors);
         let baked = plans::state(baked, &reading);
         let bytes = packed::bytes_of(&baked.table, path, out, class)?;
+        kept.before_writing()?;
         // Proofs that contradict the table leave an older one untouched.
         let proofs = args.certify.write(path, out, &baked, options.threads, &kept, show_progress)?;
         output::save(out, &bytes)?;

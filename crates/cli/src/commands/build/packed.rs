@@ -5,6 +5,7 @@ use super::source::Source;
 use super::{Error, announce};
 use crate::buffers::MethodFailed;
 use crate::facts::Stated;
+use crate::kept::Kept;
 use crate::output::{self, count};
 use crate::progress::Bar;
 use crate::tables::Class;
@@ -53,6 +54,7 @@ pub(super) fn write_rows(
     options: &BakeOptions<'_>,
     plan: announce::Plan,
     (out, show_progress): (&Path, bool),
+    kept: &Kept<'_>,
 ) -> Result<Outcome, Error> {
     let bar = Bar::new("visibility", show_progress);
     let announcer = announce::Announcer::new(&bar, &plan, show_progress);
@@ -65,6 +67,7 @@ pub(super) fn write_rows(
         PackRegionsError::Bake(source) => Error::Bake { path: path.to_owned(), map: None, source: Box::new(source) },
         source => Error::Rows { path: path.to_owned(), source: Box::new(source) },
     })?;
+    kept.before_writing()?;
     output::save(out, &bytes)?;
     Ok(Outcome::new(out, file, &report, &packed))
 }

@@ -46,9 +46,9 @@ pub(crate) enum Error {
     /// A program that queues jobs fails.
     #[error("{program}: {message}")]
     Queue { program: &'static str, message: String },
-    /// A shard that would fail again however often it were tried; a process has said why.
-    #[error("{shards}: {message}")]
-    Shard { shards: String, message: String },
+    /// A process that would fail again however often it were tried has said why.
+    #[error("{name}: {message}")]
+    Process { name: String, message: String },
     /// The program was interrupted.
     #[error("interrupted; parts that are written stay: the same command goes on from there")]
     Interrupted,

@@ -31,8 +31,10 @@ pub(crate) struct MergeArgs {
 pub(super) enum Progress {
     /// The output is written.
     Written(Box<Made>, PathBuf),
-    /// The output is written by another process.
-    Elsewhere(PathBuf),
+    /// The output was written by another process, which printed this.
+    Elsewhere(PathBuf, Option<String>),
+    /// All is done, and another process writes the output.
+    Shared(PathBuf),
     /// The next phase is known, and its shards are to be done.
     Planned(Job, usize),
     /// Shards of a phase are not done.
@@ -47,11 +49,23 @@ pub(super) fn merge(
     show_progress: bool,
     verbose: bool,
 ) -> Result<Progress, Error> {
+    let adjust = |task: Task| task.with_threads(threads).with_output(output);
+    through((folder, Role::Merge, Duration::ZERO), adjust, show_progress, verbose)
+}
+
+/// Goes through all of a job in a role that is not told its shards.
+///
+/// * The time is how long results are only in memory.
+pub(super) fn through(
+    (folder, role, after): (&Path, Role, Duration),
+    adjust: impl FnOnce(Task) -> Task,
+    show_progress: bool,
+    verbose: bool,
+) -> Result<Progress, Error> {
     let job = open(folder)?;
-    let task = Task::of(&job)?.with_threads(threads).with_output(output);
+    let task = adjust(Task::of(&job)?);
     let slot = JobSlot::default();
-    let open =
-        |identity: &Identity| slot.open(identity, || Ok(JobStore::new(job.clone(), Role::Merge, Duration::ZERO)?));
+    let open = |identity: &Identity| slot.open(identity, || Ok(JobStore::new(job.clone(), role.clone(), after)?));
     let made = task.make(Keeping::Job(&open), show_progress, verbose);
     match slot.store().and_then(|store| Some((store.outcome()?, store.job()))) {
         Some((Outcome::Planned { phase, .. }, job)) => Ok(Progress::Planned(job, phase)),
@@ -59,7 +73,10 @@ pub(super) fn merge(
             let missing = Missing::new(&job, phase, shards);
             Ok(Progress::Missing(job, missing))
         }
-        _ if interrupt::requested() && made.is_err() => Err(Error::Interrupted),
+        Some((Outcome::Done, _)) => Ok(Progress::Shared(task.output().to_owned())),
+        _ if interrupt::requested() && made.is_err() => {
+            Err(interrupt::memory().map_or(Error::Interrupted, Error::Memory))
+        }
         _ => Ok(Progress::Written(Box::new(made?), task.output().to_owned())),
     }
 }
@@ -74,8 +91,9 @@ pub(crate) fn run(args: &MergeArgs, show_progress: bool, verbose: bool) -> Resul
 pub(super) fn report(job: &Path, found: Progress, json: bool) -> Result<Answer, Error> {
     let name = job.display().to_string();
     let (merged, answer) = match found {
-        Progress::Written(made, out) => (Merged::written(name, &out, Some(*made)), Answer::Yes),
-        Progress::Elsewhere(out) => (Merged::written(name, &out, None), Answer::Yes),
+        Progress::Written(made, out) => (Merged::written(name, &out, &made), Answer::Yes),
+        Progress::Elsewhere(out, said) => (Merged::elsewhere(name, &out, said), Answer::Yes),
+        Progress::Shared(out) => (Merged::shared(name, &out), Answer::Yes),
         Progress::Planned(job, phase) => (Merged::planned(name, &job, phase), Answer::Incomplete),
         Progress::Missing(_, missing) => (Merged::missing(name, missing), Answer::Incomplete),
     };

@@ -10,6 +10,7 @@ mod shard;
 mod status;
 mod submit;
 mod task;
+mod work;
 
 pub(crate) use error::Error;
 
@@ -36,6 +37,8 @@ enum JobCommand {
     Plan(plan::PlanArgs),
     /// Do some shards, and write the part of each
     Shard(shard::ShardArgs),
+    /// Do all of a job together with other workers, which prepare once: shards that nobody has claimed, phase by phase, and what the command writes
+    Work(work::WorkArgs),
     /// Put all parts together: writes what the command writes without a job, or plans the shards that come next
     Merge(merge::MergeArgs),
     /// Have all shards done and merged: by processes on this machine, by Slurm, or by a command of yours
@@ -48,6 +51,7 @@ pub(crate) fn run(args: &JobArgs, show_progress: bool, verbose: bool) -> Result<
     match &args.what {
         JobCommand::Plan(args) => plan::run(args, show_progress),
         JobCommand::Shard(args) => shard::run(args, show_progress),
+        JobCommand::Work(args) => work::run(args, verbose),
         JobCommand::Merge(args) => merge::run(args, show_progress, verbose),
         JobCommand::Submit(args) => submit::run(args, show_progress, verbose),
         JobCommand::Status(args) => status::run(args),

@@ -157,7 +157,7 @@ impl fmt::Display for Missing {
 #[derive(Debug, Serialize)]
 pub(super) struct Merged {
     job: String,
-    /// `written`, `planned` (another phase is to be done) or `missing` (shards are to be done).
+    /// `written`, `shared` (another process writes it), `planned` (another phase is to be done) or `missing` (shards are to be done).
     status: &'static str,
     #[serde(skip_serializing_if = "Option::is_none")]
     out: Option<String>,
@@ -166,30 +166,40 @@ pub(super) struct Merged {
     #[serde(skip_serializing_if = "Option::is_none")]
     undone: Option<Missing>,
     /// What the command itself prints.
-    #[serde(skip)]
-    made: Option<Made>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    text: Option<String>,
 }
 
 impl Merged {
-    pub(super) fn written(job: String, out: &Path, made: Option<Made>) -> Self {
+    pub(super) fn written(job: String, out: &Path, made: &Made) -> Self {
+        Self::elsewhere(job, out, Some(made.to_string()))
+    }
+
+    /// Written by another process, which has printed this.
+    pub(super) fn elsewhere(job: String, out: &Path, text: Option<String>) -> Self {
         let out = Some(out.display().to_string());
-        Self { job, status: "written", out, next: None, undone: None, made }
+        Self { job, status: "written", out, next: None, undone: None, text }
+    }
+
+    pub(super) fn shared(job: String, out: &Path) -> Self {
+        let text = format!("done; another process writes {}\n", out.display());
+        Self { status: "shared", ..Self::elsewhere(job, out, Some(text)) }
     }
 
     pub(super) fn planned(name: String, job: &Job, phase: usize) -> Self {
         let next = Some(PhaseFacts::new(job, phase));
-        Self { job: name, status: "planned", out: None, next, undone: None, made: None }
+        Self { job: name, status: "planned", out: None, next, undone: None, text: None }
     }
 
     pub(super) fn missing(job: String, undone: Missing) -> Self {
-        Self { job, status: "missing", out: None, next: None, undone: Some(undone), made: None }
+        Self { job, status: "missing", out: None, next: None, undone: Some(undone), text: None }
     }
 }
 
 impl fmt::Display for Merged {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match (&self.made, &self.out) {
-            (Some(made), _) => write!(f, "{made}")?,
+        match (&self.text, &self.out) {
+            (Some(text), _) => f.write_str(text)?,
             (None, Some(out)) => writeln!(f, "wrote {out}")?,
             (None, None) => {}
         }

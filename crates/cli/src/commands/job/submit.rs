@@ -1,6 +1,6 @@
 //! `job submit`: has all shards done, round by round, and merges them.
 
-use super::engine::{Command, Engine, Local, Round, Slurm, write_kubernetes};
+use super::engine::{Command, Did, Engine, Local, Round, Slurm, write_kubernetes};
 use super::merge::{Progress, merge, report};
 use super::outcome::{Missing, Submitted};
 use super::task::Task;
@@ -98,7 +98,7 @@ pub(crate) fn run(args: &SubmitArgs, show_progress: bool, verbose: bool) -> Resu
     let engine: Box<dyn Engine + '_> = match (args.engine, &args.command) {
         (Kind::Slurm, _) => Box::new(slurm),
         (Kind::Command, Some(template)) => Box::new(Command { program: &program, template, workers, show_progress }),
-        _ => Box::new(Local { program: &program, workers, show_progress }),
+        _ => Box::new(Local { program: &program, workers, output: out.as_deref(), show_progress }),
     };
     let mut tries = Tries { phase: None, n: 0 };
     let found = loop {
@@ -109,11 +109,12 @@ pub(crate) fn run(args: &SubmitArgs, show_progress: bool, verbose: bool) -> Resu
                 let missing = Missing::new(&job, round.0, states(&job, &round.1)?);
                 break Progress::Missing(job, missing);
             }
-            if engine.run(&Round { job: &job, phase: round.0, shards: &round.1 }, tries.n)? {
-                break Progress::Elsewhere(match &out {
+            if let Did::Output(said) = engine.run(&Round { job: &job, phase: round.0, shards: &round.1 }, tries.n)? {
+                let out = match &out {
                     Some(out) => out.clone(),
                     None => Path::new(&job.manifest().folder).join(Task::parse(&job.manifest().command)?.output()),
-                });
+                };
+                break Progress::Elsewhere(out, said);
             }
         }
         if interrupt::requested() {

@@ -254,7 +254,6 @@ impl World<'_> {
         };
         let costs: Vec<f64> = order.iter().map(cost).collect();
         let shares = shares_of(&costs);
-        units.begin(&Phase { name: PHASE, costs: &costs })?;
         let bar = Bar::new("tiles", show_progress);
         let counter = Counter::new(Some(&bar), PHASE, order.len()).of(Work::Deciding);
         let one = |unit: usize| -> Result<(), Error> {
@@ -274,23 +273,25 @@ impl World<'_> {
                 Ok(Vec::new())
             });
             // What comes from a store is of a job, or of a shard that goes on.
-            if let Some(bytes) = result?.filter(|_| units.are_kept() && !is_made) {
+            if let Some(bytes) = result?.filter(|_| units.are_kept() && !is_made && units.may_write()) {
                 let files = Files::from_bytes(&bytes);
                 let files = files.ok_or_else(|| Halt::Store(format!("the kept result of tile {tile} does not fit")))?;
                 self.save(tile, &files)?;
             }
             Ok(counter.step_by(shares[unit], !is_made)?)
         };
-        let is_failed = AtomicBool::new(false);
-        let done = on_threads(at_once, order.len(), |unit| {
-            if is_failed.load(Relaxed) {
-                return Ok(());
-            }
-            one(unit).inspect_err(|_| is_failed.store(true, Relaxed))
-        });
-        done.into_iter().collect::<Result<(), Error>>()?;
-        // If others have tiles to do, this ends the bake.
-        Ok(units.end(PHASE)?)
+        // If others have tiles to do, this may end the bake.
+        units.through(&Phase { name: PHASE, costs: &costs }, || {
+            let is_failed = AtomicBool::new(false);
+            let done = on_threads(at_once, order.len(), |unit| {
+                if is_failed.load(Relaxed) {
+                    return Ok(());
+                }
+                one(unit).inspect_err(|_| is_failed.store(true, Relaxed))
+            });
+            done.into_iter().collect::<Result<(), Error>>()
+        })?;
+        Ok(units.write()?)
     }
 
     fn save(&self, tile: usize, files: &Files) -> Result<(), Error> {

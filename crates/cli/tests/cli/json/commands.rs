@@ -159,7 +159,10 @@ fn jobs(all: &mut Results) {
     folder.write("j/parts/1.part", "no part");
     add("job merge", "job merge j");
     add("job status", "job status j");
+    add("job work", "job work j");
+    folder.write("j/parts/1.part", "no part");
     add("job submit", "job submit j --workers 1");
+    add("job work", "job work j");
     add("job merge", "job merge j");
     // Nothing of a plan in the plane is shared.
     folder.write("maze.geojson", maze_text(1));

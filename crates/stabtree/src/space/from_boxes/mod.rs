@@ -120,47 +120,49 @@ pub fn box_visibility(
         left: None,
         counters: ShaftCounters::default(),
     };
-    let mut unfinished: Vec<Unfinished> = (0..boxes.len()).map(Unfinished::all_of).collect();
     // A result of a box says nothing of what was left.
     let units = if options.budget.is_limited() { Units::default() } else { options.units };
     let n_asked = |eye: usize| (asked.boxes.count_row(eye) + asked.objects.count_row(eye)) as f64;
     let costs: Vec<f64> = (0..boxes.len()).map(n_asked).collect();
     let shares_of_time = shares_of(&costs);
-    units.begin(&Phase { name: PHASE, costs: &costs })?;
-    on_threads(options.threads, |threads| {
-        known.mark_within(graph, &places);
-        // What a box was refused for the sake of the others it gets when they are done.
-        let mut is_first = true;
-        while is_first || (!unfinished.is_empty() && !options.budget.is_over()) {
-            let shares = Shares::new(options.budget, unfinished.len(), threads);
-            let found = std::mem::take(&mut unfinished).into_par_iter().with_max_len(1).map_init(
-                || Shaft::new(&blockers),
-                |shaft, from| {
-                    counter.check()?;
-                    let (eye, mut found) = (from.eye, None);
-                    let result = units.get(PHASE, eye, || {
-                        found = Some(one(shaft, from, shares.next_unit()));
-                        Ok::<_, Halt>(if units.are_kept() { known.result_of(eye, asked) } else { Vec::new() })
-                    })?;
-                    if let Some(bytes) = result.filter(|_| found.is_none()) {
-                        known.restore(eye, &bytes).ok_or_else(|| unfit(PHASE, eye))?;
-                    }
-                    if is_first {
-                        counter.step_by(shares_of_time[eye], found.is_none())?
-                    } else {
-                        counter.check()?
-                    }
-                    Ok(found)
-                },
-            );
-            for (rest, n_assumed, counters) in found.collect::<Result<Vec<_>, Halt>>()?.into_iter().flatten() {
-                answer.n_assumed += n_assumed;
-                answer.counters = answer.counters + counters;
-                unfinished.extend(Some(rest).filter(Unfinished::is_some));
+    on_threads(options.threads, |_| known.mark_within(graph, &places));
+    let unfinished = units.through(&Phase { name: PHASE, costs: &costs }, || {
+        on_threads(options.threads, |threads| {
+            let mut unfinished: Vec<Unfinished> = (0..boxes.len()).map(Unfinished::all_of).collect();
+            (answer.n_assumed, answer.counters) = (0, ShaftCounters::default());
+            // What a box was refused for the sake of the others it gets when they are done.
+            let mut is_first = true;
+            while is_first || (!unfinished.is_empty() && !options.budget.is_over()) {
+                let shares = Shares::new(options.budget, unfinished.len(), threads);
+                let found = std::mem::take(&mut unfinished).into_par_iter().with_max_len(1).map_init(
+                    || Shaft::new(&blockers),
+                    |shaft, from| {
+                        counter.check()?;
+                        let (eye, mut found) = (from.eye, None);
+                        let result = units.get(PHASE, eye, || {
+                            found = Some(one(shaft, from, shares.next_unit()));
+                            Ok::<_, Halt>(if units.are_kept() { known.result_of(eye, asked) } else { Vec::new() })
+                        })?;
+                        if let Some(bytes) = result.filter(|_| found.is_none()) {
+                            known.restore(eye, &bytes).ok_or_else(|| unfit(PHASE, eye))?;
+                        }
+                        if is_first {
+                            counter.step_by(shares_of_time[eye], found.is_none())?
+                        } else {
+                            counter.check()?
+                        }
+                        Ok(found)
+                    },
+                );
+                for (rest, n_assumed, counters) in found.collect::<Result<Vec<_>, Halt>>()?.into_iter().flatten() {
+                    answer.n_assumed += n_assumed;
+                    answer.counters = answer.counters + counters;
+                    unfinished.extend(Some(rest).filter(Unfinished::is_some));
+                }
+                is_first = false;
             }
-            is_first = false;
-        }
-        units.end(PHASE)
+            Ok::<_, Halt>(unfinished)
+        })
     })?;
     answer.left = known.give_up(&unfinished, asked, &places, boxes);
     for eye in 0..boxes.len() {

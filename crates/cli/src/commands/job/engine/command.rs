@@ -1,11 +1,11 @@
 //! A command of the user for each shard, or for several.
 
-use super::local::batch;
-use super::{Engine, Round, pool, quoted};
+use super::{Did, Engine, Round, pool, quoted};
 use crate::commands::job::Error;
 use crate::commands::job::numbers::Run;
+use sightlines::checkpoint::batch;
 use std::path::Path;
-use std::process::{Command as Process, Stdio};
+use std::process::Command as Process;
 
 /// What a shell runs for each shard, or for some of them, so many at once.
 pub(in crate::commands::job) struct Command<'a> {
@@ -16,7 +16,7 @@ pub(in crate::commands::job) struct Command<'a> {
 }
 
 impl Engine for Command<'_> {
-    fn run(&self, round: &Round<'_>, attempt: u32) -> Result<bool, Error> {
+    fn run(&self, round: &Round<'_>, attempt: u32) -> Result<Did, Error> {
         let job = quoted(round.job.folder());
         let template = self.template.replace("{job}", &job).replace("{program}", &quoted(self.program));
         let takes_several = template.contains("{shards}");
@@ -27,8 +27,8 @@ impl Engine for Command<'_> {
             let line = shards.first().map_or(line.clone(), |shard| line.replace("{shard}", &shard.to_string()));
             let mut command = if cfg!(windows) { Process::new("cmd") } else { Process::new("sh") };
             command.arg(if cfg!(windows) { "/C" } else { "-c" }).arg(line);
-            command.stdin(Stdio::null()).stdout(Stdio::null());
             command
-        })
+        })?;
+        Ok(Did::Shards)
     }
 }

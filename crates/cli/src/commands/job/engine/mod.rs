@@ -4,6 +4,7 @@ mod command;
 mod kubernetes;
 mod local;
 mod pool;
+mod process;
 mod slurm;
 
 pub(super) use command::Command;
@@ -25,14 +26,22 @@ pub(super) struct Round<'a> {
     pub(super) shards: &'a [usize],
 }
 
+/// What an engine has done.
+#[derive(Debug)]
+pub(super) enum Did {
+    /// Shards, those of the round at least; the ones without a part have failed.
+    Shards,
+    /// All of the job, and the output is written; what the process has printed that wrote it.
+    Output(Option<String>),
+}
+
 /// Who does shards.
 pub(super) trait Engine {
-    /// Has the shards of a round done, for the `attempt`th time, from 1 on. Returns once nobody is at them any more; those without a part have failed.
-    /// True if the output was written too.
+    /// Has the shards of a round done, for the `attempt`th time, from 1 on. Returns once nobody is at them any more.
     ///
     /// # Errors
-    /// [`Error`] if nothing can be started at all.
-    fn run(&self, round: &Round<'_>, attempt: u32) -> Result<bool, Error>;
+    /// [`Error`] if nothing can be started at all, or would fail again.
+    fn run(&self, round: &Round<'_>, attempt: u32) -> Result<Did, Error>;
 }
 
 /// Shows how much of a round is done, by cost.

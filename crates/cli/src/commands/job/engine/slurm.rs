@@ -2,7 +2,7 @@
 
 mod queue;
 
-use super::{Engine, Round, Shown, quoted};
+use super::{Did, Engine, Round, Shown, quoted};
 use crate::commands::job::Error;
 use crate::commands::job::numbers::Run;
 use crate::commands::job::outcome::ranges;
@@ -135,7 +135,7 @@ impl Slurm<'_> {
 }
 
 impl Engine for Slurm<'_> {
-    fn run(&self, round: &Round<'_>, attempt: u32) -> Result<bool, Error> {
+    fn run(&self, round: &Round<'_>, attempt: u32) -> Result<Did, Error> {
         let _watch = interrupt::watch();
         self.write(round, attempt)?;
         let files = Files::of(round, attempt);
@@ -149,13 +149,13 @@ impl Engine for Slurm<'_> {
             n_whole = if is_whole && is_pending(&merge)? { n_whole + 1 } else { 0 };
             if n_whole > WHOLE {
                 cancel(&[&merge, &shards]);
-                return Ok(false);
+                return Ok(Did::Shards);
             }
             if let Some((task, message)) = files.hopeless(&shards) {
                 cancel(&[&shards, &merge]);
                 let message = message.trim();
                 let message = message.strip_prefix("error: ").unwrap_or(message).to_owned();
-                return Err(Error::Shard { shards: ranges(&self.shards_of(round, task)), message });
+                return Err(Error::Process { name: ranges(&self.shards_of(round, task)), message });
             }
             if interrupt::requested() {
                 // Otherwise the cluster would go on with what nobody waits for.
@@ -165,13 +165,14 @@ impl Engine for Slurm<'_> {
             if let Some(stuck) = watch.look(&shards) {
                 tracing::warn!("Slurm keeps what will never end: {}; it is cancelled and sent again", stuck.join(", "));
                 cancel(&[&shards, &merge]);
-                return Ok(false);
+                return Ok(Did::Shards);
             }
             shown.update();
             std::thread::sleep(POLL);
             n_gone = if is_gone(&[&shards, &merge])? { n_gone + 1 } else { 0 };
         }
         shown.update();
-        Ok(fs::read_to_string(&end).is_ok_and(|code| code.trim() == "0"))
+        let is_written = fs::read_to_string(&end).is_ok_and(|code| code.trim() == "0");
+        Ok(if is_written { Did::Output(None) } else { Did::Shards })
     }
 }

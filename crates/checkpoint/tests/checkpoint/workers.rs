@@ -1,0 +1,158 @@
+//! Workers: processes that go through all of a bake together.
+
+use crate::jobs::{first_phase, plan};
+use crate::toy::{PROGRAM, Toy, toy};
+use proptest::prelude::*;
+use sightlines_checkpoint::{Job, JobStore, Outcome, Role, ShardState};
+use sightlines_progress::{Halt, Units};
+use std::fs;
+use std::path::Path;
+use std::sync::Barrier;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::thread;
+use std::time::Duration;
+
+fn worker(folder: &Path, n_workers: usize) -> JobStore {
+    let role = Role::Worker { n_workers, stop: || false };
+    JobStore::new(Job::open(folder, PROGRAM).unwrap(), role, Duration::ZERO).unwrap()
+}
+
+/// Goes through a bake; its answer, if this worker is the one that writes it.
+fn work(toy: &Toy, store: &JobStore) -> Result<Vec<u8>, Halt> {
+    let bytes = toy.bake(Some(store))?;
+    Units(Some(store)).write()?;
+    Ok(bytes)
+}
+
+/// The names in a folder that do not end like this.
+fn others(folder: &Path, end: &str) -> Vec<String> {
+    let names = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().to_str().unwrap().to_owned());
+    names.filter(|name| !name.ends_with(end)).collect()
+}
+
+proptest! {
+    /// Invariant: workers compute each unit once, all come to the end, and one of them writes what a bake of one process makes.
+    #[test]
+    fn workers_share_a_bake(n in [0..12_usize, 0..12_usize], max_shards in 1..8_usize, n_workers in 1..5_usize) {
+        let all = tempfile::tempdir().unwrap();
+        let folder = all.path().join("job");
+        plan(&folder, "a", max_shards).unwrap();
+        let (shared, expected) = (toy(n), toy(n).bake(None).unwrap());
+        // Nobody ends before all have come to their end, as claims end with their stores.
+        let barrier = Barrier::new(n_workers);
+        let ends: Vec<Result<Vec<u8>, Outcome>> = thread::scope(|scope| {
+            let one = || {
+                let store = worker(&folder, n_workers);
+                let end = work(&shared, &store).map_err(|halt| {
+                    assert_eq!(halt, Halt::Shared);
+                    store.outcome().unwrap()
+                });
+                barrier.wait();
+                end
+            };
+            let workers: Vec<_> = (0..n_workers).map(|_| scope.spawn(one)).collect();
+            workers.into_iter().map(|worker| worker.join().unwrap()).collect()
+        });
+        let written: Vec<&Vec<u8>> = ends.iter().flatten().collect();
+        prop_assert_eq!(written, vec![&expected]);
+        prop_assert!(ends.iter().all(|end| matches!(end, Ok(_) | Err(Outcome::Done))));
+        prop_assert_eq!(shared.n(), n[0] + n[1]);
+        prop_assert_eq!((others(&folder, "s"), others(&folder.join("parts"), ".part")), (vec!["job.json".to_owned()], vec![]));
+        // The impostor: processes that are told their shards, all of them, compute units twice.
+        if n_workers > 1 && n[0] > 0 {
+            let other = all.path().join("other");
+            plan(&other, "a", max_shards).unwrap();
+            let twice = toy(n);
+            let planned = JobStore::new(Job::open(&other, PROGRAM).unwrap(), Role::Merge, Duration::ZERO).unwrap();
+            prop_assert_eq!(twice.bake(Some(&planned)), Err(Halt::Shared));
+            let job = planned.job();
+            let role = || Role::Shards((0..job.manifest().n_shards()).collect());
+            let stores = [0, 1].map(|_| JobStore::new(job.clone(), role(), Duration::from_secs(9)).unwrap());
+            stores.iter().for_each(|store| assert_eq!(twice.bake(Some(store)), Err(Halt::Shared)));
+            prop_assert_eq!(twice.n(), 2 * n[0]);
+        }
+    }
+
+    /// Invariant: what a killed worker had claimed is done by the others, who go on from what it left; nothing is lost and nothing wrong.
+    #[test]
+    fn what_a_killed_worker_had_claimed_is_done(n in [1..12_usize, 1..12_usize], stops in [0..8_usize, 0..8_usize]) {
+        let all = tempfile::tempdir().unwrap();
+        let folder = all.path().join("job");
+        plan(&folder, "a", 4).unwrap();
+        let killed = stops.map(|stop_after| Toy { stop_after, ..toy(n) });
+        let last = toy(n);
+        let written = thread::scope(|scope| {
+            for toy in &killed {
+                // Its claims end with its store, as those of a process do.
+                scope.spawn(|| drop(work(toy, &worker(&folder, 3))));
+            }
+            work(&last, &worker(&folder, 3))
+        });
+        let expected = toy(n).bake(None).unwrap();
+        match written {
+            Ok(bytes) => prop_assert_eq!(bytes, expected),
+            // One of the others was not killed before it came to the end, and has written.
+            Err(halt) => prop_assert_eq!(halt, Halt::Shared),
+        }
+        let all_of_it = toy(n);
+        prop_assert_eq!(work(&all_of_it, &worker(&folder, 1)).unwrap(), toy(n).bake(None).unwrap());
+        prop_assert_eq!(all_of_it.n(), 0);
+    }
+}
+
+/// A worker that waits for another one ends when it is told to, and goes on when the other one ends.
+#[test]
+fn workers_wait_for_others() {
+    static STOP: AtomicBool = AtomicBool::new(false);
+    let all = tempfile::tempdir().unwrap();
+    let folder = all.path().join("job");
+    plan(&folder, "a", 1).unwrap();
+    let holder = worker(&folder, 2);
+    let mut stopped = toy([3, 3]);
+    stopped.stop_after = 1;
+    assert_eq!(work(&stopped, &holder), Err(Halt::Store("killed".to_owned())));
+    let role = Role::Worker { n_workers: 2, stop: || STOP.load(Relaxed) };
+    let waiting = JobStore::new(Job::open(&folder, PROGRAM).unwrap(), role, Duration::ZERO).unwrap();
+    let idle = toy([3, 3]);
+    thread::scope(|scope| {
+        let end = scope.spawn(|| work(&idle, &waiting));
+        thread::sleep(Duration::from_millis(50));
+        assert!(!end.is_finished());
+        STOP.store(true, Relaxed);
+        assert!(matches!(end.join().unwrap(), Err(Halt::Cancelled(_))));
+    });
+    assert_eq!(idle.n(), 0);
+    let next = worker(&folder, 2);
+    thread::scope(|scope| {
+        let end = scope.spawn(|| work(&idle, &next));
+        thread::sleep(Duration::from_millis(50));
+        assert!(!end.is_finished());
+        drop(holder);
+        assert_eq!(end.join().unwrap(), toy([3, 3]).bake(None));
+    });
+    // The one unit that was done before the other one was stopped is not done again.
+    assert_eq!(idle.n(), 5);
+}
+
+/// A part that cannot be used ends a worker, which names it; so does a job of something else in its folder.
+#[test]
+fn workers_refuse_what_is_damaged() {
+    let all = tempfile::tempdir().unwrap();
+    let folder = all.path().join("job");
+    let job = first_phase(&folder);
+    let mut part = fs::read(job.part_path(1)).unwrap();
+    *part.last_mut().unwrap() ^= 1;
+    fs::write(job.part_path(1), &part).unwrap();
+    let store = worker(&folder, 1);
+    assert_eq!(work(&toy([6, 4]), &store), Err(Halt::Shared));
+    let outcome = store.outcome();
+    let Some(Outcome::Missing { phase: 0, shards }) = &outcome else { panic!("{outcome:?}") };
+    assert!(matches!(&shards[..], [(1, ShardState::Broken(_))]), "{shards:?}");
+    fs::remove_file(job.part_path(1)).unwrap();
+    let store = worker(&folder, 1);
+    let other = all.path().join("other");
+    plan(&other, "b", 3).unwrap();
+    fs::copy(other.join("job.json"), folder.join("job.json")).unwrap();
+    let Err(Halt::Store(text)) = work(&toy([6, 4]), &store) else { panic!("it went on") };
+    assert!(text.ends_with("there is another job in the folder; name a new one, or remove it"), "{text}");
+}

@@ -1,0 +1,142 @@
+//! Workers: processes that go through all of a job together.
+
+use crate::common::Folder;
+use crate::jobs::{COMMANDS, inputs};
+use serde_json::{Value, json};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// What is shared here: the commands of other tests of jobs, one that is written row by row, and tiles; each with what it writes.
+pub(crate) fn commands() -> Vec<(&'static str, &'static str)> {
+    let more = [
+        ("build tower.glb --method shafts --grid 5,3,1 --class large -o OUT", "out.pvz"),
+        ("build tower.glb --certify --stab-trees=1000 -o OUT", "out.pvs"),
+        ("tiles build city/world.json --method shafts -o OUT", "out"),
+    ];
+    COMMANDS.into_iter().chain(more).collect()
+}
+
+fn words<'a>(command: &'a str, out: &'a str) -> Vec<&'a str> {
+    command.split(' ').map(|word| if word == "OUT" { out } else { word }).collect()
+}
+
+fn plan(folder: &Folder, job: &str, command: &str, out: &str) {
+    let args = [&["job", "plan", "-o", job, "--shards", "6"][..], &words(command, out)].concat();
+    folder.run(&args).expect(0);
+}
+
+fn start(folder: &Folder, job: &str, more: &[&str]) -> Child {
+    let mut program = Command::new(env!("CARGO_BIN_EXE_sightlines"));
+    program.args(["job", "work", job, "--json", "-q", "--workers", "3"]).args(more).current_dir(folder.path("."));
+    program.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+}
+
+/// What a worker has printed, and its exit code.
+fn end(worker: Child) -> (Option<i32>, Value, String) {
+    let done = worker.wait_with_output().unwrap();
+    let err = String::from_utf8_lossy(&done.stderr).into_owned();
+    (done.status.code(), serde_json::from_slice(&done.stdout).unwrap_or_default(), err)
+}
+
+/// All files of an output, which may be a folder.
+pub(crate) fn bytes(folder: &Folder, out: &str) -> Vec<(String, Vec<u8>)> {
+    let path = folder.path(out);
+    if !path.is_dir() {
+        return vec![(String::new(), folder.read(out))];
+    }
+    crate::common::names(&path).into_iter().map(|name| (name.clone(), folder.read(&format!("{out}/{name}")))).collect()
+}
+
+/// Three workers write what the command writes; each shard is done by one of them, and the output is written by one.
+#[test]
+fn workers_write_the_same_bytes() {
+    let folder = inputs();
+    folder.run(&["generate", "world", "--blocks", "2", "--per-tile", "1", "-o", "city"]).expect(0);
+    let mut n_shards = 0;
+    for (k, (command, out)) in commands().into_iter().enumerate() {
+        folder.run(&words(command, out)).expect(0);
+        let (job, other) = (format!("job{k}"), format!("shared-{out}"));
+        let elsewhere = format!("elsewhere-{out}");
+        plan(&folder, &job, command, &elsewhere);
+        let workers: Vec<Child> = (0..3).map(|_| start(&folder, &job, &["-o", &other])).collect();
+        let ended: Vec<_> = workers.into_iter().map(end).collect();
+        for (code, found, err) in &ended {
+            assert_eq!((*code, &found["out"]), (Some(0), &json!(folder.path(&other))), "{command}: {err}");
+        }
+        let count = |status: &str| ended.iter().filter(|(_, found, _)| found["status"] == status).count();
+        // A worker that comes last may find the output written, and writes it again.
+        assert!(count("written") >= 1 && count("written") + count("shared") == 3, "{command}: {ended:?}");
+        assert!(bytes(&folder, &other) == bytes(&folder, out), "{command}");
+        assert!(!folder.path(&elsewhere).is_file());
+        let status = folder.run(&["job", "status", &job, "--json"]).expect(0).json();
+        for phase in status["phases"].as_array().unwrap() {
+            assert_eq!(phase["done_share"], json!(1.0), "{status}");
+            n_shards += phase["n_shards"].as_u64().unwrap();
+        }
+        // Nothing is left of claims and journals.
+        let left = |folder: &Folder, of: &str| crate::common::names(&folder.path(of));
+        assert!(left(&folder, &format!("{job}/parts")).iter().all(|name| name.ends_with(".part")));
+        assert!(left(&folder, &job).iter().all(|name| ["job.json", "parts"].contains(&name.as_str())));
+    }
+    assert!(n_shards >= 50, "{n_shards}");
+    // One alone does everything too, and says what the command says.
+    plan(&folder, "alone", COMMANDS[1].0, "alone.pvs");
+    let whole = folder.run(&words(COMMANDS[1].0, "whole.pvs")).expect(0).out.replace("whole.pvs", "alone.pvs");
+    let alone = folder.run(&["job", "work", "alone"]).expect(0).out;
+    assert_eq!(alone.lines().next(), whole.lines().next());
+    assert!(folder.read("alone.pvs") == folder.read("whole.pvs"));
+}
+
+/// Workers that are killed again and again, at moments of chance: those that are left, or come later, end with the bytes of a build.
+#[cfg(unix)]
+#[test]
+fn killed_workers_lose_nothing() {
+    let folder = inputs();
+    let (command, out) = ("build tower.glb --method multifocal --grid 6,4,1 --planes 6 -o OUT", "out.pvs");
+    let begin = Instant::now();
+    folder.run(&words(command, out)).expect(0);
+    let took = begin.elapsed();
+    plan(&folder, "job", command, "shared.pvs");
+    let mut workers: Vec<Child> = (0..3).map(|_| start(&folder, "job", &["--save-after", "0"])).collect();
+    let (mut seed, mut n_killed) = (7_u64, 0);
+    while n_killed < 10 && !folder.path("shared.pvs").exists() {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        std::thread::sleep(took.mul_f64((seed >> 40) as f64 / (1 << 24) as f64 / 2.0).min(Duration::from_secs(2)));
+        let place = seed as usize % workers.len();
+        n_killed += usize::from(workers[place].try_wait().unwrap().is_none());
+        let _ = workers[place].kill();
+        workers[place].wait().unwrap();
+        workers[place] = start(&folder, "job", &["--save-after", "0"]);
+    }
+    for (code, found, err) in workers.into_iter().map(end) {
+        assert_eq!(code, Some(0), "{found} {err}");
+    }
+    assert!(n_killed > 0);
+    assert!(folder.read("shared.pvs") == folder.read(out));
+}
+
+/// What is wrong is said: a damaged part, another input, and a full set of claims is waited for until Ctrl-C.
+#[test]
+fn workers_say_what_is_wrong() {
+    let folder = inputs();
+    let (command, out) = COMMANDS[0];
+    plan(&folder, "job", command, out);
+    folder.run(&["job", "shard", "job", "0-4"]).expect(0);
+    let mut part = folder.read("job/parts/2.part");
+    let sound = part.clone();
+    *part.last_mut().unwrap() ^= 1;
+    folder.write("job/parts/2.part", part);
+    let found = folder.run(&["job", "work", "job", "--json"]).expect(3).json();
+    assert_eq!((&found["status"], &found["undone"]["broken"][0]["shard"]), (&json!("missing"), &json!(2)));
+    assert!(!folder.path(out).exists());
+    // `job submit` removes it, and has it done again.
+    folder.run(&["job", "submit", "job", "--workers", "2"]).expect(0);
+    assert!(folder.read("job/parts/2.part") == sound && folder.path(out).exists());
+    let mut scene = folder.read("tower.glb");
+    *scene.last_mut().unwrap() ^= 1;
+    folder.write("tower.glb", scene);
+    let error = folder.refused(&["job", "work", "job"]);
+    assert!(error.starts_with("tower.glb: the file is not what it was when the job in "), "{error}");
+    assert!(folder.refused(&["job", "work", "nowhere"]).contains("nowhere/job.json: "));
+    folder.run(&["job", "work", "job", "--workers", "0"]).expect(2);
+}
