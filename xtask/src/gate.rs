@@ -45,7 +45,7 @@ fn demo() -> Result<(), Failure> {
 }
 
 /// Tests of the program that take long and know no difference between its features: those on real maps, and those of work that is stopped or shared.
-const SAME_WITH_ALL_FEATURES: [&str; 6] = ["real", "resume::", "jobs::", "slurm::", "memory::", "tiles::"];
+const SAME_WITH_ALL_FEATURES: [&str; 7] = ["real", "resume::", "jobs::", "workers::", "slurm::", "memory::", "tiles::"];
 
 /// The tests of the program as it is installed by default: without the features that the step of all tests turns on.
 fn default_program() -> Result<(), Failure> {

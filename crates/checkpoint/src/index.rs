@@ -4,13 +4,15 @@ use crate::error::StateError;
 use crate::records::{self, DIVISION, Owner, Place, Scan, scan};
 use std::collections::HashMap;
 use std::fs::File;
+use std::io;
 use std::path::{Path, PathBuf};
 
 /// A file of results, and where each is. Results are read when they are asked for.
 #[derive(Debug)]
 pub(crate) struct Results {
     path: PathBuf,
-    file: File,
+    /// None while it is closed.
+    file: Option<File>,
     places: HashMap<String, HashMap<u64, Place>>,
     /// How phases are divided, by their names.
     divisions: HashMap<String, Place>,
@@ -59,7 +61,7 @@ impl Results {
     pub(crate) fn new(path: &Path, file: File, end: u64, mark: [u8; 16]) -> Self {
         Self {
             path: path.to_owned(),
-            file,
+            file: Some(file),
             places: HashMap::new(),
             divisions: HashMap::new(),
             mark,
@@ -83,8 +85,18 @@ impl Results {
         }
     }
 
-    pub(crate) fn file(&mut self) -> &mut File {
-        &mut self.file
+    /// The file; one that was closed is opened to be read.
+    pub(crate) fn file(&mut self) -> io::Result<&mut File> {
+        let file = match self.file.take() {
+            Some(file) => file,
+            None => File::open(&self.path)?,
+        };
+        Ok(self.file.insert(file))
+    }
+
+    /// Closes the file until something of it is asked for.
+    pub(crate) fn close(&mut self) {
+        self.file = None;
     }
 
     pub(crate) fn has(&self, phase: &str, unit: u64) -> bool {
@@ -115,7 +127,7 @@ impl Results {
             unit => self.places.get(phase).and_then(|places| places.get(&unit)),
         };
         let Some(&place) = place else { return Ok(None) };
-        let loaded = records::load(&mut self.file, place, phase, unit);
+        let loaded = self.file().and_then(|file| records::load(file, place, phase, unit));
         let loaded = loaded.map_err(|source| StateError::read(&self.path, source))?;
         loaded.map(Some).ok_or_else(|| StateError::Damaged { path: self.path.clone(), offset: place.offset })
     }

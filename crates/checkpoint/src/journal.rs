@@ -100,7 +100,7 @@ impl Journal {
             n_damaged = results.damage.len();
             let end = results.end;
             if results.is_torn {
-                results.file().set_len(end).map_err(|source| StateError::write(path, source))?;
+                results.file().and_then(|file| file.set_len(end)).map_err(|source| StateError::write(path, source))?;
             }
         }
         let n_taken_up = state.results.as_ref().map_or(0, Results::n_results);
@@ -260,7 +260,7 @@ fn is_at(path: &Path, owner: &Owner, mark: [u8; 16]) -> io::Result<bool> {
 /// Adds a record; if that fails, takes back what was written of it.
 fn append(results: &mut Results, phase: &str, unit: u64, result: &[u8]) -> io::Result<()> {
     let record = record(phase, unit, result);
-    let file = results.file();
+    let file = results.file()?;
     // Without locks another process may have added to the file.
     let offset = file.metadata()?.len();
     if let Err(error) = file.write_all(&record) {

@@ -5,7 +5,7 @@ use crate::interrupt;
 use crate::output::{self, count};
 use crate::plain::plain;
 use sightlines::checkpoint::{InputFile, Job, JobError, JobStore, Journal, Key, KeyHasher, Opening, StateError};
-use sightlines::progress::{UnitStore, Units};
+use sightlines::progress::{Halt, UnitStore, Units};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::time::{Duration, SystemTime};
@@ -103,9 +103,9 @@ pub(crate) enum KeptError {
     /// A state that would replace something.
     #[error(transparent)]
     Output(#[from] OutputError),
-    /// Another worker of the job writes what the command makes.
-    #[error("another process writes the output")]
-    Elsewhere,
+    /// Another worker of the job has written what the command makes, or this one was stopped before it could.
+    #[error(transparent)]
+    Halted(#[from] Halt),
 }
 
 fn advice(error: &StateError) -> &'static str {
@@ -239,6 +239,7 @@ pub(crate) enum Keeping<'a> {
 pub(crate) struct Kept<'a> {
     journal: Option<Journal>,
     job: Option<&'a JobStore>,
+    outputs: Vec<PathBuf>,
     _watch: interrupt::Watch,
 }
 
@@ -261,7 +262,8 @@ impl<'a> Kept<'a> {
             }
             Keeping::Nowhere => (None, None),
         };
-        Ok(Self { journal, job, _watch: interrupt::watch() })
+        let outputs = outputs.iter().map(|path| path.to_path_buf()).collect();
+        Ok(Self { journal, job, outputs, _watch: interrupt::watch() })
     }
 
     /// What to give to a bake.
@@ -270,9 +272,9 @@ impl<'a> Kept<'a> {
         Units(journal.or(self.job.map(|job| job as _)))
     }
 
-    /// Before anything is written that the command makes: an error if another process writes it.
+    /// Before anything is written that the command makes: an error if another worker of the job has written it.
     pub(crate) fn before_writing(&self) -> Result<(), KeptError> {
-        if self.units().may_write() { Ok(()) } else { Err(KeptError::Elsewhere) }
+        Ok(self.job.map_or(Ok(()), |job| job.begin_writing(&self.outputs))?)
     }
 
     /// After the end: results are of no use any more if all went well. Otherwise, if the program was interrupted, they are kept; returns what to say of that.
@@ -281,6 +283,9 @@ impl<'a> Kept<'a> {
             tracing::warn!("{}; a run that is stopped cannot go on from there", plain(&failure));
         }
         if is_done {
+            if let Some(Err(error)) = self.job.map(JobStore::end_writing) {
+                tracing::warn!("{}", plain(&error.to_string()));
+            }
             if let Some(Err(error)) = self.journal.map(Journal::remove) {
                 tracing::warn!("{}", plain(&error.to_string()));
             }

@@ -88,8 +88,8 @@ pub trait UnitStore: Sync {
         true
     }
 
-    /// Whether this process writes what the bake makes; if not, another one does.
-    fn may_write(&self) -> bool {
+    /// Whether the pass under way through a phase has the results of all units in the end, so that it is the last one.
+    fn has_all(&self, _phase: &'static str) -> bool {
         true
     }
 }
@@ -135,17 +135,9 @@ impl Units<'_> {
         }
     }
 
-    /// As [`UnitStore::may_write`].
-    pub fn may_write(&self) -> bool {
-        self.0.is_none_or(UnitStore::may_write)
-    }
-
-    /// Before anything is written that the bake makes.
-    ///
-    /// # Errors
-    /// [`Halt::Shared`] if another process writes it.
-    pub fn write(&self) -> Result<(), Halt> {
-        if self.may_write() { Ok(()) } else { Err(Halt::Shared) }
+    /// As [`UnitStore::has_all`].
+    pub fn has_all(&self, phase: &'static str) -> bool {
+        self.0.is_none_or(|store| store.has_all(phase))
     }
 
     /// Goes through a phase: begins it, calls `pass`, and ends it; and calls `pass` again as often as the store asks for it. Returns what the last pass found.
@@ -312,19 +304,20 @@ mod tests {
                 *n += 1;
                 Ok(if *n < 3 { Pass::Again } else { Pass::Last })
             }
-            fn may_write(&self) -> bool {
-                false
+            fn has_all(&self, _: &'static str) -> bool {
+                *self.1.lock().unwrap() == 2
             }
         }
         let store = Thrice::default();
         let units = Units(Some(&store));
-        let mut n_passes = 0;
+        let (mut n_passes, mut n_last) = (0, 0);
         let found = units.through(&Phase { name: "numbers", costs: &[1.0; 3] }, || {
             n_passes += 1;
+            n_last += usize::from(units.has_all("numbers"));
             (0..3).map(|unit| units.get("numbers", unit, || Ok::<_, Halt>(vec![unit as u8]))).collect()
         });
         let all: Vec<Option<Vec<u8>>> = (0..3).map(|unit| Some(vec![unit])).collect();
-        assert_eq!((found, n_passes, units.write()), (Ok(all), 3, Err(Halt::Shared)));
+        assert_eq!((found, n_passes, n_last), (Ok(all), 3, 1));
         assert_eq!(Units::default().through(&Phase { name: "numbers", costs: &[] }, || Ok::<_, Halt>(7)), Ok(7));
     }
 
@@ -341,6 +334,6 @@ mod tests {
         units.begin(&Phase { name: "numbers", costs: &[] }).unwrap();
         assert_eq!(units.get("numbers", 7, || Ok::<_, Halt>(vec![1])), Ok(Some(vec![1])));
         assert_eq!(units.get("numbers", 7, || Err(Halt::Cancelled(Cancelled))), Err(Halt::Cancelled(Cancelled)));
-        assert_eq!((units.end("numbers"), units.write()), (Ok(Pass::Last), Ok(())));
+        assert_eq!((units.end("numbers"), units.has_all("numbers")), (Ok(Pass::Last), true));
     }
 }

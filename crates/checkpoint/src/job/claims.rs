@@ -16,6 +16,9 @@ pub fn batch(left: usize, n: usize, n_workers: usize) -> usize {
     left.div_ceil(n_workers.saturating_mul(2)).max(n / n_workers.saturating_mul(16)).max(1)
 }
 
+/// Shards that a process claims at once, at most. Each has two files open: its claim and its journal.
+const MOST: usize = 128;
+
 /// A lock on a file of a job, which other processes respect. On a file system without locks everybody gets it: work is then done twice, with the same results.
 #[derive(Debug)]
 pub(super) struct Claim {
@@ -29,14 +32,39 @@ impl Claim {
         let failed = |source| JobError::Write(WriteError { path: path.clone(), source });
         // The folder of parts may have been cleared.
         fs::create_dir_all(path.parent().unwrap_or(Path::new("."))).map_err(failed)?;
-        let file = match OpenOptions::new().create(true).truncate(false).write(true).open(&path) {
-            // Windows refuses to open what another process is about to remove.
-            Err(error) if error.kind() == io::ErrorKind::PermissionDenied && cfg!(windows) => return Ok(None),
-            file => file.map_err(failed)?,
-        };
-        // Not `then_some`: what is not claimed must not be dropped as if it were.
-        Ok(lock(&path, &file).is_ok().then(|| Self { path, _file: file }))
+        loop {
+            let Some(file) = Self::open(&path).map_err(failed)? else { return Ok(None) };
+            if lock(&path, &file).is_err() {
+                return Ok(None);
+            }
+            // Whoever had it may have removed the file between the two.
+            if is_of_path(&file, &path) {
+                return Ok(Some(Self { path, _file: file }));
+            }
+        }
     }
+
+    fn open(path: &Path) -> io::Result<Option<File>> {
+        match OpenOptions::new().create(true).truncate(false).write(true).open(path) {
+            // Windows refuses to open what another process is about to remove.
+            Err(error) if error.kind() == io::ErrorKind::PermissionDenied && cfg!(windows) => Ok(None),
+            file => file.map(Some),
+        }
+    }
+}
+
+/// Whether an open file is the one that is found by its path.
+#[cfg(unix)]
+fn is_of_path(file: &File, path: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let id = |metadata: fs::Metadata| (metadata.dev(), metadata.ino());
+    file.metadata().is_ok_and(|open| fs::metadata(path).is_ok_and(|found| id(open) == id(found)))
+}
+
+/// Elsewhere a file that is open is not removed.
+#[cfg(not(unix))]
+fn is_of_path(_: &File, _: &Path) -> bool {
+    true
 }
 
 impl Drop for Claim {
@@ -54,11 +82,11 @@ pub(super) struct Claims {
 }
 
 impl Claims {
-    /// Claims the first shards of these that nobody has, `size` of them at most.
-    pub(super) fn of(job: &Job, shards: &[usize], size: usize) -> Result<Self, JobError> {
+    /// Claims the first shards of these that nobody has, `size` of them at most, and never more than a process may have open files.
+    pub(super) fn of(job: &Job, shards: impl IntoIterator<Item = usize>, size: usize) -> Result<Self, JobError> {
         let mut claims = Self::default();
-        for &shard in shards {
-            if claims.shards.len() == size {
+        for shard in shards {
+            if claims.shards.len() == size.min(MOST) {
                 break;
             }
             let Some(claim) = Claim::of(job.part_path(shard).with_extension("part.claim"))? else { continue };

@@ -168,7 +168,9 @@ impl OwnShard {
         }
         let failed = |error: &dyn std::fmt::Display| Halt::Store(error.to_string());
         job.save_part(self.shard, phase, &results).map_err(|error| failed(&error))?;
-        let part = Results::read(&job.part_path(self.shard), &job.owner()).map_err(|error| failed(&error))?;
+        let mut part = Results::read(&job.part_path(self.shard), &job.owner()).map_err(|error| failed(&error))?;
+        // It is rarely read again, and a process may have many shards.
+        part.iter_mut().for_each(Results::close);
         (work.journal, work.others) = (None, part.into_iter().collect());
         Ok(())
     }

@@ -6,8 +6,12 @@ use super::manifest::PhasePlan;
 use super::own::OwnShards;
 use super::{Job, JobError, ShardState};
 use crate::index::Results;
+use crate::key::KeyHasher;
+use sightlines_formats::atomic_write;
 use sightlines_progress::{Cancelled, Halt, Pass, Phase, UnitStore};
+use std::collections::VecDeque;
 use std::ops::Range;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::sleep;
 use std::time::Duration;
@@ -55,12 +59,15 @@ pub enum Outcome {
         /// The shards, and what there is of each.
         shards: Vec<(usize, ShardState)>,
     },
-    /// The parts of all shards of the process are written; for a worker, those of all phases, and another process writes what the bake makes.
+    /// The parts of all shards of the process are written; for a worker, those of all phases, and another worker has written what the bake makes.
     Done,
 }
 
 /// How long a worker waits between two looks at the parts of others: at first, and at most.
 const LOOKS: [Duration; 2] = [Duration::from_millis(5), Duration::from_millis(200)];
+
+/// Shards that a waiting worker tries to claim each time, and parts that are open at once.
+const FEW: usize = 32;
 
 /// A store of units in the folder of a job.
 #[derive(Debug)]
@@ -82,8 +89,8 @@ struct State {
     parts: Option<Parts>,
     /// Of a worker: those of its shards.
     claims: Claims,
-    /// Of the worker that writes.
-    writing: Option<Claim>,
+    /// Of the worker that writes: its claim, and the file that says that it has written.
+    writing: Option<(Claim, PathBuf)>,
     outcome: Option<Outcome>,
 }
 
@@ -95,6 +102,8 @@ struct Parts {
     /// Behind the last unit of each.
     ends: Vec<usize>,
     parts: Vec<Results>,
+    /// Those that are open, by their places; the one that was opened last comes last.
+    open: VecDeque<usize>,
 }
 
 impl JobStore {
@@ -129,6 +138,40 @@ impl JobStore {
         self.own().map_or(Ok(()), |own| own.flush())
     }
 
+    /// Before anything is written that the bake makes. Of workers, one writes; the others wait for it, and take over if it ends before it has written.
+    ///
+    /// * `outputs`: the files or folders
+    ///
+    /// # Errors
+    /// [`Halt::Shared`] if another worker has written them, [`Halt::Cancelled`] if the worker is to end, [`Halt::Store`] if nothing can be claimed.
+    pub fn begin_writing(&self, outputs: &[PathBuf]) -> Result<(), Halt> {
+        let Role::Worker { stop, .. } = self.role else { return Ok(()) };
+        let mut state = self.lock();
+        if state.writing.is_some() {
+            return Ok(());
+        }
+        let mut hasher = KeyHasher::new("");
+        outputs.iter().for_each(|path| hasher.value("output", path.as_os_str().as_encoded_bytes()));
+        let path = state.job.folder().join(format!("{}.written", hasher.finish()));
+        let claim = wait_for(&path.with_extension("writing.claim"), LOOKS[1], stop)?;
+        if path.is_file() && outputs.iter().all(|output| output.exists()) {
+            return Err(state.end_with(Outcome::Done));
+        }
+        state.writing = Some((claim, path));
+        Ok(())
+    }
+
+    /// After everything is written: no other worker does it again.
+    ///
+    /// # Errors
+    /// [`JobError::Write`].
+    pub fn end_writing(&self) -> Result<(), JobError> {
+        match self.lock().writing.take() {
+            Some((_claim, path)) => Ok(atomic_write(path, b"")?),
+            None => Ok(()),
+        }
+    }
+
     fn lock(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -153,7 +196,7 @@ impl JobStore {
         self.set_own(None);
         let shards = state.job.manifest.shards_of(phase);
         let n = shards.len();
-        let (mut left, mut look) = (shards.collect::<Vec<usize>>(), LOOKS[0]);
+        let (mut left, mut look, mut n_looks) = (shards.collect::<Vec<usize>>(), LOOKS[0], 0_usize);
         loop {
             if stop() {
                 return Err(Halt::Cancelled(Cancelled));
@@ -162,7 +205,13 @@ impl JobStore {
             if left.is_empty() {
                 return state.open(phase);
             }
-            let claims = Claims::of(&state.job, &left, batch(left.len(), n, n_workers)).map_err(failed)?;
+            // While others are at work on all that is left, a few are looked at each time, each worker beginning elsewhere.
+            let is_first = look == LOOKS[0];
+            let from =
+                if is_first { 0 } else { (std::process::id() as usize).wrapping_add(n_looks * FEW) % left.len() };
+            let some = left[from..].iter().chain(&left[..from]).copied().take(if is_first { n } else { FEW });
+            let claims = Claims::of(&state.job, some, batch(left.len(), n, n_workers)).map_err(failed)?;
+            n_looks += 1;
             if !claims.shards.is_empty() {
                 let own = OwnShards::new(&state.job, &claims.shards, self.after).map_err(failed)?;
                 own.take_up(&state.job);
@@ -173,6 +222,19 @@ impl JobStore {
             sleep(look);
             look = (look * 2).min(LOOKS[1]);
         }
+    }
+}
+
+/// Claims a file, once no other process has it.
+fn wait_for(path: &Path, look: Duration, stop: fn() -> bool) -> Result<Claim, Halt> {
+    loop {
+        if let Some(claim) = Claim::of(path.to_owned()).map_err(failed)? {
+            return Ok(claim);
+        }
+        if stop() {
+            return Err(Halt::Cancelled(Cancelled));
+        }
+        sleep(look);
     }
 }
 
@@ -192,16 +254,7 @@ impl State {
 
     /// Plans a phase together with other workers: one does it, and the others take what it has written.
     fn plan_together(&mut self, phase: &Phase<'_>, place: usize, stop: fn() -> bool) -> Result<(), Halt> {
-        let path = self.job.folder().join("planning.claim");
-        let _claim = loop {
-            if let Some(claim) = Claim::of(path.clone()).map_err(failed)? {
-                break claim;
-            }
-            if stop() {
-                return Err(Halt::Cancelled(Cancelled));
-            }
-            sleep(LOOKS[0]);
-        };
+        let _claim = wait_for(&self.job.folder().join("planning.claim"), LOOKS[0], stop)?;
         self.job.read_again().map_err(failed)?;
         if self.job.manifest.phases.len() <= place {
             self.plan(phase).map_err(failed)?;
@@ -232,13 +285,17 @@ impl State {
         let (mut parts, mut missing) = (Vec::new(), Vec::new());
         for (shard, plan) in self.job.manifest.shards_of(phase).zip(shards) {
             match self.job.part(shard, name, plan) {
-                Ok(Some(part)) => parts.push(part),
+                Ok(Some(mut part)) => {
+                    // There may be more of them than a process may have open files.
+                    part.close();
+                    parts.push(part);
+                }
                 Ok(None) => missing.push((shard, self.job.state(shard).unwrap_or(ShardState::Missing))),
                 Err(error) => missing.push((shard, ShardState::Broken(error.to_string()))),
             }
         }
         let ends = shards.iter().map(|plan| plan.end).collect();
-        let parts = Parts { phase: name.clone(), n_units: *n_units, ends, parts };
+        let parts = Parts { phase: name.clone(), n_units: *n_units, ends, parts, open: VecDeque::new() };
         if missing.is_empty() { Ok(parts) } else { Err(missing) }
     }
 }
@@ -246,6 +303,11 @@ impl State {
 impl Parts {
     fn load(&mut self, unit: usize) -> Result<Option<Vec<u8>>, Halt> {
         let place = self.ends.partition_point(|end| *end <= unit);
+        if !self.open.contains(&place) {
+            self.open.push_back(place);
+            let first = if self.open.len() > FEW { self.open.pop_front() } else { None };
+            first.and_then(|first| self.parts.get_mut(first)).into_iter().for_each(Results::close);
+        }
         let Some(part) = self.parts.get_mut(place) else { return Ok(None) };
         part.load(&self.phase, unit as u64).map_err(|error| Halt::Store(error.to_string()))
     }
@@ -342,20 +404,7 @@ impl UnitStore for JobStore {
         state.job.manifest.phases.len() <= state.n_begun
     }
 
-    fn may_write(&self) -> bool {
-        if !matches!(self.role, Role::Worker { .. }) {
-            return true;
-        }
-        let mut state = self.lock();
-        if state.writing.is_none() {
-            // Who cannot claim it for another reason finds out what is wrong when it writes.
-            let claim = Claim::of(state.job.folder().join("writing.claim"));
-            match claim {
-                Ok(None) => drop(state.end_with(Outcome::Done)),
-                Ok(claim) => state.writing = claim,
-                Err(_) => return true,
-            }
-        }
-        state.writing.is_some()
+    fn has_all(&self, phase: &'static str) -> bool {
+        self.own_of(phase).is_none()
     }
 }

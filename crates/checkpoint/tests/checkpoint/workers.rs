@@ -4,10 +4,9 @@ use crate::jobs::{first_phase, plan};
 use crate::toy::{PROGRAM, Toy, toy};
 use proptest::prelude::*;
 use sightlines_checkpoint::{Job, JobStore, Outcome, Role, ShardState};
-use sightlines_progress::{Halt, Units};
+use sightlines_progress::Halt;
 use std::fs;
 use std::path::Path;
-use std::sync::Barrier;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::thread;
 use std::time::Duration;
@@ -20,7 +19,8 @@ fn worker(folder: &Path, n_workers: usize) -> JobStore {
 /// Goes through a bake; its answer, if this worker is the one that writes it.
 fn work(toy: &Toy, store: &JobStore) -> Result<Vec<u8>, Halt> {
     let bytes = toy.bake(Some(store))?;
-    Units(Some(store)).write()?;
+    store.begin_writing(&[])?;
+    store.end_writing().unwrap();
     Ok(bytes)
 }
 
@@ -38,17 +38,13 @@ proptest! {
         let folder = all.path().join("job");
         plan(&folder, "a", max_shards).unwrap();
         let (shared, expected) = (toy(n), toy(n).bake(None).unwrap());
-        // Nobody ends before all have come to their end, as claims end with their stores.
-        let barrier = Barrier::new(n_workers);
         let ends: Vec<Result<Vec<u8>, Outcome>> = thread::scope(|scope| {
             let one = || {
                 let store = worker(&folder, n_workers);
-                let end = work(&shared, &store).map_err(|halt| {
+                work(&shared, &store).map_err(|halt| {
                     assert_eq!(halt, Halt::Shared);
                     store.outcome().unwrap()
-                });
-                barrier.wait();
-                end
+                })
             };
             let workers: Vec<_> = (0..n_workers).map(|_| scope.spawn(one)).collect();
             workers.into_iter().map(|worker| worker.join().unwrap()).collect()
@@ -57,7 +53,8 @@ proptest! {
         prop_assert_eq!(written, vec![&expected]);
         prop_assert!(ends.iter().all(|end| matches!(end, Ok(_) | Err(Outcome::Done))));
         prop_assert_eq!(shared.n(), n[0] + n[1]);
-        prop_assert_eq!((others(&folder, "s"), others(&folder.join("parts"), ".part")), (vec!["job.json".to_owned()], vec![]));
+        prop_assert_eq!(others(&folder.join("parts"), ".part"), Vec::<String>::new());
+        prop_assert_eq!(others(&folder, ".written").len(), 2, "the manifest and the folder of parts");
         // The impostor: processes that are told their shards, all of them, compute units twice.
         if n_workers > 1 && n[0] > 0 {
             let other = all.path().join("other");
@@ -95,7 +92,7 @@ proptest! {
             Err(halt) => prop_assert_eq!(halt, Halt::Shared),
         }
         let all_of_it = toy(n);
-        prop_assert_eq!(work(&all_of_it, &worker(&folder, 1)).unwrap(), toy(n).bake(None).unwrap());
+        prop_assert_eq!(all_of_it.bake(Some(&worker(&folder, 1))).unwrap(), toy(n).bake(None).unwrap());
         prop_assert_eq!(all_of_it.n(), 0);
     }
 }
@@ -132,6 +129,38 @@ fn workers_wait_for_others() {
     });
     // The one unit that was done before the other one was stopped is not done again.
     assert_eq!(idle.n(), 5);
+}
+
+/// A worker that ends while it writes is followed by another one that waited; one that has written is not.
+#[test]
+fn one_worker_after_the_other_writes_until_one_has() {
+    let all = tempfile::tempdir().unwrap();
+    let folder = all.path().join("job");
+    plan(&folder, "a", 2).unwrap();
+    let outputs = [all.path().join("out")];
+    let writers = [0, 1, 2].map(|_| worker(&folder, 3));
+    let toy = toy([3, 3]);
+    for store in &writers {
+        assert!(toy.bake(Some(store)).is_ok());
+    }
+    let [first, second, third] = writers;
+    assert_eq!((first.begin_writing(&outputs), first.begin_writing(&outputs)), (Ok(()), Ok(())));
+    thread::scope(|scope| {
+        let waiting = scope.spawn(|| second.begin_writing(&outputs));
+        thread::sleep(Duration::from_millis(50));
+        assert!(!waiting.is_finished());
+        // As if it had been killed.
+        drop(first);
+        assert_eq!(waiting.join().unwrap(), Ok(()));
+    });
+    fs::write(&outputs[0], "what the bake makes").unwrap();
+    second.end_writing().unwrap();
+    assert_eq!((third.begin_writing(&outputs), third.outcome()), (Err(Halt::Shared), Some(Outcome::Done)));
+    // What was removed is written again, and so is another output.
+    let store = worker(&folder, 3);
+    assert_eq!(store.begin_writing(&[all.path().join("other")]), Ok(()));
+    fs::remove_file(&outputs[0]).unwrap();
+    assert_eq!(worker(&folder, 3).begin_writing(&outputs), Ok(()));
 }
 
 /// A part that cannot be used ends a worker, which names it; so does a job of something else in its folder.

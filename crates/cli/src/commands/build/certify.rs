@@ -78,6 +78,7 @@ impl CertifyArgs {
             let (n_violations, first) = (found.n_violations, first.clone());
             return Err(Error::Contradiction { path: path.to_owned(), n_violations, first });
         }
+        kept.before_writing()?;
         output::save(&file, &content)?;
         let file = ProofFile {
             proofs: file.display().to_string(),

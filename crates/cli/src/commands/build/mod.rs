@@ -191,9 +191,9 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
         let (baked, given_doors) = doors::add(path, baked, &args.doors);
         let baked = plans::state(baked, &reading);
         let bytes = packed::bytes_of(&baked.table, path, out, class)?;
-        kept.before_writing()?;
         // Proofs that contradict the table leave an older one untouched.
         let proofs = args.certify.write(path, out, &baked, options.threads, &kept, show_progress)?;
+        kept.before_writing()?;
         output::save(out, &bytes)?;
         let outcome = Outcome::new(out, &source, &options, &baked, bytes.len(), verbose);
         let surfaces = match &source.content {

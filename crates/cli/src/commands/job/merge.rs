@@ -33,7 +33,7 @@ pub(super) enum Progress {
     Written(Box<Made>, PathBuf),
     /// The output was written by another process, which printed this.
     Elsewhere(PathBuf, Option<String>),
-    /// All is done, and another process writes the output.
+    /// All is done, and another worker has written the output.
     Shared(PathBuf),
     /// The next phase is known, and its shards are to be done.
     Planned(Job, usize),
@@ -67,6 +67,13 @@ pub(super) fn through(
     let slot = JobSlot::default();
     let open = |identity: &Identity| slot.open(identity, || Ok(JobStore::new(job.clone(), role.clone(), after)?));
     let made = task.make(Keeping::Job(&open), show_progress, verbose);
+    let made = match made {
+        Ok(made) => return Ok(Progress::Written(Box::new(made), task.output().to_owned())),
+        Err(error) => error,
+    };
+    if interrupt::requested() {
+        return Err(interrupt::memory().map_or(Error::Interrupted, Error::Memory));
+    }
     match slot.store().and_then(|store| Some((store.outcome()?, store.job()))) {
         Some((Outcome::Planned { phase, .. }, job)) => Ok(Progress::Planned(job, phase)),
         Some((Outcome::Missing { phase, shards }, job)) => {
@@ -74,10 +81,7 @@ pub(super) fn through(
             Ok(Progress::Missing(job, missing))
         }
         Some((Outcome::Done, _)) => Ok(Progress::Shared(task.output().to_owned())),
-        _ if interrupt::requested() && made.is_err() => {
-            Err(interrupt::memory().map_or(Error::Interrupted, Error::Memory))
-        }
-        _ => Ok(Progress::Written(Box::new(made?), task.output().to_owned())),
+        _ => Err(made),
     }
 }
 

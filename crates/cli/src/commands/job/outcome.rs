@@ -157,7 +157,7 @@ impl fmt::Display for Missing {
 #[derive(Debug, Serialize)]
 pub(super) struct Merged {
     job: String,
-    /// `written`, `shared` (another process writes it), `planned` (another phase is to be done) or `missing` (shards are to be done).
+    /// `written`, `shared` (another worker has written it), `planned` (another phase is to be done) or `missing` (shards are to be done).
     status: &'static str,
     #[serde(skip_serializing_if = "Option::is_none")]
     out: Option<String>,
@@ -182,7 +182,7 @@ impl Merged {
     }
 
     pub(super) fn shared(job: String, out: &Path) -> Self {
-        let text = format!("done; another process writes {}\n", out.display());
+        let text = format!("done; another worker has written {}\n", out.display());
         Self { status: "shared", ..Self::elsewhere(job, out, Some(text)) }
     }
 

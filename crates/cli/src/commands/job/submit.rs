@@ -33,7 +33,7 @@ impl Kind {
 
     const fn about(self) -> &'static str {
         match self {
-            Self::Local => "Processes on this machine",
+            Self::Local => "Workers on this machine",
             Self::Slurm => "An array job of Slurm for the shards, and a job that merges behind it",
             Self::Command => "A command of yours for each shard",
         }
@@ -49,7 +49,7 @@ pub(crate) struct SubmitArgs {
     /// Who does the shards
     #[arg(long, help_heading = "Method", value_name = "WHO", default_value = "local", value_parser = one_of(&Kind::ALL, Kind::name, Kind::about))]
     engine: Kind,
-    /// local, command: shards that are done at once [default: as many as there are cores]
+    /// local: workers; command: commands that run at once [default: as many as there are cores]
     #[arg(long, help_heading = "Method", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
     workers: Option<u32>,
     /// command: what a shell runs for a shard; {shard} stands for its number, {shards} for those of several, {job} for the folder of the job,

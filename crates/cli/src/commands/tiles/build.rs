@@ -18,7 +18,7 @@ use sightlines::checkpoint::KeyHasher;
 use sightlines::formats::scene::SceneReadOptions;
 use sightlines::geometry::{Aabb, BoxTree};
 use sightlines::packed::Packed;
-use sightlines::progress::{Cancelled, Counter, Halt, Observer, Phase, Progress, Units, Work, shares_of};
+use sightlines::progress::{Cancelled, Counter, Halt, Observer, Phase, Progress, Work, shares_of};
 use sightlines::tiles::{INDEX_NAME, TileEntry, TilePart, WorldIndex, near_tiles};
 use std::collections::BTreeSet;
 use std::fs::{self, File};
@@ -123,7 +123,7 @@ pub(crate) fn make(args: &TilesBuildArgs, keeping: Keeping<'_>, show_progress: b
     let mut world =
         World { args, distances: (plan.border, plan.reach), inputs: &inputs, keys: &keys, missing: Vec::new() };
     world.find()?;
-    let made = world.bake((&options, are_cells_named), (&reading, threads), kept.units(), show_progress);
+    let made = world.bake((&options, are_cells_named), (&reading, threads), &kept, show_progress);
     let made = made.and_then(|()| world.finish(start));
     match kept.finish(made.is_ok()) {
         Some(_) => {
@@ -230,9 +230,10 @@ impl World<'_> {
         &self,
         (options, are_cells_named): (&BakeOptions<'_>, bool),
         (reading, threads): (&SceneReadOptions, usize),
-        units: Units<'_>,
+        kept: &Kept<'_>,
         show_progress: bool,
     ) -> Result<(), Error> {
+        let units = kept.units();
         // Tiles that are near each other need the same scenes, so they follow each other.
         let viewers: Vec<Aabb<3>> = self.inputs.iter().map(|tile| tile.bounds.viewers).collect();
         let order: Vec<usize> = BoxTree::build(&viewers, 1).order().iter().map(|&tile| tile as usize).collect();
@@ -273,7 +274,7 @@ impl World<'_> {
                 Ok(Vec::new())
             });
             // What comes from a store is of a job, or of a shard that goes on.
-            if let Some(bytes) = result?.filter(|_| units.are_kept() && !is_made && units.may_write()) {
+            if let Some(bytes) = result?.filter(|_| units.are_kept() && !is_made && units.has_all(PHASE)) {
                 let files = Files::from_bytes(&bytes);
                 let files = files.ok_or_else(|| Halt::Store(format!("the kept result of tile {tile} does not fit")))?;
                 self.save(tile, &files)?;
@@ -282,6 +283,9 @@ impl World<'_> {
         };
         // If others have tiles to do, this may end the bake.
         units.through(&Phase { name: PHASE, costs: &costs }, || {
+            if units.has_all(PHASE) {
+                kept.before_writing()?;
+            }
             let is_failed = AtomicBool::new(false);
             let done = on_threads(at_once, order.len(), |unit| {
                 if is_failed.load(Relaxed) {
@@ -290,8 +294,7 @@ impl World<'_> {
                 one(unit).inspect_err(|_| is_failed.store(true, Relaxed))
             });
             done.into_iter().collect::<Result<(), Error>>()
-        })?;
-        Ok(units.write()?)
+        })
     }
 
     fn save(&self, tile: usize, files: &Files) -> Result<(), Error> {

@@ -190,13 +190,17 @@ pub(crate) fn compute(args: &VisArgs, manner: Manner<'_, '_>) -> Result<Outcome,
     let options = PrtOptions { search, from, progress: Some(&observer), after_step: Some(&mut save), units, sounds };
     let map = vis_map(&bsp, &prt, options);
     drop(bar);
-    let may_write = if map.is_ok() { kept.before_writing() } else { Ok(()) };
-    if let Some(Interrupted { state }) = kept.finish(map.is_ok()) {
-        let state = state.or_else(|| saved.path_if_written());
-        return Err(Error::Interrupted(Interrupted { state }));
-    }
-    let map = map.map_err(|source| explained(source, args, &prt_path, &saved))?;
-    may_write?;
+    let map = match map {
+        Ok(map) => map,
+        Err(source) => {
+            if let Some(Interrupted { state }) = kept.finish(false) {
+                let state = state.or_else(|| saved.path_if_written());
+                return Err(Error::Interrupted(Interrupted { state }));
+            }
+            return Err(explained(source, args, &prt_path, &saved));
+        }
+    };
+    kept.before_writing()?;
     // Before anything is written: a table that is proven wrong should not be.
     let certified = args.certify.map(|n| {
         let bar = Bar::new("proofs", manner.show_progress);
@@ -205,6 +209,7 @@ pub(crate) fn compute(args: &VisArgs, manner: Manner<'_, '_>) -> Result<Outcome,
     let certified = certified.transpose()?;
     output::save(out, &map.bytes)?;
     saved.remove();
+    kept.finish(true);
     let mut outcome = Outcome::new(out, &bsp, format, &map);
     (outcome.fast, outcome.resumed) = (args.fast, resumed);
     outcome.certified = certified;

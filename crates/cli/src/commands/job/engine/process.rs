@@ -71,7 +71,7 @@ impl Process {
         End::Passed(printed)
     }
 
-    /// Ends it. What it has computed for long is in its journals.
+    /// Ends it. What it computed a while ago is in its journals.
     pub(super) fn kill(mut self) {
         let ended: io::Result<()> = self.child.kill().and_then(|()| self.child.wait().map(drop));
         if let Err(error) = ended {
