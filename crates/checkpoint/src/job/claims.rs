@@ -82,7 +82,7 @@ pub(super) struct Claims {
 }
 
 impl Claims {
-    /// Claims the first shards of these that nobody has, `size` of them at most, and never more than a process may have open files.
+    /// Claims the first shards of these that nobody has, `size` of them at most, and no more than [`MOST`].
     pub(super) fn of(job: &Job, shards: impl IntoIterator<Item = usize>, size: usize) -> Result<Self, JobError> {
         let mut claims = Self::default();
         for shard in shards {

@@ -66,8 +66,11 @@ pub enum Outcome {
 /// How long a worker waits between two looks at the parts of others: at first, and at most.
 const LOOKS: [Duration; 2] = [Duration::from_millis(5), Duration::from_millis(200)];
 
-/// Shards that a waiting worker tries to claim each time, and parts that are open at once.
-const FEW: usize = 32;
+/// Shards that a waiting worker tries to claim at each look, at most.
+const TRIED: usize = 32;
+
+/// Parts of a phase that are open at once, at most.
+const OPEN: usize = 32;
 
 /// A store of units in the folder of a job.
 #[derive(Debug)]
@@ -208,8 +211,8 @@ impl JobStore {
             // While others are at work on all that is left, a few are looked at each time, each worker beginning elsewhere.
             let is_first = look == LOOKS[0];
             let from =
-                if is_first { 0 } else { (std::process::id() as usize).wrapping_add(n_looks * FEW) % left.len() };
-            let some = left[from..].iter().chain(&left[..from]).copied().take(if is_first { n } else { FEW });
+                if is_first { 0 } else { (std::process::id() as usize).wrapping_add(n_looks * TRIED) % left.len() };
+            let some = left[from..].iter().chain(&left[..from]).copied().take(if is_first { n } else { TRIED });
             let claims = Claims::of(&state.job, some, batch(left.len(), n, n_workers)).map_err(failed)?;
             n_looks += 1;
             if !claims.shards.is_empty() {
@@ -305,7 +308,7 @@ impl Parts {
         let place = self.ends.partition_point(|end| *end <= unit);
         if !self.open.contains(&place) {
             self.open.push_back(place);
-            let first = if self.open.len() > FEW { self.open.pop_front() } else { None };
+            let first = if self.open.len() > OPEN { self.open.pop_front() } else { None };
             first.and_then(|first| self.parts.get_mut(first)).into_iter().for_each(Results::close);
         }
         let Some(part) = self.parts.get_mut(place) else { return Ok(None) };
