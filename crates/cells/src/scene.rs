@@ -1,5 +1,7 @@
 //! Scenes in space: objects made of triangles.
 
+mod checksum;
+
 use sightlines_geometry::coordinate::MAX_MAGNITUDE;
 use sightlines_geometry::{Aabb, CoordinateError, Point3, check_coordinate};
 use sightlines_pvs::ObjectSource;

@@ -1,7 +1,7 @@
 //! A folder of results that appears whole or not at all.
 
 use crate::error::OutputError;
-use sightlines::formats::atomic_write;
+use sightlines::formats::{Hidden, atomic_write, remove_left};
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -23,6 +23,8 @@ impl NewFolder {
             Err(error) if error.kind() == io::ErrorKind::NotFound => target.to_owned(),
             Err(error) => return Err(failed(error)),
         };
+        // What is put back is there from here on.
+        remove_left(&target);
         if target.exists() {
             for entry in fs::read_dir(&target).map_err(failed)? {
                 let entry = entry.map_err(failed)?;
@@ -32,7 +34,7 @@ impl NewFolder {
                 }
             }
         }
-        let beside = beside(&target, "new").ok_or_else(|| failed(io::ErrorKind::InvalidInput.into()))?;
+        let beside = Hidden::New.beside(&target, 0).ok_or_else(|| failed(io::ErrorKind::InvalidInput.into()))?;
         fs::create_dir(&beside).map_err(failed)?;
         Ok(Self { target, beside })
     }
@@ -48,7 +50,7 @@ impl NewFolder {
         if !self.target.exists() {
             return fs::rename(&self.beside, &self.target).map_err(failed);
         }
-        let old = beside(&self.target, "old").ok_or_else(|| failed(io::ErrorKind::InvalidInput.into()))?;
+        let old = Hidden::Old.beside(&self.target, 0).ok_or_else(|| failed(io::ErrorKind::InvalidInput.into()))?;
         fs::rename(&self.target, &old).map_err(failed)?;
         if let Err(error) = fs::rename(&self.beside, &self.target) {
             // The old folder is put back; the error above is the one to report.
@@ -64,14 +66,6 @@ impl Drop for NewFolder {
         // Nothing is left once the folder is in its place.
         let _ = fs::remove_dir_all(&self.beside);
     }
-}
-
-/// A hidden name in the same folder.
-pub(crate) fn beside(target: &Path, what: &str) -> Option<PathBuf> {
-    let mut name = std::ffi::OsString::from(".");
-    name.push(target.file_name()?);
-    name.push(format!(".{}.{what}", std::process::id()));
-    Some(target.with_file_name(name))
 }
 
 #[cfg(test)]

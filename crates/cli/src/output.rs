@@ -1,9 +1,8 @@
 //! Results: standard output, and files that are written as a whole.
 
 use crate::error::{OutputError, StdoutError};
-use crate::folder::beside;
 use serde::Serialize;
-use sightlines::formats::{WriteError, atomic_write};
+use sightlines::formats::{Hidden, WriteError, atomic_write, remove_left};
 use std::fmt;
 use std::fs::{self, OpenOptions};
 use std::io::{self, BufWriter, Write};
@@ -99,7 +98,9 @@ pub(crate) fn check_writable(path: &Path) -> Result<(), OutputError> {
             Err(error) if error.kind() == io::ErrorKind::NotFound => path.to_owned(),
             Err(error) => return Err(error),
         };
-        let beside = beside(&target, "check").ok_or(io::ErrorKind::InvalidInput)?;
+        // Also if this run ends before it writes anything.
+        remove_left(&target);
+        let beside = Hidden::New.beside(&target, 0).ok_or(io::ErrorKind::InvalidInput)?;
         match OpenOptions::new().write(true).create_new(true).open(&beside) {
             Ok(file) => {
                 drop(file);

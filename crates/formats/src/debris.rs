@@ -1,23 +1,44 @@
 //! Names of files that are being written, and what is done with those that nobody finishes.
 
-use std::ffi::{OsStr, OsString};
+use std::ffi::OsString;
 use std::fs::{self, File, TryLockError};
-use std::path::Path;
+use std::io;
+use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::time::Duration;
+
+/// What stands beside a file or folder under a hidden name while it is replaced.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Hidden {
+    /// What is to take its place.
+    New,
+    /// What it was: folders cannot replace each other in one step.
+    Old,
+}
+
+impl Hidden {
+    const fn ending(self) -> &'static str {
+        match self {
+            Self::New => ".tmp",
+            Self::Old => ".old",
+        }
+    }
+
+    /// A path for it, with the machine and the process in the name; `None` for a target without a name.
+    ///
+    /// * `attempt`: tells several of a process apart
+    pub fn beside(self, target: &Path, attempt: u32) -> Option<PathBuf> {
+        let mut hidden = OsString::from(".");
+        hidden.push(target.file_name()?);
+        hidden.push(format!(".{}-{attempt}{}", process_mark(), self.ending()));
+        Some(target.with_file_name(hidden))
+    }
+}
 
 /// Nobody is between making a file and locking it for longer than this.
 const MINUTE: Duration = Duration::from_secs(60);
 /// Nobody writes a file for longer than this without adding to it.
 const DAY: Duration = Duration::from_secs(24 * 3600);
-
-/// The name of a file that is to become `name`: hidden, with the machine and the process that write it.
-pub(crate) fn hidden(name: &OsStr, attempt: u32) -> OsString {
-    let mut hidden = OsString::from(".");
-    hidden.push(name);
-    hidden.push(format!(".{}-{attempt}.tmp", process_mark()));
-    hidden
-}
 
 /// This process among those of all machines that share a folder: the name of the machine, digits that tell it from others of that name and from what ran on
 /// it before it was last started, and the number of the process.
@@ -43,42 +64,78 @@ fn read_machine() -> String {
     format!("{}-{digits:08x}", if name.is_empty() { "host" } else { &name })
 }
 
+/// Whether a process of this machine is known to have ended.
+fn has_ended(pid: u32) -> bool {
+    // Where the list of processes is none, or one of another container, it tells nothing.
+    let is_ours = fs::read_link("/proc/self").is_ok_and(|own| own.as_os_str() == &*std::process::id().to_string());
+    is_ours && !Path::new(&format!("/proc/{pid}")).exists()
+}
+
 /// Whether nobody writes a file any more. Its writer holds a lock on it; where its machine or the file system may know nothing of that, age decides alone.
-fn is_left(path: &Path, is_of_this_machine: bool) -> bool {
+fn is_left_file(path: &Path, (machine_of, pid): (&str, u32)) -> bool {
     let Ok(file) = File::options().write(true).open(path) else { return false };
-    let age = || file.metadata().ok()?.modified().ok()?.elapsed().ok();
-    let Some(age) = age() else { return false };
+    let Some(age) = age(file.metadata()) else { return false };
     match file.try_lock() {
         Err(TryLockError::WouldBlock) => false,
-        Ok(()) if is_of_this_machine => age > MINUTE,
+        Ok(()) if machine_of == machine() => age > MINUTE || has_ended(pid),
         Ok(()) | Err(TryLockError::Error(_)) => age > DAY,
     }
 }
 
-/// Removes files that were to become `target`, and that nobody will finish.
-pub(crate) fn remove(target: &Path) {
-    let (Some(name), Some(folder)) = (target.file_name(), target.parent()) else { return };
+/// The same of a folder, which cannot be locked everywhere.
+fn is_left_folder(path: &Path, (machine_of, pid): (&str, u32)) -> bool {
+    (machine_of == machine() && has_ended(pid)) || age(fs::metadata(path)).is_some_and(|age| age > DAY)
+}
+
+fn age(of: io::Result<fs::Metadata>) -> Option<Duration> {
+    of.ok()?.modified().ok()?.elapsed().ok()
+}
+
+/// What processes that have ended left beside `target`.
+fn left(target: &Path, hidden: Hidden) -> Vec<PathBuf> {
+    let (Some(name), Some(folder)) = (target.file_name(), target.parent()) else { return Vec::new() };
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    let Some(begin) = name.to_str().map(|name| format!(".{name}.")) else { return };
+    let Some(begin) = name.to_str().map(|name| format!(".{name}.")) else { return Vec::new() };
     // A folder that cannot be listed may still be written to.
-    let Ok(entries) = fs::read_dir(folder) else { return };
-    for entry in entries.flatten() {
+    let Ok(entries) = fs::read_dir(folder) else { return Vec::new() };
+    let is_left = |entry: &fs::DirEntry| {
         let found = entry.file_name();
-        let mark = found.to_str().and_then(|found| found.strip_prefix(&begin)?.strip_suffix(".tmp"));
-        let Some(machine_of) = mark.and_then(parse) else { continue };
-        if is_left(&entry.path(), machine_of == machine()) {
-            // Somebody else may have removed it by now.
-            let _ = fs::remove_file(entry.path());
+        let mark = found.to_str().and_then(|found| found.strip_prefix(&begin)?.strip_suffix(hidden.ending()));
+        let Some(writer) = mark.and_then(parse) else { return false };
+        match entry.file_type() {
+            Ok(kind) if kind.is_dir() => is_left_folder(&entry.path(), writer),
+            Ok(kind) => kind.is_file() && is_left_file(&entry.path(), writer),
+            Err(_) => false,
+        }
+    };
+    entries.flatten().filter(is_left).map(|entry| entry.path()).collect()
+}
+
+/// Cleans up after processes that ended while they wrote `target`, a file or a folder: what was to become it is removed, and what it was before is put back
+/// if there is nothing in its place.
+///
+/// [`atomic_write`](crate::atomic_write) does it too; this is for what may not be written at all.
+pub fn remove_left(target: &Path) {
+    // Somebody else may do the same at the same time, so that something fails, and nothing is lost.
+    let remove = |path: PathBuf| {
+        let _ = if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
+    };
+    left(target, Hidden::New).into_iter().for_each(remove);
+    for old in left(target, Hidden::Old) {
+        if fs::symlink_metadata(target).is_ok() {
+            remove(old);
+        } else {
+            let _ = fs::rename(&old, target);
         }
     }
 }
 
-/// The machine in `MACHINE-PID-ATTEMPT`.
-fn parse(mark: &str) -> Option<&str> {
+/// The machine and the process in `MACHINE-PID-ATTEMPT`.
+fn parse(mark: &str) -> Option<(&str, u32)> {
     let (mark, attempt) = mark.rsplit_once('-')?;
     attempt.parse::<u32>().ok()?;
     let (machine, pid) = mark.rsplit_once('-')?;
     let (name, digits) = machine.rsplit_once('-')?;
     let is_machine = !name.is_empty() && digits.len() == 8 && digits.bytes().all(|byte| byte.is_ascii_hexdigit());
-    pid.parse::<u32>().is_ok_and(|_| is_machine).then_some(machine)
+    pid.parse().ok().filter(|_| is_machine).map(|pid| (machine, pid))
 }

@@ -1,6 +1,6 @@
 //! Writing a file as a whole or not at all.
 
-use crate::debris;
+use crate::debris::{Hidden, remove_left};
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -23,8 +23,9 @@ pub struct WriteError {
 /// target that is not a regular file (a pipe, a terminal, `/dev/null`) has no old content to preserve and is written
 /// directly.
 ///
-/// New files that earlier calls for the same path left beside it, because their process was killed, are removed. A file that is being written is locked;
-/// one that is not, and that nobody has written to for a minute, is left over. Of another machine, or where there are no locks, it has to be a day.
+/// New files that earlier calls for the same path left beside it, because their process was killed, are removed ([`remove_left`]). A file that is being written
+/// is locked; one that is not, and whose process has ended, or that nobody has written to for a minute, is left over. Of another machine, or where there are no
+/// locks, it has to be a day.
 ///
 /// # Errors
 /// [`WriteError`] with the system's reason; the new file is removed again.
@@ -40,7 +41,7 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
         Err(error) if error.kind() == io::ErrorKind::NotFound => (path.to_owned(), None),
         Err(error) => return Err(error),
     };
-    debris::remove(&target);
+    remove_left(&target);
     let (beside, mut file) = create_beside(&target)?;
     let written = file
         .write_all(bytes)
@@ -59,9 +60,8 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
 
 /// A new file in the folder of `target`, under a name that no file there has.
 fn create_beside(target: &Path) -> io::Result<(PathBuf, File)> {
-    let name = target.file_name().ok_or(io::ErrorKind::InvalidInput)?;
     for attempt in 0..100u32 {
-        let beside = target.with_file_name(debris::hidden(name, attempt));
+        let beside = Hidden::New.beside(target, attempt).ok_or(io::ErrorKind::InvalidInput)?;
         match OpenOptions::new().write(true).create_new(true).open(&beside) {
             Ok(file) => {
                 // Without locks its age protects it.
@@ -78,6 +78,7 @@ fn create_beside(target: &Path) -> io::Result<(PathBuf, File)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::debris::machine;
 
     fn names(folder: &Path) -> Vec<String> {
         let entry = |e: io::Result<fs::DirEntry>| e.unwrap().file_name().into_string().unwrap();
@@ -116,17 +117,18 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let target = folder.path().join("out.wad");
         let of = |name: &str, pid: u32, machine: &str| format!(".{name}.{machine}-{pid}-0.tmp");
-        let here = debris::machine();
-        let (dead, elsewhere) = (of("out.wad", 7, &here), of("out.wad", 7, "elsewhere-00000000"));
-        // The number of a process says nothing: it may be of another container.
-        let alive = of("out.wad", 1 << 30, &here);
-        let others = [of("other.wad", 7, &here), ".out.wad.tmp".into(), ".out.wad.x-0.tmp".into()];
-        let all: Vec<&String> = others.iter().chain([&dead, &elsewhere, &alive]).collect();
+        let here = machine();
+        // This process has not ended, so its files may be of another thread.
+        let (own, elsewhere) = (of("out.wad", std::process::id(), &here), of("out.wad", 7, "elsewhere-00000000"));
+        // No process has this number. What is locked is written all the same.
+        let [dead, locked] = [(1 << 30) - 1, 1 << 30].map(|pid| of("out.wad", pid, &here));
+        let others = [of("other.wad", 1 << 30, &here), ".out.wad.tmp".into(), ".out.wad.x-0.tmp".into()];
+        let all: Vec<&String> = others.iter().chain([&own, &elsewhere, &dead, &locked]).collect();
         for name in &all {
             fs::write(folder.path().join(name), b"part").unwrap();
         }
         let open = |name: &String| File::options().write(true).open(folder.path().join(name)).unwrap();
-        let writer = open(&alive);
+        let writer = open(&locked);
         writer.try_lock().unwrap();
         let left_after = |seconds: u64| {
             let then = std::time::SystemTime::now() - std::time::Duration::from_secs(seconds);
@@ -136,11 +138,37 @@ mod tests {
             all.iter().filter(|name| left.contains(name)).copied().cloned().collect::<Vec<String>>()
         };
         let but = |gone: &[&String]| all.iter().filter(|name| !gone.contains(name)).copied().cloned().collect();
-        let expected: [Vec<String>; 3] = [but(&[]), but(&[&dead]), but(&[&dead, &elsewhere])];
+        // Where processes are listed, what one that has ended left is removed at once.
+        let at_once: &[&String] = if cfg!(target_os = "linux") { &[&dead] } else { &[] };
+        let expected: [Vec<String>; 3] = [but(at_once), but(&[&dead, &own]), but(&[&dead, &own, &elsewhere])];
         assert_eq!([50, 70, 25 * 3600].map(left_after), expected);
         // Whoever holds the lock is at work, however long.
         drop(writer);
-        assert_eq!(left_after(70), but(&[&dead, &elsewhere, &alive]));
+        assert_eq!(left_after(50), but(&[&dead, &own, &elsewhere, &locked]));
+    }
+
+    /// A folder replaces another in two steps; a process that is killed in between leaves nothing in its place.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn folders_of_killed_processes_are_removed_or_put_back() {
+        let all = tempfile::tempdir().unwrap();
+        let target = all.path().join("levels");
+        let hidden = |kind: Hidden, pid: u32| {
+            let own = format!("-{}-0", std::process::id());
+            let path = kind.beside(&target, 0).unwrap().to_str().unwrap().replace(&own, &format!("-{pid}-0"));
+            fs::create_dir(&path).unwrap();
+            fs::write(Path::new(&path).join(format!("{kind:?}")), b"").unwrap();
+        };
+        let dead = 1 << 30;
+        [(Hidden::New, dead), (Hidden::Old, dead), (Hidden::New, std::process::id())]
+            .map(|(kind, pid)| hidden(kind, pid));
+        remove_left(&target);
+        let own = Hidden::New.beside(&target, 0).unwrap();
+        assert_eq!(names(all.path()), [own.file_name().unwrap().to_str().unwrap(), "levels"]);
+        assert_eq!(names(&target), ["Old"]);
+        [Hidden::New, Hidden::Old].iter().for_each(|kind| hidden(*kind, dead));
+        remove_left(&target);
+        assert_eq!((names(all.path()).len(), names(&target)), (2, vec!["Old".to_owned()]));
     }
 
     /// What this process writes is locked until it has its name.

@@ -32,7 +32,7 @@ pub mod scene;
 pub mod view_cells;
 pub mod wad;
 
-pub use debris::process_mark;
+pub use debris::{Hidden, process_mark, remove_left};
 pub use doom::{DoomError, DoomMap, MapLumps};
 pub use dxf::DxfError;
 pub use error::{ReadError, ReadErrorKind};

@@ -167,7 +167,19 @@ impl Job {
 
     /// The file of the part of a shard.
     pub fn part_path(&self, shard: usize) -> PathBuf {
-        self.folder.join(PARTS).join(format!("{shard}.part"))
+        self.folder_of(shard).join(format!("{shard}.part"))
+    }
+
+    /// The folder of the part of a shard, of its journals and of its claim: whoever looks for journals lists it. Small jobs have one.
+    fn folder_of(&self, shard: usize) -> PathBuf {
+        let parts = self.folder.join(PARTS);
+        if shard < SHARDS_PER_FOLDER { parts } else { parts.join((shard / SHARDS_PER_FOLDER).to_string()) }
+    }
+
+    /// Makes the folder of a shard, if it is not there: somebody may have cleared it.
+    fn make_folder_of(&self, shard: usize) -> Result<(), WriteError> {
+        let path = self.folder_of(shard);
+        fs::create_dir_all(&path).map_err(|source| WriteError { path, source })
     }
 
     /// The phase of a shard, by its place, and what the shard is.
@@ -242,7 +254,7 @@ impl Job {
 
     fn journal_paths(&self, shard: usize) -> Vec<PathBuf> {
         let begin = format!("{shard}.part.");
-        let entries = fs::read_dir(self.folder.join(PARTS)).into_iter().flatten().flatten();
+        let entries = fs::read_dir(self.folder_of(shard)).into_iter().flatten().flatten();
         let is_one = |name: &str| name.starts_with(&begin) && name.ends_with(JOURNAL);
         let mut paths: Vec<PathBuf> =
             entries.filter(|entry| entry.file_name().to_str().is_some_and(is_one)).map(|entry| entry.path()).collect();
@@ -256,10 +268,7 @@ impl Job {
         results.iter().for_each(|(unit, result)| bytes.extend(record(phase, *unit, result)));
         bytes.extend(record("", results.len() as u64, &[]));
         let path = self.part_path(shard);
-        // Somebody may have cleared the folder of parts.
-        if let Some(folder) = path.parent() {
-            fs::create_dir_all(folder).map_err(|source| WriteError { path: folder.to_owned(), source })?;
-        }
+        self.make_folder_of(shard)?;
         atomic_write(&path, &bytes)?;
         for journal in self.journal_paths(shard) {
             // Another process that is at the same shard goes on with its own, and writes the same part.
@@ -288,6 +297,9 @@ impl Job {
         Ok(atomic_write(self.folder.join(MANIFEST), self.manifest.to_text().as_bytes())?)
     }
 }
+
+/// Shards whose files are in one folder: with each part that is written its folder is listed.
+const SHARDS_PER_FOLDER: usize = 1000;
 
 /// How the names of journals end.
 const JOURNAL: &str = ".journal";

@@ -133,6 +133,7 @@ impl OwnShard {
         let mark = format!("{}-{}", process_mark(), COUNT.fetch_add(1, Relaxed));
         let path: PathBuf = job.part_path(shard).with_extension(format!("part.{mark}{JOURNAL}"));
         let (key, program) = (job.key(), &job.manifest().program);
+        job.make_folder_of(shard)?;
         // What an earlier process with this number left is read with all other journals.
         let opening = if path.exists() { Opening::Resume } else { Opening::Anew };
         let journal = Journal::open(&path, key, program, opening, after);

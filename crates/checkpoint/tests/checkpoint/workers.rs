@@ -185,3 +185,32 @@ fn workers_refuse_what_is_damaged() {
     let Err(Halt::Store(text)) = work(&toy([6, 4]), &store) else { panic!("it went on") };
     assert!(text.ends_with("there is another job in the folder; name a new one, or remove it"), "{text}");
 }
+
+/// Each thousand of shards has a folder, so that a part is written as fast in a job with many.
+#[test]
+fn thousands_of_shards_have_folders_of_their_own() {
+    let all = tempfile::tempdir().unwrap();
+    let folder = all.path().join("job");
+    plan(&folder, "a", 5000).unwrap();
+    let toy = toy([2001, 0]);
+    let store = |role: Role| JobStore::new(Job::open(&folder, PROGRAM).unwrap(), role, Duration::ZERO).unwrap();
+    let bake = |role: Role| {
+        let store = store(role);
+        assert_eq!(toy.bake(Some(&store)), Err(Halt::Shared));
+        store.outcome().unwrap()
+    };
+    assert_eq!(bake(Role::Merge), Outcome::Planned { phase: 0, shards: 0..2001 });
+    let done = [0, 999, 1000, 1001, 1999, 2000];
+    assert_eq!(bake(Role::Shards(done.to_vec())), Outcome::Done);
+    let parts = |name: &str| {
+        let mut names = others(&folder.join("parts").join(name), ".claim");
+        names.retain(|name| name.contains(".part"));
+        names.sort();
+        names
+    };
+    assert_eq!(["", "1", "2"].map(|name| parts(name).len()), [2, 3, 1]);
+    assert_eq!(parts("1"), ["1000.part", "1001.part", "1999.part"]);
+    let job = Job::open(&folder, PROGRAM).unwrap();
+    let is_done = |shard: &usize| job.state(*shard).unwrap() == ShardState::Done;
+    assert_eq!((0..2001).filter(is_done).collect::<Vec<_>>(), done);
+}

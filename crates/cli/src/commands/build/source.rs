@@ -10,7 +10,7 @@ use crate::map_portals::{portal_file, portals_for};
 use crate::output;
 use crate::progress::Bar;
 use sightlines::bake::{BakeError, BakeInput, BakeOptions, Bakeable, Baked, Report, bake};
-use sightlines::formats::Input;
+use sightlines::formats::{Input, SceneFile};
 use std::path::{Path, PathBuf};
 
 /// An input with all files that belong to it.
@@ -57,8 +57,8 @@ impl Source {
     /// Adds what decides what is baked from it, beside the files, to what tells the results of one command from those of another.
     pub(super) fn identify(&self, identity: &mut Identity) {
         // Files that a scene names are part of it too.
-        if let Bakeable::Scene(_) = &self.content {
-            identity.debug("content", &self.content);
+        if let Bakeable::Scene(SceneFile { scene, info }) = &self.content {
+            identity.debug("content", &(scene.checksum(), info));
         }
     }
 

@@ -146,7 +146,7 @@ impl LevelsArgs {
         let simplify = SimplifyOptions { threads: 0, ..simplify };
         let mut identity = Identity::new("levels", inputs);
         // Files that a scene names are part of it.
-        identity.debug("content", &file.scene);
+        identity.debug("content", &file.scene.checksum());
         identity.debug("how", &how.for_any_threads());
         identity.debug("options", &(simplify, memory, bytes_per_triangle));
         identity

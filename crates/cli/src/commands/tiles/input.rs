@@ -112,7 +112,7 @@ impl TileInput {
 impl Loaded {
     fn key(&self) -> Key {
         let mut hasher = KeyHasher::new("");
-        hasher.debug("scene", &(&self.scene, &self.info));
+        hasher.debug("scene", &(self.scene.checksum(), &self.info));
         hasher.debug("viewers", &(&self.given, self.viewers));
         hasher.finish()
     }

@@ -5,7 +5,7 @@ use crate::error::InputError;
 use crate::plain::plain;
 use sightlines::bake::quake::{StateKey, state};
 use sightlines::cells::{CellGraph, Convex};
-use sightlines::formats::atomic_write;
+use sightlines::formats::{atomic_write, remove_left};
 use sightlines::stabtree::{ConvexSearch, ConvexState};
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -56,6 +56,10 @@ impl Saved {
         graph: &CellGraph<Convex>,
         usage: StateUse,
     ) -> Result<(Self, Option<ConvexState>), Error> {
+        if usage != StateUse::Off {
+            // This run may be done before it writes one.
+            remove_left(&path);
+        }
         let mut saved =
             Self { path, key, every: Some(every), keep: false, is_written: false, last: Instant::now(), stage: None };
         if usage == StateUse::Off {
