@@ -6,12 +6,13 @@ use serde_json::{Value, json};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// What is shared here: the commands of other tests of jobs, one that is written row by row, and tiles; each with what it writes.
+/// What is shared here: the commands of other tests of jobs, one that is written row by row, tiles, and a folder of WADs; each with what it writes.
 pub(crate) fn commands() -> Vec<(&'static str, &'static str)> {
     let more = [
         ("build tower.glb --method shafts --grid 5,3,1 --class large -o OUT", "out.pvz"),
         ("build tower.glb --certify --stab-trees=1000 -o OUT", "out.pvs"),
         ("tiles build city/world.json --method shafts -o OUT", "out"),
+        ("reject wads --force -o OUT", "out-wads"),
     ];
     COMMANDS.into_iter().chain(more).collect()
 }
