@@ -217,65 +217,87 @@ impl Pass<'_> {
             return Err(Stop::File(RejectError::NoMaps));
         }
         let insist = file.insists();
-        let must_go_on = !options.strict && !(insist && self.is_one);
+        let is_left_out = !(options.strict || insist && self.is_one);
+        let stop = |error| if is_left_out { Stop::File(error) } else { Stop::All(error) };
         let (mut maps, mut lumps, mut n_bytes) = (Vec::with_capacity(file.len()), Vec::new(), 0u64);
-        let (mut wad, mut too_large) = (None::<W>, None);
+        let mut lazy = Lazy { file, read, wad: None };
+        let mut too_large = None;
         for &(k, _) in &file.chosen {
             let (start, map) = (Instant::now(), &file.all[k]);
-            let (unit, share) = (self.n_begun, self.shares[self.n_begun]);
-            self.n_begun += 1;
-            let observer = options.progress.map(|all| OfMap { all, before: self.before, share, kept: self.kept });
-            let options = RejectOptions { progress: observer.as_ref().map(|of_map| of_map as _), ..options.clone() };
-            let mut is_computed = false;
-            let mut compute = || -> Result<Done, Stop<E>> {
-                is_computed = true;
-                let wad = match &mut wad {
-                    Some(wad) => wad,
-                    none => {
-                        let found = none.insert(read().map_err(Stop::Read)?);
-                        file.check((*found).borrow()).map_err(Stop::All)?;
-                        found
+            let done = self.unit(options, map, |options| match do_map(lazy.wad()?, map, insist, options) {
+                Ok(done) => Ok(done),
+                Err(error) => match halt_of(&error) {
+                    Some(halt) => Err(halt.into()),
+                    None if is_left_out && !matches!(error, RejectError::Rmb(_)) => {
+                        Ok((0, MapStatus::Failed(Box::new(error)), None))
                     }
-                };
-                match do_map((*wad).borrow(), map, insist, &options) {
-                    Ok(done) => Ok(done),
-                    Err(error) => match halt_of(&error) {
-                        Some(halt) => Err(halt.into()),
-                        None if must_go_on && !matches!(error, RejectError::Rmb(_)) => {
-                            Ok((0, MapStatus::Failed(Box::new(error)), None))
-                        }
-                        None => Err(Stop::All(error)),
-                    },
-                }
-            };
-            let done = if options.units.are_kept() {
-                kept::get(options.units, unit, compute)?.map(|done| done.ok_or(RejectError::Kept(map.name())))
-            } else {
-                Some(Ok(compute()?))
-            };
-            self.before += share;
-            self.kept += if is_computed { 0.0 } else { share };
+                    None => Err(Stop::All(error)),
+                },
+            })?;
             // A map that is for another process.
-            let Some(done) = done else { continue };
-            let (n_sectors, status, bytes) = done.map_err(Stop::All)?;
+            let Some((n_sectors, status, bytes)) = done else { continue };
             n_bytes += bytes.as_ref().map_or(0, |b| b.len() as u64);
-            // A file with maps that share their lumps may ask for any number of large tables.
+            // A file with maps that share their lumps may ask for any number of large tables. The other units have their results all the same.
             if too_large.is_none() && i32::try_from(n_bytes).is_err() {
                 too_large = Some(RejectError::from(WadError::TooLarge { lump: lumps.len(), end: n_bytes }));
-                if !must_go_on {
-                    break;
-                }
             }
-            if too_large.is_none() {
-                lumps.extend(bytes.map(|bytes| (k, bytes)));
+            if too_large.is_some() && !is_left_out {
+                break;
             }
+            lumps.extend(bytes.filter(|_| too_large.is_none()).map(|bytes| (k, bytes)));
             maps.push(MapOutcome { name: map.name(), n_sectors, status, time: start.elapsed() });
         }
         match too_large {
-            Some(error) if must_go_on => Err(Stop::File(error)),
-            Some(error) => Err(Stop::All(error)),
+            Some(error) => Err(stop(error)),
             None => RejectTables::new(maps, lumps, insist).map_err(Stop::File),
         }
+    }
+
+    /// Does a map, or takes it from the store; `None` for one that is for another process.
+    fn unit<E>(
+        &mut self,
+        options: &RejectOptions<'_>,
+        map: &MapLumps,
+        mut do_map: impl FnMut(&RejectOptions<'_>) -> Result<Done, Stop<E>>,
+    ) -> Result<Option<Done>, Stop<E>> {
+        let (unit, share) = (self.n_begun, self.shares[self.n_begun]);
+        let of_map = options.progress.map(|all| OfMap { all, before: self.before, share, kept: self.kept });
+        let options = RejectOptions { progress: of_map.as_ref().map(|of_map| of_map as _), ..options.clone() };
+        let mut is_computed = false;
+        let mut compute = || {
+            is_computed = true;
+            do_map(&options)
+        };
+        let done =
+            if options.units.are_kept() { kept::get(options.units, unit, compute)? } else { Some(Some(compute()?)) };
+        self.n_begun += 1;
+        self.before += share;
+        self.kept += if is_computed { 0.0 } else { share };
+        done.map(|done| done.ok_or_else(|| Stop::All(RejectError::Kept(map.name())))).transpose()
+    }
+}
+
+/// A WAD that is read once it is needed.
+struct Lazy<'a, W, F> {
+    file: &'a RejectMaps,
+    read: F,
+    wad: Option<W>,
+}
+
+impl<W: Borrow<Wad>, F> Lazy<'_, W, F> {
+    fn wad<E>(&mut self) -> Result<&Wad, Stop<E>>
+    where
+        F: Fn() -> Result<W, E>,
+    {
+        let wad = match self.wad.take() {
+            Some(wad) => wad,
+            None => {
+                let wad = (self.read)().map_err(Stop::Read)?;
+                self.file.check(wad.borrow()).map_err(Stop::All)?;
+                wad
+            }
+        };
+        Ok((*self.wad.insert(wad)).borrow())
     }
 }
 
