@@ -2,7 +2,7 @@
 
 use crate::common::dxf::small_drawing;
 use crate::common::quake::row_of_leafs;
-use crate::common::{Folder, levels};
+use crate::common::{Folder, bytes, levels};
 use sightlines::formats::quake::BspFormat;
 use std::path::{Path, PathBuf};
 
@@ -225,7 +225,7 @@ fn the_guide_for_clusters_works() {
     crate::reject_folder::add_wads(&folder);
     assert_eq!(follow(&folder, "when-one-machine-is-not-enough.md"), 22);
     folder.run(&["reject", "wads", "-o", "whole-wads"]).expect(0);
-    assert!(crate::workers::bytes(&folder, "new-wads") == crate::workers::bytes(&folder, "whole-wads"));
+    assert!(bytes(&folder, "new-wads") == bytes(&folder, "whole-wads"));
     assert!(folder.read("tower.pvs") == folder.read("whole.pvs"));
     assert!(!folder.path("tower.pvs.state").exists());
 }

@@ -1,8 +1,7 @@
 //! REJECT lumps of a folder of WADs.
 
-use crate::common::{Folder, doom_map, names};
+use crate::common::{Folder, bytes, doom_map, names};
 use crate::reject::tables;
-use crate::workers::bytes;
 use serde_json::{Value, json};
 use sightlines::formats::wad::{LumpName, WadBuilder, WadKind};
 use std::path::Path;
@@ -313,6 +312,45 @@ fn a_folder_that_is_killed_goes_on() {
     assert!(n_kills > 0, "it was over before it could be killed");
     assert!(bytes(&folder, "new") == alone);
     assert_eq!(folder.names(), ["new", "wads"]);
+}
+
+/// Ctrl-C keeps what is done and writes nothing, of one WAD and of a folder: maps that were not done are not ones that cannot be done.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_writes_nothing() {
+    let folder = with_many_maps();
+    for (input, out) in [("wads/c.Wad", "new.wad"), ("wads", "new")] {
+        let args = ["reject", input, "-o", out, "--save-after", "0", "--threads", "1"];
+        folder.run(&[&args[..], &["--state", "whole"]].concat()).expect(0);
+        let path = folder.path(out);
+        let whole = bytes(&folder, out);
+        let n_tries = (1..=20).find(|_| {
+            let _ = std::fs::remove_dir_all(&path).or_else(|_| std::fs::remove_file(&path));
+            let mut program = Command::new(env!("CARGO_BIN_EXE_sightlines"));
+            program.args(args).current_dir(folder.path(".")).stdout(Stdio::null()).stderr(Stdio::piped());
+            let mut child = program.spawn().expect("the program");
+            let state = folder.path(&format!("{out}.state"));
+            while child.try_wait().unwrap().is_none() && !state.exists() {
+                std::thread::sleep(std::time::Duration::from_micros(200));
+            }
+            // It may be over.
+            let _ = Command::new("kill").args(["-INT", &child.id().to_string()]).stderr(Stdio::null()).status();
+            let ended = child.wait_with_output().unwrap();
+            let text = String::from_utf8(ended.stderr).unwrap();
+            if ended.status.success() {
+                assert!(bytes(&folder, out) == whole);
+                return false;
+            }
+            assert_eq!(ended.status.code(), Some(130), "{text}");
+            assert!(text.ends_with(&format!("the same command with --resume goes on from {out}.state\n")), "{text}");
+            true
+        });
+        assert!(n_tries.is_some(), "{input}: it was over before it could be interrupted");
+        assert!(!path.exists());
+        folder.run(&[&args[..], &["--resume"]].concat()).expect(0);
+        assert!(bytes(&folder, out) == whole);
+    }
+    assert_eq!(folder.names(), ["new", "new.wad", "wads"]);
 }
 
 /// A state belongs to the names and the content of all WADs.
