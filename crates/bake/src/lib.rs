@@ -9,7 +9,7 @@
 //!   trees ([`with_stab_trees`]) and proofs ([`certify_table`]) from a graph, and the graph of a stored table ([`from_table`]);
 //!   from-region methods and backends by name ([`methods`]), and the choice of methods from the properties of an input
 //!   ([`auto`]); the frame of a scene that does not stand along the axes of its file ([`Framed`]); cells for scenes without
-//!   walls along axes ([`places`]); the REJECT lumps of a WAD ([`reject_wad`]), the visibility of Quake maps and the state of an interrupted
+//!   walls along axes ([`places`]); the REJECT lumps of a WAD ([`reject_wad`]) or of several ([`reject_wads`]), the visibility of Quake maps and the state of an interrupted
 //!   search ([`quake`]), the table of a changing scene ([`live`]), lines of sight for the pairs of a table ([`lines`]);
 //!   the floor plan of a scene at a height ([`floor_cut`]); one tile of a world that is too large for one table ([`tile`]).
 //! - **Out of scope**: paths, the command line, pictures.
@@ -70,7 +70,8 @@ pub use plan::{PlanBakeOptions, bake_plan};
 pub use quake::{PrtBakeError, PrtOptions, VisMap, bake_map, bake_prt, vis_map};
 pub use region::{CellsFrom, MakeMethod, RegionBakeOptions, bake_regions};
 pub use reject::{
-    MapOutcome, MapStatus, RejectError, RejectOptions, RejectOutcome, RejectSummary, reject_table, reject_wad,
+    MapOutcome, MapStatus, RejectError, RejectMaps, RejectOptions, RejectOutcome, RejectSummary, RejectTables,
+    RejectWadsError, reject_table, reject_wad, reject_wads,
 };
 pub use reports::{ClusterVisibility, MapReport, PlanReport, RegionReport, Report, SceneReport, WorldSummary};
 pub use run::{bake, bake_packed};

@@ -22,15 +22,18 @@
 //! ([`RejectOptions::rmb`]).
 
 mod kept;
+mod wads;
+
+pub use wads::{RejectMaps, RejectTables, RejectWadsError, reject_wad, reject_wads};
 
 use crate::error::BakeError;
 use crate::sectors::see_groups;
-use sightlines_formats::doom::{DoomMap, MapFormat, MapLumps, RmbError, RmbFile, list_maps};
+use sightlines_formats::doom::{DoomMap, MapFormat, MapLumps, RmbError, RmbFile};
 use sightlines_formats::{DoomError, LumpName, RejectTable, Wad, WadError};
-use sightlines_progress::{Halt, Observer, Phase, Units};
+use sightlines_progress::{Halt, Observer, Units};
 use sightlines_pvs::BitMatrix;
 use sightlines_stabtree::SearchOptions;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// How to build REJECT lumps.
 #[derive(Clone, Default)]
@@ -45,7 +48,7 @@ pub struct RejectOptions<'a> {
     pub rmb: Option<&'a RmbFile>,
     /// Number of threads; 0 for one for each core. Changes nothing but the time.
     pub threads: usize,
-    /// Called with the number of finished zones and their total, separately for each map.
+    /// Called with the number of finished zones of a map and their total; the share is that of all maps.
     pub progress: Option<&'a dyn Observer>,
     /// Where results of units of work, which are maps, are kept. Changes nothing but who computes what.
     pub units: Units<'a>,
@@ -94,6 +97,9 @@ pub enum RejectError {
     /// The store of units ends the work: it keeps what was done, and the rest is for others or later.
     #[error(transparent)]
     Halted(#[from] Halt),
+    /// The file has other maps than those that were to be done.
+    #[error("the maps of the file are not what they were when the work began")]
+    Changed,
     /// The store of units has something else than the result of a map.
     #[error("map {0}: what was kept of it is damaged")]
     Kept(LumpName),
@@ -178,69 +184,8 @@ fn table_of(seen: &BitMatrix, n_sectors: u32) -> RejectTable {
     RejectTable::from_seen_rows(n_sectors, (0..n_sectors as usize).map(|viewer| seen.row(viewer)))
 }
 
-/// Builds the REJECT lump of every map of a WAD, or of those named, and leaves every other lump as it
-/// was. A map that cannot be done keeps its lumps, and the others are done.
-///
-/// # Errors
-/// [`RejectError`]; then nothing is to be written. A map that cannot be done, or in an unsupported format, is an error if it was
-/// named, or if the file has no others that can. With [`RejectOptions::strict`] a map that cannot be done always is; so is an effect
-/// on a sector that is not there.
-pub fn reject_wad(wad: &Wad, options: &RejectOptions<'_>) -> Result<RejectOutcome, RejectError> {
-    let all = list_maps(wad);
-    let chosen = choose(&all, &options.maps)?;
-    let is_named = !options.maps.is_empty();
-    // A map may be skipped among others, but to do nothing at all is an error.
-    let insist = is_named || !chosen.iter().any(|m| is_readable(m));
-    let costs: Vec<f64> = chosen.iter().map(|map| kept::cost(wad, map)).collect();
-    let (maps, lumps) = options.units.through(&Phase { name: kept::PHASE, costs: &costs }, || {
-        let mut maps = Vec::with_capacity(chosen.len());
-        let (mut lumps, mut n_bytes) = (Vec::new(), 0u64);
-        for (unit, map) in chosen.iter().copied().enumerate() {
-            let start = Instant::now();
-            let do_map = || match do_map(wad, map, insist, options) {
-                Err(error) if insist || options.strict || matches!(error, RejectError::Rmb(_)) => Err(error),
-                Err(error) => Ok((0, MapStatus::Failed(Box::new(error)), None)),
-                Ok(done) => Ok(done),
-            };
-            let done =
-                if options.units.are_kept() { kept::get(options.units, unit, map, do_map)? } else { Some(do_map()?) };
-            // A map that is for another process.
-            let Some((n_sectors, status, bytes)) = done else { continue };
-            n_bytes += bytes.as_ref().map_or(0, |b| b.len() as u64);
-            // A file with maps that share their lumps may ask for any number of large tables.
-            if i32::try_from(n_bytes).is_err() {
-                return Err(WadError::TooLarge { lump: lumps.len(), end: n_bytes }.into());
-            }
-            lumps.extend(bytes.map(|b| (map, b)));
-            maps.push(MapOutcome { name: map.name(), n_sectors, status, time: start.elapsed() });
-        }
-        Ok::<_, RejectError>((maps, lumps))
-    })?;
-    let is_done = |m: &MapOutcome| matches!(m.status, MapStatus::Written(_) | MapStatus::KeptHandMade);
-    let first_failure = maps.iter().find_map(|m| match &m.status {
-        MapStatus::Failed(error) => Some(error),
-        _ => None,
-    });
-    match first_failure {
-        Some(error) if !maps.iter().any(is_done) => Err(RejectError::clone(error)),
-        _ => Ok(RejectOutcome { bytes: wad.with_rejects(&lumps)?, maps }),
-    }
-}
-
 fn is_readable(map: &MapLumps) -> bool {
     map.format() != MapFormat::Console
-}
-
-/// The requested maps, in file order.
-fn choose<'m>(all: &'m [MapLumps], names: &[String]) -> Result<Vec<&'m MapLumps>, RejectError> {
-    if all.is_empty() {
-        return Err(RejectError::NoMaps);
-    }
-    if let Some(missing) = names.iter().find(|name| !all.iter().any(|m| m.name().is(name))) {
-        return Err(RejectError::NoSuchMap(missing.clone()));
-    }
-    let requested = |m: &&MapLumps| names.is_empty() || names.iter().any(|name| m.name().is(name));
-    Ok(all.iter().filter(requested).collect())
 }
 
 /// How many bytes a table may have behind its end: less than what some tools fill lumps up to.

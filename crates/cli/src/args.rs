@@ -56,7 +56,7 @@ pub(crate) struct Arguments {
 pub(crate) enum Command {
     /// Build the visibility table of a floor plan, a Doom map, a scene in space, or a Quake map
     Build(Box<BuildArgs>),
-    /// Write the REJECT lumps of a WAD; all other lumps stay as they are
+    /// Write the REJECT lumps of a WAD, or of all WADs in a folder; all other lumps stay as they are
     Reject(RejectArgs),
     /// Write the visibility of a Quake or Quake II map; everything else stays as it is
     Vis(VisArgs),

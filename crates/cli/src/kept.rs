@@ -34,7 +34,8 @@ pub(crate) struct ResumeArgs {
 impl ResumeArgs {
     pub(crate) fn path(&self, output: &Path) -> PathBuf {
         self.state.clone().unwrap_or_else(|| {
-            let mut name = output.as_os_str().to_owned();
+            // Beside a folder too, whose name may end in a slash.
+            let mut name = output.components().as_path().as_os_str().to_owned();
             name.push(".state");
             name.into()
         })
@@ -153,13 +154,14 @@ impl Inputs {
 
     /// Refuses files that are not what was looked at: what was read is something else.
     fn check(&self) -> Result<(), KeptError> {
-        for looked in &self.0 {
-            let is_same = looked.is_same();
-            if !is_same.map_err(|source| InputError::Open { path: looked.path.clone(), source })? {
-                return Err(KeptError::Changed(looked.path.clone()));
-            }
-        }
-        Ok(())
+        (0..self.0.len()).try_for_each(|nth| self.check_file(nth))
+    }
+
+    /// Refuses one of them if it is not what was looked at.
+    pub(crate) fn check_file(&self, nth: usize) -> Result<(), KeptError> {
+        let Some(looked) = self.0.get(nth) else { return Ok(()) };
+        let is_same = looked.is_same().map_err(|source| InputError::Open { path: looked.path.clone(), source })?;
+        if is_same { Ok(()) } else { Err(KeptError::Changed(looked.path.clone())) }
     }
 
     fn paths(&self) -> impl Iterator<Item = &Path> {
@@ -274,7 +276,12 @@ impl<'a> Kept<'a> {
 
     /// Before anything is written that the command makes: an error if another worker of the job has written it.
     pub(crate) fn before_writing(&self) -> Result<(), KeptError> {
-        Ok(self.job.map_or(Ok(()), |job| job.begin_writing(&self.outputs))?)
+        self.before_writing_files(&self.outputs)
+    }
+
+    /// The same where it is known only now which files that are.
+    pub(crate) fn before_writing_files(&self, files: &[PathBuf]) -> Result<(), KeptError> {
+        Ok(self.job.map_or(Ok(()), |job| job.begin_writing(files))?)
     }
 
     /// After the end: results are of no use any more if all went well. Otherwise, if the program was interrupted, they are kept; returns what to say of that.

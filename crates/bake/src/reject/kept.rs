@@ -1,9 +1,9 @@
 //! Maps as units of work: what they cost, and their tables as results that are kept.
 
-use super::{Done, MapStatus, RejectError, RejectSummary};
+use super::{Done, MapStatus, RejectSummary};
 use sightlines_formats::doom::{MapLump, MapLumps};
 use sightlines_formats::{RejectTable, Wad};
-use sightlines_progress::Units;
+use sightlines_progress::{Halt, Units};
 
 pub(crate) const PHASE: &str = "maps";
 
@@ -24,18 +24,17 @@ const SKIPPED: u8 = 1;
 const FAILED: u8 = 2;
 const WRITTEN: u8 = 3;
 
-/// What was done with a map, from the store or now; `None` for one that is for another process.
-pub(crate) fn get(
+/// What was done with a map, from the store or now; `None` for one that is for another process, and none of it if what the store has is damaged.
+pub(crate) fn get<E: From<Halt>>(
     units: Units<'_>,
     unit: usize,
-    map: &MapLumps,
-    do_map: impl Fn() -> Result<Done, RejectError>,
-) -> Result<Option<Done>, RejectError> {
+    mut do_map: impl FnMut() -> Result<Done, E>,
+) -> Result<Option<Option<Done>>, E> {
     let Some(bytes) = units.get(PHASE, unit, || do_map().map(|done| encode(&done)))? else { return Ok(None) };
     match bytes.first() {
         // Why it failed is found out again: a map that cannot be done mostly fails at once.
-        Some(&FAILED) => do_map().map(Some),
-        _ => decode(&bytes).map(Some).ok_or_else(|| RejectError::Kept(map.name())),
+        Some(&FAILED) => do_map().map(|done| Some(Some(done))),
+        _ => Ok(Some(decode(&bytes))),
     }
 }
 

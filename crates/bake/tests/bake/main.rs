@@ -14,6 +14,7 @@ mod quake;
 mod reject;
 mod reject_text;
 mod reject_units;
+mod reject_wads;
 mod space;
 mod stab;
 mod tile;

@@ -71,7 +71,7 @@ pub(crate) fn with_door(n_sectors: u16) -> Sketch {
     two_rooms(n_sectors, |map, line| map.open(&line, 1, 0))
 }
 
-fn with_wall(n_sectors: u16) -> Sketch {
+pub(crate) fn with_wall(n_sectors: u16) -> Sketch {
     two_rooms(n_sectors, |map, line| map.line(line, BLOCKING, Some(1), Some(0)))
 }
 

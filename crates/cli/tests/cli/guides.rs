@@ -2,7 +2,7 @@
 
 use crate::common::dxf::small_drawing;
 use crate::common::quake::row_of_leafs;
-use crate::common::{Folder, levels};
+use crate::common::{Folder, bytes, levels};
 use sightlines::formats::quake::BspFormat;
 use std::path::{Path, PathBuf};
 
@@ -222,14 +222,20 @@ fn the_guide_for_quake_works() {
 #[test]
 fn the_guide_for_clusters_works() {
     let folder = Folder::new();
-    assert_eq!(follow(&folder, "when-one-machine-is-not-enough.md"), 20);
+    crate::reject_folder::add_wads(&folder);
+    assert_eq!(follow(&folder, "when-one-machine-is-not-enough.md"), 22);
+    folder.run(&["reject", "wads", "-o", "whole-wads"]).expect(0);
+    assert!(bytes(&folder, "new-wads") == bytes(&folder, "whole-wads"));
     assert!(folder.read("tower.pvs") == folder.read("whole.pvs"));
     assert!(!folder.path("tower.pvs.state").exists());
 }
 
 #[test]
 fn the_guide_for_doom_works() {
-    assert!(follow(&Folder::with_wad(), "doom.md") >= 5);
+    let folder = Folder::with_wad();
+    crate::reject_folder::add_wads(&folder);
+    assert!(follow(&folder, "doom.md") >= 6);
+    assert_eq!(crate::common::names(&folder.path("new-wads")).len(), 3);
 }
 
 #[test]

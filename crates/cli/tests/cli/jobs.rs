@@ -5,7 +5,7 @@ use crate::common::{Folder, wad};
 use serde_json::{Value, json};
 use std::process::{Command, Stdio};
 
-/// Command lines for a folder with `tower.glb`, `map.bsp` and `maps.wad`, each with what it writes.
+/// Command lines for the folder of [`inputs`], each with the file that it writes.
 pub(crate) const COMMANDS: [(&str, &str); 4] = [
     ("build tower.glb --method multifocal --grid 5,3,1 --planes 3 -o OUT", "out.pvs"),
     ("build tower.glb -o OUT", "out.pvs"),
@@ -21,6 +21,7 @@ pub(crate) fn inputs() -> Folder {
     folder.write("map.bsp", map.bsp);
     folder.write("map.prt", map.prt);
     folder.write("maps.wad", wad(&["MAP01", "MAP02", "MAP03", "MAP04"]));
+    crate::reject_folder::add_wads(&folder);
     folder
 }
 

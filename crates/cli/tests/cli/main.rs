@@ -32,6 +32,7 @@ mod portals;
 mod progress;
 mod region;
 mod reject;
+mod reject_folder;
 mod render;
 mod resume;
 mod same_bytes;

@@ -5,7 +5,7 @@ use serde_json::json;
 use sightlines::formats::doom::{DoomMap, list_maps};
 use sightlines::formats::{RejectTable, Wad};
 
-fn tables(bytes: Vec<u8>) -> Vec<Option<RejectTable>> {
+pub(crate) fn tables(bytes: Vec<u8>) -> Vec<Option<RejectTable>> {
     let wad = Wad::parse(bytes).expect("a sound WAD");
     let table =
         |map: DoomMap| map.reject().map(|lump| RejectTable::from_bytes(map.n_sectors(), lump).expect("a full table"));

@@ -1,8 +1,8 @@
 //! Jobs on Slurm: its daemons on the loopback device, in a folder and on ports of their own, and what becomes of a job when they are killed.
 
-use crate::common::Folder;
+use crate::common::{Folder, bytes};
 use crate::jobs::{COMMANDS, inputs};
-use crate::workers::{bytes, commands};
+use crate::workers::commands;
 use std::net::TcpListener;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};

@@ -1,17 +1,18 @@
 //! Workers: processes that go through all of a job together.
 
-use crate::common::Folder;
+use crate::common::{Folder, bytes};
 use crate::jobs::{COMMANDS, inputs};
 use serde_json::{Value, json};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// What is shared here: the commands of other tests of jobs, one that is written row by row, and tiles; each with what it writes.
+/// What is shared here: the commands of other tests of jobs, one that is written row by row, tiles, and a folder of WADs; each with what it writes.
 pub(crate) fn commands() -> Vec<(&'static str, &'static str)> {
     let more = [
         ("build tower.glb --method shafts --grid 5,3,1 --class large -o OUT", "out.pvz"),
         ("build tower.glb --certify --stab-trees=1000 -o OUT", "out.pvs"),
         ("tiles build city/world.json --method shafts -o OUT", "out"),
+        ("reject wads --force -o OUT", "out-wads"),
     ];
     COMMANDS.into_iter().chain(more).collect()
 }
@@ -36,15 +37,6 @@ fn end(worker: Child) -> (Option<i32>, Value, String) {
     let done = worker.wait_with_output().unwrap();
     let err = String::from_utf8_lossy(&done.stderr).into_owned();
     (done.status.code(), serde_json::from_slice(&done.stdout).unwrap_or_default(), err)
-}
-
-/// All files of an output, which may be a folder.
-pub(crate) fn bytes(folder: &Folder, out: &str) -> Vec<(String, Vec<u8>)> {
-    let path = folder.path(out);
-    if !path.is_dir() {
-        return vec![(String::new(), folder.read(out))];
-    }
-    crate::common::names(&path).into_iter().map(|name| (name.clone(), folder.read(&format!("{out}/{name}")))).collect()
 }
 
 /// Three workers write what the command writes; each shard is done by one of them, and the output is written by one.

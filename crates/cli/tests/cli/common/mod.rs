@@ -134,6 +134,15 @@ pub(crate) fn names(folder: &Path) -> Vec<String> {
     names
 }
 
+/// The names and bytes of all files of an output, which may be a folder; a file has no name.
+pub(crate) fn bytes(folder: &Folder, out: &str) -> Vec<(String, Vec<u8>)> {
+    let path = folder.path(out);
+    if !path.is_dir() {
+        return vec![(String::new(), folder.read(out))];
+    }
+    names(&path).into_iter().map(|name| (name.clone(), folder.read(&format!("{out}/{name}")))).collect()
+}
+
 /// A WAD of the maps of these names, with a lump before and one after. The map MAP02, if there is one, has
 /// a REJECT lump that blinds sector 0.
 pub(crate) fn wad(maps: &[&str]) -> Vec<u8> {

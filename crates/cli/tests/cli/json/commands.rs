@@ -287,6 +287,9 @@ fn maps(all: &mut Results) {
     all.line(&folder, "info of a WAD", "info out.wad");
     folder.write("some.wad", one_bad_map());
     all.line(&folder, "reject", "reject some.wad -o others.wad");
+    crate::reject_folder::add_wads(&folder);
+    folder.write("wads/noise.wad", "no WAD");
+    all.line(&folder, "reject of a folder", "reject wads -o new-wads");
     all.line(&folder, "build of a plan", "build maps.wad --map MAP01 -o o.pvs");
     let (name, source) = (LumpName::new("MAP01").expect("a short name"), doom_map(4));
     let n = usize::from(source.n_sectors);

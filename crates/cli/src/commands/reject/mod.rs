@@ -1,18 +1,22 @@
-//! `reject`: the REJECT lumps of a WAD.
+//! `reject`: the REJECT lumps of a WAD, or of all WADs in a folder.
+
+mod folder;
+mod outcome;
+
+pub(crate) use outcome::Outcome;
 
 use crate::Answer;
 use crate::file_error::{FileError, from_file_error};
 use crate::kept::{Identity, Inputs, Interrupted, Keeping, Kept, KeptError, ResumeArgs};
 use crate::memory::{self, MemoryArgs};
-use crate::output::{self, count, percent, seconds};
+use crate::output::{self, count};
 use crate::progress::Bar;
-use serde::Serialize;
+use outcome::{Map, WadOutcome};
 use sightlines::bake::{MapOutcome, MapStatus, RejectError, RejectOptions, RejectSummary, reject_wad};
 use sightlines::formats::Wad;
 use sightlines::formats::doom::RmbFile;
-use std::fmt;
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 /// Why `reject` fails; exit code 2.
 #[derive(Debug, thiserror::Error)]
@@ -23,6 +27,18 @@ pub(crate) enum Error {
     /// The REJECT lumps of a WAD cannot be built.
     #[error("{}: {source}", path.display())]
     Reject { path: PathBuf, source: Box<RejectError> },
+    /// A folder without WADs.
+    #[error("{}: there are no WADs in the folder", .0.display())]
+    NoWads(PathBuf),
+    /// A map that was named and is in no WAD of a folder.
+    #[error("{}: map {name} is in none of the WADs in the folder that can be read", path.display())]
+    NoSuchMap { path: PathBuf, name: String },
+    /// A folder of which no WAD can be done.
+    #[error("{}: none of the WADs in the folder {why}", path.display())]
+    NoneDone { path: PathBuf, why: String },
+    /// Effects for all WADs of a folder.
+    #[error("{}: --rmb is for one WAD, and this is a folder: its effects are on sectors by number, which are others in each file", .0.display())]
+    EffectsOfFolder(PathBuf),
     /// Results cannot be kept, or taken up.
     #[error(transparent)]
     Kept(#[from] KeptError),
@@ -35,17 +51,22 @@ from_file_error!(Error);
 
 /// Arguments of `reject`.
 #[derive(Debug, clap::Args)]
+#[command(
+    after_help = "Of a folder, all files in it whose names end in .wad, in any case, are done in the order of their names, but for hidden ones; not those in \
+                  folders below. Each is written under its name into the other folder once the tables of all are there. A WAD without maps is skipped. One \
+                  that cannot be done, or is no WAD, is named and left out, and the others are done; with --strict nothing is written."
+)]
 pub(crate) struct RejectArgs {
-    /// The WAD to read
+    /// The WAD to read, or a folder of WADs
     #[arg(value_name = "IN.wad")]
     input: PathBuf,
-    /// Process only this map; repeatable
+    /// Process only this map; repeatable. Of a folder, those maps of these names that its WADs have
     #[arg(long, help_heading = "Input", value_name = "NAME")]
     map: Vec<String>,
     /// Also replace tables with hand-made effects (asymmetric, or a sector rejected from itself)
     #[arg(long, help_heading = "Method")]
     force: bool,
-    /// Make the effects of this option file of RMB: BLIND and SAFE 0 and 1, INCLUDE, EXCLUDE
+    /// Make the effects of this option file of RMB: BLIND and SAFE 0 and 1, INCLUDE, EXCLUDE; not for a folder
     #[arg(long, help_heading = "Method", value_name = "FILE.rej")]
     rmb: Option<PathBuf>,
     /// Stop at a map that cannot be done and write nothing, instead of doing the others
@@ -58,7 +79,7 @@ pub(crate) struct RejectArgs {
     pub(crate) memory: MemoryArgs,
     #[command(flatten)]
     pub(crate) resume: ResumeArgs,
-    /// The WAD to write; may be the input
+    /// The WAD to write; may be the input. Of a folder, another folder, which is made if it is not there: files of other names in it stay
     #[arg(short, long, help_heading = "Output", value_name = "OUT.wad")]
     pub(crate) output: PathBuf,
     /// Print the result as JSON
@@ -76,24 +97,23 @@ pub(crate) fn run(args: &RejectArgs, show_progress: bool) -> Result<Answer, Erro
 pub(crate) fn make(args: &RejectArgs, keeping: Keeping<'_>, show_progress: bool) -> Result<Outcome, Error> {
     crate::threads::use_only(args.threads);
     args.memory.watch();
+    if args.input.is_dir() {
+        return folder::make(args, keeping, show_progress).map(Outcome::Folder);
+    }
+    make_wad(args, keeping, show_progress).map(Outcome::Wad)
+}
+
+fn make_wad(args: &RejectArgs, keeping: Keeping<'_>, show_progress: bool) -> Result<WadOutcome, Error> {
     // It may be the WAD that is read.
     output::check(&[], &[&args.output])?;
     let files = std::iter::once(&args.input).chain(&args.rmb).map(PathBuf::as_path);
     let inputs = Inputs::look(keeping, files)?;
     let wad = Wad::read(&args.input)?;
     let rmb = args.rmb.as_ref().map(RmbFile::read).transpose()?;
-    let kept = Kept::open(keeping, &inputs, &[&args.output], || args.identity(&inputs))?;
-    let made = || -> Result<Outcome, Error> {
-        let bar = Bar::new("visibility of sectors", show_progress);
-        let options = RejectOptions {
-            maps: args.map.clone(),
-            force: args.force,
-            strict: args.strict,
-            rmb: rmb.as_ref(),
-            threads: args.threads,
-            progress: Some(&bar),
-            units: kept.units(),
-        };
+    let kept = Kept::open(keeping, &inputs, &[&args.output], || args.identity(&inputs, &[]))?;
+    let made = || -> Result<WadOutcome, Error> {
+        let bar = Bar::new(BAR, show_progress);
+        let options = RejectOptions { rmb: rmb.as_ref(), ..args.options(&bar, &kept) };
         let outcome = reject_wad(&wad, &options);
         drop(bar);
         let outcome = outcome.map_err(|source| {
@@ -107,9 +127,17 @@ pub(crate) fn make(args: &RejectArgs, keeping: Keeping<'_>, show_progress: bool)
         output::save(&args.output, &outcome.bytes)?;
         warn(&args.input, &outcome.maps);
         let maps = outcome.maps.iter().map(Map::from).collect();
-        Ok(Outcome { out: args.output.display().to_string(), maps, peak_bytes: memory::peak_bytes() })
+        Ok(WadOutcome { out: args.output.display().to_string(), maps, peak_bytes: memory::peak_bytes() })
     };
     let made = made();
+    finish(kept, made)
+}
+
+/// What the bar is of.
+const BAR: &str = "visibility of sectors";
+
+/// Ends the run: an error if it was interrupted.
+fn finish<T>(kept: Kept<'_>, made: Result<T, Error>) -> Result<T, Error> {
     match kept.finish(made.is_ok()) {
         Some(interrupted) => Err(Error::Interrupted(interrupted)),
         None => made,
@@ -117,11 +145,27 @@ pub(crate) fn make(args: &RejectArgs, keeping: Keeping<'_>, show_progress: bool)
 }
 
 impl RejectArgs {
+    /// Those of the bake, without effects.
+    fn options<'a>(&self, bar: &'a Bar, kept: &'a Kept<'_>) -> RejectOptions<'a> {
+        RejectOptions {
+            maps: self.map.clone(),
+            force: self.force,
+            strict: self.strict,
+            rmb: None,
+            threads: self.threads,
+            progress: Some(bar),
+            units: kept.units(),
+        }
+    }
+
     /// What decides the results of units. A new argument does not compile until it is decided whether it is part of that.
-    fn identity(&self, inputs: &Inputs) -> Identity {
+    ///
+    /// * `names`: those of the WADs of a folder
+    fn identity(&self, inputs: &Inputs, names: &[&OsStr]) -> Identity {
         let Self { input: _, map, force, rmb: _, strict, threads: _, memory: _, resume: _, output: _, json: _ } = self;
         let mut identity = Identity::new("reject", inputs);
         identity.debug("options", &(map, force, strict));
+        names.iter().for_each(|name| identity.debug("name", name));
         identity
     }
 }
@@ -136,92 +180,6 @@ fn warn(path: &Path, maps: &[MapOutcome]) {
                 tracing::warn!("{}: map {}: {lines} without length left out", path.display(), map.name);
             }
             _ => {}
-        }
-    }
-}
-
-/// What became of a WAD.
-#[derive(Debug, Serialize)]
-pub(crate) struct Outcome {
-    out: String,
-    maps: Vec<Map>,
-    /// The most memory that was in use at once; null where the system does not report it.
-    peak_bytes: Option<u64>,
-}
-
-/// What became of a map.
-#[derive(Debug, Serialize)]
-struct Map {
-    name: String,
-    /// `written`, `kept` (effects made by hand), `skipped` (a format that is not read) or `failed`.
-    status: &'static str,
-    /// Why it failed; null unless it did.
-    reason: Option<String>,
-    n_sectors: u32,
-    /// Ordered pairs; null unless written.
-    n_rejected: Option<u64>,
-    n_effects: Option<u64>,
-    n_disputed_cells: Option<usize>,
-    n_lines_without_length: Option<usize>,
-    n_rounded_crossings: Option<usize>,
-    n_dropped_pieces: Option<usize>,
-    seconds: f64,
-}
-
-impl From<&MapOutcome> for Map {
-    fn from(outcome: &MapOutcome) -> Self {
-        let (status, did) = match &outcome.status {
-            MapStatus::Written(did) => ("written", Some(did)),
-            MapStatus::KeptHandMade => ("kept", None),
-            MapStatus::Failed(_) => ("failed", None),
-            _ => ("skipped", None),
-        };
-        let reason = match &outcome.status {
-            MapStatus::Failed(reason) => Some(reason.to_string()),
-            _ => None,
-        };
-        Self {
-            name: outcome.name.to_string(),
-            status,
-            reason,
-            n_sectors: outcome.n_sectors,
-            n_rejected: did.map(|d| d.n_rejected),
-            n_effects: did.map(|d| d.n_effects),
-            n_disputed_cells: did.map(|d| d.n_disputed_cells),
-            n_lines_without_length: did.map(|d| d.n_lines_without_length),
-            n_rounded_crossings: did.map(|d| d.n_rounded_crossings),
-            n_dropped_pieces: did.map(|d| d.n_dropped_pieces),
-            seconds: outcome.time.as_secs_f64(),
-        }
-    }
-}
-
-impl fmt::Display for Outcome {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for map in &self.maps {
-            writeln!(f, "{map}")?;
-        }
-        let written = self.maps.iter().filter(|map| map.status == "written").count();
-        writeln!(f, "wrote {}: {} of {} built", self.out, written, count(self.maps.len() as u64, "map"))
-    }
-}
-
-impl fmt::Display for Map {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:<8} ", self.name)?;
-        match (self.status, self.n_rejected) {
-            (_, Some(n)) => {
-                let pairs = (f64::from(self.n_sectors) * f64::from(self.n_sectors)).max(1.0);
-                let time = seconds(Duration::from_secs_f64(self.seconds));
-                write!(f, "{:>5} sectors, {:>7} of pairs rejected, {time}", self.n_sectors, percent(n as f64 / pairs))?;
-                match self.n_effects {
-                    Some(n @ 1..) => write!(f, ", {} changed by effects", count(n, "pair")),
-                    _ => Ok(()),
-                }
-            }
-            ("failed", _) => write!(f, "failed: {}", self.reason.as_deref().unwrap_or_default()),
-            ("kept", _) => f.write_str("kept: its table has effects made by hand (--force replaces it)"),
-            _ => f.write_str("skipped: its format is not supported"),
         }
     }
 }
