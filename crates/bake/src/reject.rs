@@ -192,7 +192,7 @@ pub fn reject_wad(wad: &Wad, options: &RejectOptions<'_>) -> Result<RejectOutcom
     // A map may be skipped among others, but to do nothing at all is an error.
     let insist = is_named || !chosen.iter().any(|m| is_readable(m));
     let costs: Vec<f64> = chosen.iter().map(|map| kept::cost(wad, map)).collect();
-    let (maps, lumps) = options.units.through(&Phase { name: kept::PHASE, costs: &costs }, || {
+    let (maps, lumps) = options.units.through(&Phase::new(kept::PHASE, &costs), || {
         let mut maps = Vec::with_capacity(chosen.len());
         let (mut lumps, mut n_bytes) = (Vec::new(), 0u64);
         for (unit, map) in chosen.iter().copied().enumerate() {
