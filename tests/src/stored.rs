@@ -19,7 +19,7 @@ fn result(unit: usize) -> Vec<u8> {
 /// A bake of one phase; how many units it computed.
 fn bake(store: &dyn UnitStore) -> Result<usize, Halt> {
     let units = Units(Some(store));
-    units.begin(&Phase { name: "pairs", costs: &COSTS })?;
+    units.begin(&Phase::new("pairs", &COSTS))?;
     let mut n_computed = 0;
     for unit in 0..COSTS.len() {
         let found = units.get("pairs", unit, || {
@@ -60,7 +60,7 @@ pub fn journals() -> Vec<Vec<u8>> {
     (1..=COSTS.len())
         .map(|n| {
             let journal = open(&path).expect("a new file");
-            journal.begin(&Phase { name: "pairs", costs: &COSTS }).expect("a phase");
+            journal.begin(&Phase::new("pairs", &COSTS)).expect("a phase");
             (0..n).for_each(|unit| journal.save("pairs", unit, &result(unit)).expect("a result"));
             drop(journal);
             fs::read(&path).expect("a file").clone()

@@ -155,6 +155,11 @@ impl Writer {
         Self(checksum.to_le_bytes().to_vec())
     }
 
+    /// The bytes, without a frame.
+    pub(crate) fn into_bytes(self) -> Vec<u8> {
+        self.0
+    }
+
     pub(crate) fn byte(&mut self, x: u8) {
         self.0.push(x);
     }
@@ -238,6 +243,11 @@ pub(crate) struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
+    /// Reads bytes without a frame, as [`Writer::into_bytes`] gives them, in the newest version.
+    pub(crate) const fn of(bytes: &'a [u8]) -> Self {
+        Self { bytes, at: 0, version: VERSION }
+    }
+
     /// Whether the frame has the newest version, and not the first one.
     pub(crate) fn is_newer(&self) -> bool {
         self.version > FIRST_VERSION

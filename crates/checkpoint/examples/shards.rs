@@ -7,7 +7,7 @@ use std::time::Duration;
 /// The sum of the squares of the numbers below 12, one unit for each.
 fn sum(units: Units<'_>) -> Result<u64, Halt> {
     let costs: Vec<f64> = (0..12).map(f64::from).collect();
-    units.through(&Phase { name: "squares", costs: &costs }, || {
+    units.through(&Phase::new("squares", &costs), || {
         let mut sum = 0;
         for unit in 0..costs.len() {
             let square = || Ok::<_, Halt>((unit as u64 * unit as u64).to_le_bytes().to_vec());

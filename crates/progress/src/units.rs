@@ -4,13 +4,28 @@ use crate::Cancelled;
 use std::fmt;
 use std::ops::Range;
 
-/// A phase of a bake: units whose results depend on the input, the options and the results of earlier phases, and not on each other.
+/// A phase of a bake: units whose results depend on the input, the options and the results of earlier phases, and not on each other,
+/// unless they are a chain.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Phase<'a> {
     /// Its name, different from that of any other phase of the bake: lower-case letters and hyphens.
     pub name: &'static str,
     /// The predicted cost of each unit, in proportion to time; its length is the number of units. Finite, and not negative.
     pub costs: &'a [f64],
+    /// Whether each unit depends on the results of all units before it. Then one process goes through all of them, in order.
+    pub is_chain: bool,
+}
+
+impl<'a> Phase<'a> {
+    /// A phase whose units do not depend on each other.
+    pub const fn new(name: &'static str, costs: &'a [f64]) -> Self {
+        Self { name, costs, is_chain: false }
+    }
+
+    /// A phase each of whose units depends on those before it.
+    pub const fn chain(name: &'static str, costs: &'a [f64]) -> Self {
+        Self { name, costs, is_chain: true }
+    }
 }
 
 /// Why a bake with a store of units ends early.
@@ -48,7 +63,8 @@ pub enum Pass {
 ///
 /// A bake calls [`UnitStore::begin`] once for each phase, in order; then, for its units in any order and from any thread,
 /// [`UnitStore::load`], and where that has nothing and [`UnitStore::wants`] says so, [`UnitStore::save`] with the result; then
-/// [`UnitStore::end`], which may ask for the same once more ([`Units::through`]). A phase of one unit is what all later ones need: whoever divides the others among processes computes it first. Equal input, options and program give equal phases and equal results, whoever computes them.
+/// [`UnitStore::end`], which may ask for the same once more ([`Units::through`]). A phase of one unit is what all later ones need: whoever divides the others among processes computes it first. A phase that is a chain
+/// ([`Phase::is_chain`]) has one process, which asks for its units in order. Equal input, options and program give equal phases and equal results, whoever computes them.
 pub trait UnitStore: Sync {
     /// A phase begins.
     ///
@@ -232,7 +248,7 @@ mod tests {
     fn results_are_computed_once_and_only_where_they_are_wanted() {
         let store = Even::default();
         let units = Units(Some(&store));
-        units.begin(&Phase { name: "numbers", costs: &[1.0; 4] }).unwrap();
+        units.begin(&Phase::new("numbers", &[1.0; 4])).unwrap();
         let n_computed = Mutex::new(0);
         let get = |unit: usize| {
             let result = units.get("numbers", unit, || {
@@ -311,14 +327,14 @@ mod tests {
         let store = Thrice::default();
         let units = Units(Some(&store));
         let (mut n_passes, mut n_last) = (0, 0);
-        let found = units.through(&Phase { name: "numbers", costs: &[1.0; 3] }, || {
+        let found = units.through(&Phase::new("numbers", &[1.0; 3]), || {
             n_passes += 1;
             n_last += usize::from(units.has_all("numbers"));
             (0..3).map(|unit| units.get("numbers", unit, || Ok::<_, Halt>(vec![unit as u8]))).collect()
         });
         let all: Vec<Option<Vec<u8>>> = (0..3).map(|unit| Some(vec![unit])).collect();
         assert_eq!((found, n_passes, n_last), (Ok(all), 3, 1));
-        assert_eq!(Units::default().through(&Phase { name: "numbers", costs: &[] }, || Ok::<_, Halt>(7)), Ok(7));
+        assert_eq!(Units::default().through(&Phase::new("numbers", &[]), || Ok::<_, Halt>(7)), Ok(7));
     }
 
     #[test]
@@ -331,7 +347,7 @@ mod tests {
     fn without_a_store_everything_is_computed() {
         let units = Units::default();
         assert!(!units.are_kept());
-        units.begin(&Phase { name: "numbers", costs: &[] }).unwrap();
+        units.begin(&Phase::new("numbers", &[])).unwrap();
         assert_eq!(units.get("numbers", 7, || Ok::<_, Halt>(vec![1])), Ok(Some(vec![1])));
         assert_eq!(units.get("numbers", 7, || Err(Halt::Cancelled(Cancelled))), Err(Halt::Cancelled(Cancelled)));
         assert_eq!((units.end("numbers"), units.has_all("numbers")), (Ok(Pass::Last), true));

@@ -130,7 +130,7 @@ pub fn levels_with(
         let mut made: BTreeMap<Vec<CellId>, Level> = BTreeMap::new();
         // Each group of cells that comes to be is made once at most: there are as many merges as cells, less one.
         let most = (2 * table.n_cells()).saturating_sub(1);
-        effort.units.begin(&Phase { name: LEVELS, costs: &vec![1.0; most] })?;
+        effort.units.begin(&Phase::new(LEVELS, &vec![1.0; most]))?;
         let mut n_made = 0;
         loop {
             let wanted = groups.cells();
@@ -229,7 +229,7 @@ impl LevelBuilder<'_> {
             counter.step().map_err(Halt::from)?;
             Ok(found)
         };
-        let found = units.through(&Phase { name: FACES, costs: &costs }, || {
+        let found = units.through(&Phase::new(FACES, &costs), || {
             parts.par_iter().enumerate().map(part).collect::<Result<Vec<Vec<_>>, SimplifyError>>()
         })?;
         Ok(found.into_iter().flatten().collect())

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::fmt::{Debug, Display};
 use std::ops::Range;
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// Results of units, by phase and unit.
 pub type Results = BTreeMap<(&'static str, usize), Vec<u8>>;
@@ -14,6 +15,8 @@ pub type Results = BTreeMap<(&'static str, usize), Vec<u8>>;
 pub struct Memory {
     results: Mutex<Results>,
     sizes: Mutex<Vec<(&'static str, Vec<f64>)>>,
+    /// Whether the phase under way is a chain.
+    is_chain: AtomicBool,
     n_saved: Mutex<usize>,
     /// Ends the bake after so many results.
     stop_after: Option<usize>,
@@ -32,11 +35,14 @@ impl UnitStore for Memory {
         assert!(sizes.iter().all(|(name, _)| *name != phase.name), "{} begins twice", phase.name);
         sizes.push((phase.name, phase.costs.to_vec()));
         *self.n_passed.lock().unwrap() = 0;
+        self.is_chain.store(phase.is_chain, Relaxed);
         Ok(())
     }
 
     fn wants(&self, phase: &'static str, unit: usize) -> bool {
-        self.part.is_none_or(|(part, of)| unit % of == part) && self.is_of_pass(phase, unit)
+        // One process does all of a chain.
+        let of_process = if self.is_chain.load(Relaxed) { 0 } else { unit };
+        self.part.is_none_or(|(part, of)| of_process % of == part) && self.is_of_pass(phase, unit)
     }
 
     fn load(&self, phase: &'static str, unit: usize) -> Result<Option<Vec<u8>>, Halt> {
@@ -47,6 +53,10 @@ impl UnitStore for Memory {
     }
 
     fn save(&self, phase: &'static str, unit: usize, result: &[u8]) -> Result<(), Halt> {
+        if self.is_chain.load(Relaxed) {
+            let is_next = unit == 0 || self.results.lock().unwrap().contains_key(&(phase, unit - 1));
+            assert!(is_next, "unit {unit} of the chain {phase} comes before the one that it depends on");
+        }
         let mut n = self.n_saved.lock().unwrap();
         if self.stop_after.is_some_and(|most| *n >= most) {
             return Err(Cancelled.into());
@@ -107,6 +117,10 @@ impl Memory {
             return 0..n;
         }
         let left = self.n_passes - passed;
+        if self.is_chain.load(Relaxed) {
+            // All of it in the last of them.
+            return if left == 1 { 0..n } else { 0..0 };
+        }
         n * (left - 1) / self.n_passes..n * left / self.n_passes
     }
 

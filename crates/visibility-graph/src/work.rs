@@ -124,7 +124,7 @@ impl Effort<'_> {
             let units = (0..ranges.len()).into_par_iter().with_max_len(1);
             units.map_init(|| None, step).collect::<Result<Vec<Result<Vec<R>, E>>, Halt>>()
         };
-        let found = self.units.through(&Phase { name: stage.phase, costs: &costs }, || {
+        let found = self.units.through(&Phase::new(stage.phase, &costs), || {
             self.on_threads(all)?.into_iter().collect::<Result<Vec<Vec<R>>, E>>()
         })?;
         Ok(found.into_iter().flatten().collect())

@@ -168,7 +168,7 @@ pub(super) fn see_all(
         })
     };
     // If others have cells to do, this may end the bake.
-    let found = options.units.through(&Phase { name: PHASE, costs: &costs }, pass)?;
+    let found = options.units.through(&Phase::new(PHASE, &costs), pass)?;
     let mut rows: Vec<CellRow> = vec![CellRow::default(); n];
     found.into_iter().for_each(|(cell, row)| rows[cell] = row.expect("a phase that ends has all its results"));
     Ok(rows)

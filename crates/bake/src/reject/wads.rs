@@ -137,7 +137,7 @@ pub fn reject_wads<W: Borrow<Wad>, E>(
 ) -> Result<Vec<Result<RejectTables, RejectError>>, RejectWadsError<E>> {
     let costs: Vec<f64> = files.iter().flat_map(|file| file.chosen.iter().map(|(_, cost)| *cost)).collect();
     let shares = shares_of(&costs);
-    options.units.through(&Phase { name: kept::PHASE, costs: &costs }, || {
+    options.units.through(&Phase::new(kept::PHASE, &costs), || {
         let mut pass = Pass { shares: &shares, n_begun: 0, before: 0.0, kept: 0.0, is_one: files.len() == 1 };
         let one = |(k, file): (usize, &RejectMaps)| match pass.file(file, || read(k), options) {
             Ok(tables) => Ok(Ok(tables)),

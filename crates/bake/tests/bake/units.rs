@@ -7,14 +7,18 @@ use sightlines_bake::{
     BakeError, BakeInput, BakeOptions, Baked, CellsFrom, CertifyError, RegionBakeOptions, Report, SceneMethod,
     StabBakeError, StabOptions, TableGraph, bake, bake_regions, with_stab_trees,
 };
+use sightlines_certificates::convex::ConvexProofs;
+use sightlines_certificates::plan::PlanProofs;
+use sightlines_certificates::space::BoxProofs;
 use sightlines_formats::quake::Prt;
 use sightlines_formats::{ViewCell, ViewCells};
 use sightlines_geometry::Aabb;
 use sightlines_packed::{PackOptions, SizeClass, pack};
 use sightlines_progress::{Halt, Units};
+use sightlines_pvs::CellId;
 use sightlines_scenes::{CityOptions, OfficeOptions, TowerOptions, city, city_crossings, office, tower};
-use sightlines_stabtree::CertifyOptions;
-use sightlines_testkit::units::{Memory, check_impostor, check_units};
+use sightlines_stabtree::{CertifyOptions, convex_network, plan_network, space_network};
+use sightlines_testkit::units::{Memory, Results, check_impostor, check_units};
 use std::collections::BTreeSet;
 
 /// A bake by units.
@@ -145,37 +149,100 @@ fn stab_trees_of_cells() {
     }
 }
 
-/// Proofs are one unit: kept once they are found, by one of several processes.
+/// Proofs of a table.
+fn proofs(baked: &Baked<TableGraph, Report>) -> impl Fn(Units<'_>, usize) -> Result<Vec<u8>, CertifyError> + '_ {
+    |units, threads| {
+        let options = CertifyOptions { threads, units, ..CertifyOptions::default() };
+        Ok(baked.certify(&options)?.proofs.to_bytes())
+    }
+}
+
+/// Proofs are many units: lines and walks build on each other, what is hidden in space does not.
 #[test]
 fn proofs_of_tables() {
-    let options = OfficeOptions { rooms_x: 4, rooms_y: 2, block: 2, ..OfficeOptions::default() };
-    let (plan, prt) = (office(options).unwrap(), rooms(4, 3));
+    let options = OfficeOptions { rooms_x: 3, rooms_y: 1, block: 2, ..OfficeOptions::default() };
+    let (plan, prt) = (office(options).unwrap(), rooms(4, 2));
     let scene =
         tower(TowerOptions { floors: 1, rooms_x: 2, rooms_y: 1, furniture: 1, ..TowerOptions::default() }).unwrap();
-    let mut others: Vec<Vec<u8>> = Vec::new();
-    for input in [BakeInput::from(&plan), (&scene).into(), (&prt).into()] {
+    for (input, phases, least) in [
+        (BakeInput::from(&plan), &["proofs"][..], 60),
+        ((&scene).into(), &["proofs", "object-proofs", "line-proofs"], 40),
+        ((&prt).into(), &["proofs"], 60),
+    ] {
         let baked = bake(input, &BakeOptions::default()).unwrap();
-        let proofs = |store: &Memory| {
-            let options = CertifyOptions { threads: 1, units: Units(Some(store)), ..CertifyOptions::default() };
-            baked.certify(&options).map(|made| made.proofs.to_bytes())
-        };
-        let plain = baked.certify(&CertifyOptions::default()).unwrap().proofs.to_bytes();
+        let found = check_units(proofs(&baked));
+        assert_eq!(found.iter().map(|(name, _)| *name).collect::<Vec<_>>(), phases);
+        assert!(found.iter().all(|(_, n)| *n > least), "{found:?}");
+        phases.iter().for_each(|phase| check_impostor(proofs(&baked), phase));
+    }
+}
+
+/// Each result of a unit is checked again: those of other tables, and with any byte changed, prove nothing wrong.
+#[test]
+fn kept_proofs_are_not_trusted() {
+    let bakes = |rooms_x: u32| {
+        let options = OfficeOptions { rooms_x, rooms_y: 1, block: 2, ..OfficeOptions::default() };
+        let tower_options = TowerOptions { floors: 1, rooms_x, rooms_y: 1, furniture: 1, ..TowerOptions::default() };
+        let (plan, scene, prt) = (office(options).unwrap(), tower(tower_options).unwrap(), rooms(rooms_x, 2));
+        [BakeInput::from(&plan), (&scene).into(), (&prt).into()]
+            .map(|input| bake(input, &BakeOptions::default()).unwrap())
+    };
+    let kept = |baked: &Baked<TableGraph, Report>| {
         let store = Memory::default();
-        assert_eq!(proofs(&store).unwrap(), plain);
-        assert_eq!(store.phases(), [("proofs", vec![1.0])]);
-        let results = store.into_results();
-        assert_eq!(proofs(&Memory::with(&results).stopping_after(0)).unwrap(), plain);
-        let stopped = proofs(&Memory::default().stopping_after(0));
-        assert!(matches!(stopped, Err(CertifyError::Cancelled(_))), "{stopped:?}");
-        let of_other = proofs(&Memory::default().of_part(1, 3));
-        assert_eq!(of_other, Err(CertifyError::Halted(Halt::Shared)));
-        // What is cut short, or of another table, is noticed.
-        others.push(plain[..plain.len() / 2].to_vec());
-        for other in &others {
-            let wrong = proofs(&Memory::with(&[(("proofs", 0), other.clone())].into()));
-            assert!(matches!(wrong, Err(CertifyError::Halted(Halt::Store(_)))), "{wrong:?}");
+        let bytes = proofs(baked)(Units(Some(&store)), 1).unwrap();
+        (bytes, store.into_results())
+    };
+    let (mut n_refused, mut n_harmless) = (0, 0);
+    for (own, other) in bakes(2).iter().zip(&bakes(3)) {
+        let (plain, results) = kept(own);
+        let with = |changed: &Results| proofs(own)(Units(Some(&Memory::with(changed))), 1);
+        let mut check = |changed: &Results| match with(changed) {
+            Err(CertifyError::Halted(Halt::Store(text))) => {
+                assert!(text.starts_with("the kept result of unit "), "{text}");
+                assert!(text.ends_with("does not fit these cells"), "{text}");
+                n_refused += 1;
+            }
+            // Other proofs, which hold.
+            Ok(bytes) => {
+                check_proofs(own, &bytes);
+                n_harmless += usize::from(bytes != plain);
+            }
+            Err(error) => panic!("{error}"),
+        };
+        // All results of another table that have a place here.
+        let foreign: Results = kept(other).1.into_iter().filter(|(key, _)| results.contains_key(key)).collect();
+        check(&results.iter().chain(&foreign).map(|(key, bytes)| (*key, bytes.clone())).collect());
+        // Every result that says something, with a byte changed.
+        for (k, (key, bytes)) in results.iter().filter(|(_, bytes)| bytes.len() > 3).enumerate().step_by(5) {
+            let mut changed = results.clone();
+            let mut bytes = bytes.clone();
+            let at = (k * 7) % bytes.len();
+            bytes[at] ^= 1 << (k % 8);
+            changed.insert(*key, bytes);
+            check(&changed);
         }
-        others.push(plain);
+    }
+    assert!(n_refused > 30 && n_harmless > 0, "{n_refused} refused, {n_harmless} others");
+}
+
+/// Proofs hold, and prove nothing that the table contradicts.
+fn check_proofs(baked: &Baked<TableGraph, Report>, bytes: &[u8]) {
+    let table = &baked.table;
+    let proven = match &baked.graph {
+        TableGraph::Planar(graph) => PlanProofs::from_bytes(bytes).unwrap().check(&plan_network(graph).unwrap()),
+        TableGraph::Axial(graph) => {
+            let boxes: Vec<_> = table.objects().iter().map(|object| [object.min, object.max]).collect();
+            let network = space_network(graph).unwrap().with_objects(&boxes);
+            BoxProofs::from_bytes(bytes).unwrap().check(&network)
+        }
+        TableGraph::Convex(graph) => ConvexProofs::from_bytes(bytes).unwrap().check(&convex_network(graph).unwrap()),
+        _ => panic!("cells without portals"),
+    };
+    let proven = proven.expect("proofs hold");
+    for a in 0..table.n_cells() as u32 {
+        for b in (0..a).filter(|&b| proven.hidden.has(a, b)) {
+            assert!(!table.sees(CellId(a), CellId(b)), "cells {a} and {b} see each other");
+        }
     }
 }
 

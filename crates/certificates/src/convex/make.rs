@@ -23,6 +23,17 @@ impl ConvexMaker<'_> {
         self.prove(source, targets, solver, most_steps, walk)
     }
 
+    /// The lines and walks that were taken since there were so many ([`Maker::n_taken`]), as bytes for [`Self::take_again`].
+    pub fn taken_since(&self, n_taken: [usize; 2]) -> Vec<u8> {
+        self.bytes_since(n_taken)
+    }
+
+    /// Takes what another maker had taken, when this one has taken the same before it. Each line and walk is checked again. Returns
+    /// whether all were taken; if not, some may be, and the maker is of no more use.
+    pub fn take_again(&mut self, bytes: &[u8]) -> bool {
+        self.take_bytes(bytes, ConvexWalk::proof)
+    }
+
     /// The proofs.
     pub fn finish(self) -> ConvexProofs {
         let (checksum, unproven) = (self.network.checksum(), self.unproven());

@@ -43,6 +43,10 @@ impl ConvexWalk {
     pub fn new(source: u32, targets: Vec<u32>, open: &[bool], blocks: Vec<ConvexBlock>) -> Self {
         Self { source, targets, decisions: Decisions::new(open, blocks) }
     }
+
+    fn proof(&self) -> WalkProof<'_, ConvexBlock> {
+        WalkProof { source: self.source, targets: &self.targets, decisions: &self.decisions }
+    }
 }
 
 /// Proofs of a table of a map.
@@ -71,9 +75,7 @@ impl ConvexProofs {
         if self.checksum != network.checksum() {
             return Err(Refusal::OtherTable);
         }
-        let walks = self.walks.iter();
-        let walks = walks.map(|own| WalkProof { source: own.source, targets: &own.targets, decisions: &own.decisions });
-        check(network, &self.lines, &self.unproven, walks)
+        check(network, &self.lines, &self.unproven, self.walks.iter().map(ConvexWalk::proof))
     }
 }
 

@@ -36,6 +36,10 @@ impl PlanWalk {
     pub fn new(source: u32, open: &[bool], blocks: Vec<PlanBlock>) -> Self {
         Self { source, decisions: Decisions::new(open, blocks) }
     }
+
+    fn proof(&self) -> WalkProof<'_, PlanBlock> {
+        WalkProof { source: self.source, targets: &[], decisions: &self.decisions }
+    }
 }
 
 /// Proofs of a table of a plan.
@@ -64,9 +68,7 @@ impl PlanProofs {
         if self.checksum != network.checksum() {
             return Err(Refusal::OtherTable);
         }
-        let walks = self.walks.iter();
-        let walks = walks.map(|own| WalkProof { source: own.source, targets: &[], decisions: &own.decisions });
-        check(network, &self.lines, &self.unproven, walks)
+        check(network, &self.lines, &self.unproven, self.walks.iter().map(PlanWalk::proof))
     }
 }
 

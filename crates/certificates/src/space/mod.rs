@@ -14,7 +14,7 @@ mod make;
 mod network;
 
 pub use branch::{Branch, Bypass, Claim, Sum};
-pub use make::BoxMaker;
+pub use make::{BoxMaker, CheckedProof};
 pub use network::{Box3, BoxLine, BoxName, BoxNetwork, BoxNetworkError, BoxPortal, Point3};
 
 use crate::pairs::{ObjectPairs, Pairs, ones};

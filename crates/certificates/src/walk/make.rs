@@ -1,7 +1,9 @@
 //! Makes proofs by lines and walks with the help of a solver for single chains.
 
-use super::check::candidates;
+use super::check::{WalkProof, candidates};
+use super::decisions::Replay;
 use super::{Crossing, Decisions, Director, Network, Walk};
+use crate::bytes::{Coded, Reader, Writer};
 use crate::pairs::{Pairs, ones};
 
 /// The answer of a [`ChainSolver`] at a gate; `B` is a reason why a chain is blocked.
@@ -93,6 +95,55 @@ impl<'a, N: Network> Maker<'a, N> {
     /// If there is no such cell.
     pub fn left(&self, source: u32) -> Vec<u32> {
         ones(&self.candidates(source, &[])).collect()
+    }
+
+    /// How many lines and walks were taken.
+    pub fn n_taken(&self) -> [usize; 2] {
+        [self.lines.len(), self.walks.len()]
+    }
+
+    /// The lines and walks that were taken since there were so many of each, as bytes.
+    pub(crate) fn bytes_since(&self, [n_lines, n_walks]: [usize; 2]) -> Vec<u8>
+    where
+        N::Line: Coded,
+        N::Walk: Coded,
+    {
+        let mut writer = Writer::default();
+        writer.list(self.lines.get(n_lines..).unwrap_or_default());
+        writer.list(self.walks.get(n_walks..).unwrap_or_default());
+        writer.into_bytes()
+    }
+
+    /// Takes the lines and walks of such bytes, each of which has to hold and to prove something new. Returns whether all were taken; if
+    /// not, some may be.
+    pub(crate) fn take_bytes(&mut self, bytes: &[u8], proof_of: impl Fn(&N::Walk) -> WalkProof<'_, N::Block>) -> bool
+    where
+        N::Line: Coded,
+        N::Walk: Coded,
+    {
+        let mut reader = Reader::of(bytes);
+        let Ok(lines) = reader.list::<N::Line>() else { return false };
+        let Ok(walks) = reader.list::<N::Walk>() else { return false };
+        reader.end().is_ok()
+            && lines.into_iter().all(|line| self.take_line(line, 1))
+            && walks.into_iter().all(|walk| {
+                let holds = self.repeat(proof_of(&walk));
+                self.walks.extend(holds.then_some(walk));
+                holds
+            })
+    }
+
+    /// Whether a walk proves something new; then it counts as proven.
+    fn repeat(&mut self, WalkProof { source, targets, decisions }: WalkProof<'_, N::Block>) -> bool {
+        let n = self.network.gates().n_cells();
+        if [source].iter().chain(targets).any(|&cell| cell as usize >= n) {
+            return false;
+        }
+        let candidates = self.candidates(source, targets);
+        let mut replay = Replay::new(self.network, decisions);
+        candidates.iter().any(|word| *word != 0)
+            && self.walk.prove(source, &candidates, &mut replay, u64::MAX).is_ok()
+            && replay.is_complete()
     }
 
     /// The pairs that are left open.

@@ -2,9 +2,9 @@
 
 use proptest::prelude::*;
 use sightlines_certificates::plan::{
-    LineForm, NetworkError, PlanBlock, PlanLine, PlanNetwork, PlanPortal, PlanProofs, PlanWalk,
+    LineForm, NetworkError, PlanBlock, PlanLine, PlanMaker, PlanNetwork, PlanPortal, PlanProofs, PlanWalk,
 };
-use sightlines_certificates::{Kind, ReadErrorKind, Refusal, kind_of};
+use sightlines_certificates::{ChainSolver, ChainStep, Kind, ReadErrorKind, Refusal, kind_of};
 
 /// Four rooms in a row. Doors are low, high and low again, so only the first and the last do not see each other.
 fn rooms() -> (Vec<Vec<[f64; 2]>>, Vec<PlanPortal>) {
@@ -46,6 +46,53 @@ fn whole_tables_are_proven() {
     let bytes = proofs().to_bytes();
     assert_eq!(PlanProofs::from_bytes(&bytes), Ok(proofs()));
     assert_eq!(kind_of(&bytes), Ok(Kind::Plan));
+}
+
+/// Answers as the proof by hand does.
+struct ByHand;
+
+impl ChainSolver for ByHand {
+    type Block = PlanBlock;
+
+    fn start(&mut self, _: u32) {}
+
+    fn cross(&mut self, chain: &[u32], _: u32) -> ChainStep<PlanBlock> {
+        if chain.len() == 1 { ChainStep::Open } else { ChainStep::Blocked(block()) }
+    }
+
+    fn back(&mut self) {}
+}
+
+/// What one maker has taken is taken again from its bytes, and checked again; not from bytes that are damaged, nor twice.
+#[test]
+fn what_was_taken_is_checked_again() {
+    let network = network();
+    let mut maker = PlanMaker::new(&network);
+    assert!(proofs().lines.into_iter().all(|line| maker.take_line(line, 1)));
+    let before = maker.n_taken();
+    assert!(maker.prove_hidden(0, &mut ByHand, 99));
+    assert_eq!((before, maker.n_taken()), ([2, 0], [2, 1]));
+    let (all, last) = (maker.taken_since([0, 0]), maker.taken_since(before));
+    let mut other = PlanMaker::new(&network);
+    assert!(other.take_again(&all) && other.take_again(&maker.taken_since([9, 9])));
+    assert!(!other.take_again(&last), "a walk that proves nothing new");
+    assert!((0..all.len()).all(|n| !PlanMaker::new(&network).take_again(&all[..n])));
+    // The impostor: without lines, the walk would enter a cell that is to be hidden.
+    assert!(!PlanMaker::new(&network).take_again(&last));
+    let (mut n_taken, n) = (0, 8 * all.len());
+    for (at, bit) in (0..all.len()).flat_map(|at| (0..8).map(move |bit| (at, bit))) {
+        let mut changed = all.clone();
+        changed[at] ^= 1 << bit;
+        let mut maker = PlanMaker::new(&network);
+        if maker.take_again(&changed) {
+            n_taken += 1;
+            let proofs = maker.finish();
+            assert!(proofs.check(&network).is_ok() && is_true(&proofs));
+        }
+    }
+    assert!(n_taken < n / 2, "{n_taken} of {n}");
+    assert_eq!(maker.finish(), proofs());
+    assert_eq!(other.finish(), proofs());
 }
 
 #[test]

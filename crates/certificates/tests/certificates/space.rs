@@ -2,7 +2,8 @@
 
 use proptest::prelude::*;
 use sightlines_certificates::space::{
-    Box3, BoxLine, BoxMaker, BoxNetwork, BoxNetworkError, BoxPortal, BoxProofs, Branch, Bypass, Claim, Sum,
+    Box3, BoxLine, BoxMaker, BoxNetwork, BoxNetworkError, BoxPortal, BoxProofs, Branch, Bypass, CheckedProof, Claim,
+    Sum,
 };
 use sightlines_certificates::{Kind, NoWall, Refusal, kind_of};
 
@@ -136,6 +137,47 @@ fn objects_are_proven_hidden() {
     assert!(BoxProofs::from_bytes(&empty).is_err());
     assert!([0, 3].iter().all(|&version| BoxProofs::from_bytes(&with_body(&bytes, |body| body[8] = version)).is_err()));
     assert!(BoxProofs::from_bytes(&with_body(&bytes, |body| body[8] = 1)).is_err());
+}
+
+/// What one maker has checked or taken is taken again from its bytes, and checked again; not from bytes that are damaged, nor by a maker for something else.
+#[test]
+fn what_was_checked_is_checked_again() {
+    let (network, walls) = (network().with_objects(&OBJECTS), [WALL]);
+    let [first, second] = boxes_of(&network);
+    let all = || OCTANTS.map(|octant| (octant, past(0))).to_vec();
+    let mut maker = BoxMaker::new(&network, &walls);
+    assert!(maker.check_boxes([&second, &first], all()).is_none() && maker.check_object(&first, 2, all()).is_none());
+    let found = [maker.check_boxes([&first, &second], all()), maker.check_object(&first, 1, all())].map(Option::unwrap);
+    let bytes = CheckedProof::all_to_bytes(&found);
+    assert!(maker.hidden().is_empty(), "checked, and not taken");
+    let mut other = BoxMaker::new(&network, &walls);
+    let again = other.check_bytes(&bytes).unwrap();
+    assert!(found.into_iter().all(|proof| maker.take(proof)) && again.into_iter().all(|proof| other.take(proof)));
+    assert!(lines().into_iter().all(|line| maker.take_line(line, 1)));
+    let lines = [maker.lines_since(0), maker.lines_since(1), maker.lines_since(9)];
+    assert!(other.take_lines_again(&lines[0]) && other.take_lines_again(&lines[2]));
+    assert!(!other.take_lines_again(&lines[1]), "a line that proves nothing new");
+    assert!((0..lines[0].len()).all(|n| !BoxMaker::new(&network, &walls).take_lines_again(&lines[0][..n])));
+    assert!((0..bytes.len()).all(|n| other.check_bytes(&bytes[..n]).is_none()));
+    for (at, bit) in (0..bytes.len()).flat_map(|at| (0..8).map(move |bit| (at, bit))) {
+        let mut changed = bytes.clone();
+        changed[at] ^= 1 << bit;
+        let mut maker = BoxMaker::new(&network, &walls);
+        for proof in maker.check_bytes(&changed).into_iter().flatten() {
+            maker.take(proof);
+        }
+        let proven = maker.finish().check(&network).expect("what is taken holds");
+        assert!(proven.hidden.iter().all(|pair| pair == [0, 1]));
+    }
+    // The impostor: a proof that holds elsewhere. The wall is no wall for another maker, or of another list.
+    let no_walls = [[[4.5, 0.0, 0.0], [4.5, 4.0, 2.0]]];
+    assert!(BoxMaker::new(&network, &no_walls).check_bytes(&bytes).is_none());
+    let (same, same_walls) = (network.clone(), [WALL]);
+    for (network, walls) in [(&same, &walls), (&network, &same_walls)] {
+        let proof = other.check_boxes([&first, &second], all()).unwrap();
+        assert!(!BoxMaker::new(network, walls).take(proof));
+    }
+    assert_eq!(maker.finish(), other.finish());
 }
 
 /// Where all cells that an object touches are hidden, no line gets to it: that needs no proof of its own. One that touches the corridor, too, is not

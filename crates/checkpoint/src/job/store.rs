@@ -267,7 +267,8 @@ impl State {
 
     /// Cuts a phase into shards, and adds it to the manifest.
     fn plan(&mut self, phase: &Phase<'_>) -> Result<(), JobError> {
-        let shards = cut(phase.costs, self.job.manifest.max_shards);
+        // The results of a chain are found one after the other, so others could only wait.
+        let shards = cut(phase.costs, if phase.is_chain { 1 } else { self.job.manifest.max_shards });
         self.job.add_phase(PhasePlan { name: phase.name.to_owned(), n_units: phase.costs.len(), shards })?;
         if phase.costs.is_empty() {
             // Nobody has anything to do for it.

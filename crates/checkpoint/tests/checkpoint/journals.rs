@@ -182,7 +182,7 @@ fn other_units_are_refused() {
     let of = |phase| format!("{}: the results of phase {phase} are of other units than this bake has", path.display());
     assert_eq!(error, of("objects"));
     let journal = open(&path, "a", Opening::Resume).unwrap();
-    let begin = |costs: &[f64]| journal.begin(&Phase { name: "pairs", costs });
+    let begin = |costs: &[f64]| journal.begin(&Phase::new("pairs", costs));
     assert_eq!(begin(&[4.0, 3.0, 2.0, 1.0]), Ok(()));
     assert_eq!(begin(&[4.0, 3.0, 2.0, 1.5]).unwrap_err().to_string(), of("pairs"));
     assert_eq!(journal.n_taken_up(), 8, "what states the division is no result");

@@ -1,5 +1,6 @@
 //! Journals and jobs, with bakes that are toys.
 
+mod chains;
 mod damage;
 mod jobs;
 mod journals;

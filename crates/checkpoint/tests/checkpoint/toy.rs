@@ -33,7 +33,7 @@ fn mix(seed: u64, unit: usize) -> Vec<u8> {
 impl Toy {
     fn phase(&self, units: Units<'_>, name: &'static str, n: usize, seed: u64) -> Result<Vec<u8>, Halt> {
         let costs: Vec<f64> = (0..n).map(|unit| (n - unit) as f64).collect();
-        units.through(&Phase { name, costs: &costs }, || {
+        units.through(&Phase::new(name, &costs), || {
             let mut all = Vec::new();
             for unit in 0..n {
                 let result = units.get(name, unit, || {

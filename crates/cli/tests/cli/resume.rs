@@ -86,6 +86,37 @@ fn a_build_that_is_killed_again_and_again_loses_nothing() {
     assert_eq!(folder.names(), ["out.pvs", "tower.glb"]);
 }
 
+/// Builds with proofs, which are killed whenever they have kept as much again, go on with what they have, and end with the same bytes.
+#[test]
+fn proofs_are_kept_piece_by_piece() {
+    let folder = crate::jobs::inputs();
+    folder.write("office.geojson", Folder::with_office().read("office.geojson"));
+    for input in ["tower.glb", "office.geojson", "map.prt"] {
+        let build = ["build", input, "-o", "out.pvs", "--certify", "-q", "--save-after", "0", "--resume"];
+        folder.run(&build).expect(0);
+        let outputs = ["out.pvs", "out.cert"];
+        let whole = outputs.map(|name| folder.read(name));
+        outputs.iter().for_each(|name| std::fs::remove_file(folder.path(name)).unwrap());
+        let n_bytes = || std::fs::metadata(folder.path(STATE)).map_or(0, |state| state.len());
+        let (step, mut n_kills, mut n_before) = (whole[1].len() as u64 / 8, 0, 0);
+        while !folder.path("out.cert").exists() {
+            let (mut child, least) = (start(&folder, &build), n_bytes() + step);
+            while child.try_wait().unwrap().is_none() && n_bytes() < least {
+                std::thread::sleep(Duration::from_millis(1));
+            }
+            child.kill().unwrap();
+            if child.wait().unwrap().code().is_none() && folder.path(STATE).exists() {
+                let n = journal(&folder).n_taken_up();
+                assert!(n > n_before, "{n} results, of {n_before}");
+                (n_kills, n_before) = (n_kills + 1, n);
+            }
+        }
+        folder.run(&build).expect(0);
+        assert!(outputs.map(|name| folder.read(name)) == whole, "{input}");
+        assert!(n_kills > 1 || cfg!(not(unix)), "{input}: {n_kills} kills");
+    }
+}
+
 /// The impostor: results in the wrong place change the output, so results are taken from the file.
 #[test]
 fn results_that_are_kept_count() {

@@ -3,13 +3,15 @@
 //! The results go to the makers of `sightlines-certificates`, which check each piece with their own code; so a defect
 //! here can leave pairs without a proof, but cannot prove anything wrong.
 
+mod chain;
 mod plan;
 mod space;
 
+pub(crate) use chain::{Steps, through};
 pub use plan::{certify_plan, plan_network};
 pub use space::{ObjectRows, certify_space, space_network};
 
-use sightlines_progress::{Cancelled, Halt, Observer, Phase, Units};
+use sightlines_progress::{Cancelled, Halt, Observer, Units};
 use std::error::Error;
 
 /// How much effort goes into proofs. More effort proves more pairs and never changes what is proven.
@@ -27,8 +29,9 @@ pub struct CertifyOptions<'a> {
     pub threads: usize,
     /// Receives a report for each finished unit (cell, gate or pair of groups), and may cancel.
     pub progress: Option<&'a dyn Observer>,
-    /// Where proofs are kept once all are found: they are one unit of work, as each rests on what those before it leave open. A run
-    /// that is stopped before begins anew, and of several processes one finds them.
+    /// Where the findings of each unit of work are kept, so that a stopped run goes on, and processes share one. A unit is a few cells or
+    /// gates, or a pair of groups, or an object. Lines and walks build on each other, so one process finds all of them, one unit after the
+    /// other; in space, processes share what is hidden. Whatever was kept is checked again before it is used.
     pub units: Units<'a>,
 }
 
@@ -80,38 +83,10 @@ impl<N: Error + 'static> From<Halt> for CertifyError<N> {
     }
 }
 
-/// The phase of units of work.
-const PHASE: &str = "proofs";
+/// The phase of lines and walks, and in space of pairs of groups of cells.
+pub(crate) const PHASE: &str = "proofs";
 
-/// Proofs that are kept, or found and then kept.
-///
-/// * `read`: proofs from bytes, if they are of these cells and portals
-pub(crate) fn kept<P, N: Error + 'static>(
-    units: Units<'_>,
-    find: impl FnOnce() -> Result<P, CertifyError<N>>,
-    write: impl Fn(&P) -> Vec<u8>,
-    read: impl Fn(&[u8]) -> Option<P>,
-) -> Result<P, CertifyError<N>> {
-    let mut find = Some(find);
-    let found = units.through(&Phase { name: PHASE, costs: &[1.0] }, || {
-        let mut found = None;
-        let result = units.get(PHASE, 0, || {
-            let find = find.take().ok_or(Halt::Store("proofs were found, and are lost".to_owned()))?;
-            let proofs = find()?;
-            let bytes = if units.are_kept() { write(&proofs) } else { Vec::new() };
-            found = Some(proofs);
-            Ok::<_, CertifyError<N>>(bytes)
-        })?;
-        match (found, result) {
-            (None, Some(bytes)) => {
-                let unfit = || {
-                    Halt::Store(format!("the kept result of unit 0 of the phase '{PHASE}' does not fit these cells"))
-                };
-                Ok::<_, CertifyError<N>>(Some(read(&bytes).ok_or_else(unfit)?))
-            }
-            (found, _) => Ok(found),
-        }
-    })?;
-    // A phase that ends has all its results.
-    Ok(found.ok_or(Halt::Shared)?)
+/// A result that is none of this unit.
+fn unfit(phase: &str, unit: usize) -> Halt {
+    Halt::Store(format!("the kept result of unit {unit} of the phase '{phase}' does not fit these cells"))
 }

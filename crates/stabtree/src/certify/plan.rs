@@ -1,6 +1,6 @@
 //! Proofs of tables of plans: lines for what is visible, walks for what is hidden.
 
-use super::{CertifyError, CertifyOptions, kept};
+use super::{CertifyError, CertifyOptions, PHASE, Steps, through};
 use crate::search::ones;
 use sightlines_cells::{CellGraph, CellId, Exit, Planar};
 use sightlines_certificates::plan::{
@@ -12,9 +12,6 @@ use sightlines_geometry::{Adaptive, Point2, Portal2, check_coordinate};
 use sightlines_progress::Counter;
 use sightlines_pvs::BitMatrix;
 use sightlines_sightline::{Funnel, FunnelUndo, PlanarCertificate, PlanarWitness};
-
-/// Lines are added in rounds: at first only those that prove at least this many new pairs.
-const ROUNDS: [usize; 3] = [32, 6, 1];
 
 /// Longest sequence of doors in the search for a line between two single cells. Pairs farther apart need a line that
 /// was shot, or stay open.
@@ -38,39 +35,102 @@ pub fn certify_plan(
 ) -> Result<PlanProofs, CertifyError<NetworkError>> {
     assert!(rows.n_rows() == graph.n_cells() && rows.n_cols() == graph.n_cells(), "a row for each cell");
     let network = plan_network(graph).map_err(CertifyError::Network)?;
-    let read = |bytes: &[u8]| PlanProofs::from_bytes(bytes).ok().filter(|proofs| proofs.checksum == network.checksum());
-    kept(options.units, || find(graph, rows, &network, options), PlanProofs::to_bytes, read)
+    let n = graph.n_cells();
+    // Each cell is visited twice: for lines to what it sees, and for a walk to what it does not see.
+    let counter = Counter::new(options.progress, "proofs", 2 * n);
+    let shots = shots(graph, options.chords);
+    let mut order: Vec<u32> = (0..n as u32).collect();
+    order.sort_by_key(|&cell| (rows.count_row(cell as usize), cell));
+    let start = || PlanSteps {
+        graph,
+        rows,
+        shots: &shots,
+        order: &order,
+        maker: PlanMaker::new(&network),
+        most_steps: options.most_steps,
+        most_steps_in_all: options.most_steps_in_all,
+        spent: 0,
+    };
+    let share = 1.0 / (2 * n).max(1) as f64;
+    let found = through(PHASE, [shots.len(), n, n], (&counter, share), options.units, start)?;
+    Ok(found.maker.finish())
 }
 
-fn find(
-    graph: &CellGraph<Planar>,
-    rows: &BitMatrix,
-    network: &PlanNetwork,
-    options: &CertifyOptions<'_>,
-) -> Result<PlanProofs, CertifyError<NetworkError>> {
-    // Each cell is visited twice: for lines to what it sees, and for a walk to what it does not see.
-    let counter = Counter::new(options.progress, "proofs", 2 * graph.n_cells());
-    let mut maker = PlanMaker::new(network);
-    shoot(graph, &mut maker, options.chords);
-    for cell in graph.cell_ids() {
-        Seeker::new(graph, rows, &mut maker, options.most_steps).seek(cell);
-        counter.step()?;
+/// A line that is shot, and a cell that it leaves or enters.
+struct Shot {
+    cell: u32,
+    points: [Point2; 2],
+}
+
+/// Lines for cells, then walks.
+struct PlanSteps<'a> {
+    graph: &'a CellGraph<Planar>,
+    rows: &'a BitMatrix,
+    shots: &'a [Shot],
+    /// The order of walks: the cells that see least come first.
+    order: &'a [u32],
+    maker: PlanMaker<'a>,
+    most_steps: u64,
+    most_steps_in_all: u64,
+    spent: u64,
+}
+
+impl Steps for PlanSteps<'_> {
+    const ROUNDS: [usize; 3] = [32, 6, 1];
+    const COSTS: [f64; 3] = [0.02, 1.0, 1.0];
+    type Line = PlanLine;
+
+    fn shot(&self, shot: usize) -> [PlanLine; 2] {
+        let Shot { cell, points } = self.shots[shot];
+        // Whether it leaves or enters the cell does not matter; where four bytes miss the portal, eight may not.
+        let [p, q] = points.map(|p| [p.x, p.y]);
+        [PlanLine::through(cell, p.map(short), q.map(short)), PlanLine::through(cell, p, q)]
     }
-    for a in 0..graph.n_cells() {
-        for b in rows.iter_ones(a).filter(|&b| b > a) {
-            maker.leave_open(a as u32, b as u32);
+
+    fn take_line(&mut self, line: PlanLine, at_least: usize) -> bool {
+        self.maker.take_line(line, at_least)
+    }
+
+    fn seek(&mut self, step: usize) {
+        Seeker::new(self.graph, self.rows, &mut self.maker, self.most_steps).seek(CellId(step as u32));
+    }
+
+    fn begin_walks(&mut self) {
+        for a in 0..self.graph.n_cells() {
+            for b in self.rows.iter_ones(a).filter(|&b| b > a) {
+                self.maker.leave_open(a as u32, b as u32);
+            }
         }
     }
-    let mut order: Vec<u32> = (0..graph.n_cells() as u32).collect();
-    order.sort_by_key(|&cell| (rows.count_row(cell as usize), cell));
-    let mut left = options.most_steps_in_all;
-    for cell in order {
-        let mut guide = Guide::new(graph, options.most_steps.min(left));
-        maker.prove_hidden(cell, &mut guide, options.most_steps.min(left));
-        left -= guide.n_steps.min(left);
-        counter.step()?;
+
+    fn walk(&mut self, step: usize) {
+        let left = self.most_steps_in_all - self.spent;
+        let mut guide = Guide::new(self.graph, self.most_steps.min(left));
+        self.maker.prove_hidden(self.order[step], &mut guide, self.most_steps.min(left));
+        self.spent += guide.n_steps.min(left);
     }
-    Ok(maker.finish())
+
+    fn spent(&self) -> u64 {
+        self.spent
+    }
+
+    fn spend(&mut self, spent: u64, _: usize) -> bool {
+        let is_left = spent <= self.most_steps_in_all - self.spent;
+        self.spent += if is_left { spent } else { 0 };
+        is_left
+    }
+
+    fn n_taken(&self) -> [usize; 2] {
+        self.maker.n_taken()
+    }
+
+    fn taken_since(&self, n_taken: [usize; 2]) -> Vec<u8> {
+        self.maker.taken_since(n_taken)
+    }
+
+    fn take_again(&mut self, bytes: &[u8]) -> bool {
+        self.maker.take_again(bytes)
+    }
 }
 
 /// The graph in the form that proofs use.
@@ -99,27 +159,22 @@ fn short(x: f64) -> f64 {
     check_coordinate(f64::from(x as f32)).unwrap_or(x)
 }
 
-/// Lines through random points of portals, those that prove most first.
-fn shoot(graph: &CellGraph<Planar>, maker: &mut PlanMaker<'_>, per_portal: u32) {
+/// Lines through random points of portals.
+fn shots(graph: &CellGraph<Planar>, per_portal: u32) -> Vec<Shot> {
     let mut random = Random::new(0x7072_6F6F_6673_0001);
     let bounds = graph.cells().iter().flat_map(|c| &c.polygon).map(|p| [p.x, p.y]);
     let bounds = sightlines_geometry::Aabb::<2>::around(bounds);
     let extent = (bounds.max[0] - bounds.min[0]).max(bounds.max[1] - bounds.min[1]);
-    let mut lines = Vec::new();
+    let mut shots = Vec::new();
     for portal in graph.portals() {
         let (left, right) = (portal.shape.left, portal.shape.right);
         for _ in 0..per_portal {
             let p = right + (left - right) * random.open_unit();
             let q = p + Point2::new(random.open_unit() - 0.5, random.open_unit() - 0.5) * extent;
-            lines.push((portal.cells[0].0, [p, q].map(|p| [short(p.x), short(p.y)]), [p, q].map(|p| [p.x, p.y])));
+            shots.push(Shot { cell: portal.cells[0].0, points: [p, q] });
         }
     }
-    for at_least in ROUNDS {
-        lines.retain(|&(cell, rounded, exact)| {
-            // Whether it leaves or enters the cell does not matter; where four bytes miss the portal, eight may not.
-            ![rounded, exact].into_iter().any(|[p, q]| maker.take_line(PlanLine::through(cell, p, q), at_least))
-        });
-    }
+    shots
 }
 
 /// Which cells reach in front of a portal: errs towards reaching.

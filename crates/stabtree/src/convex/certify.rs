@@ -5,7 +5,7 @@ use super::bound;
 use super::gates::Gates;
 use super::pairs::SequenceTracer;
 use super::vector::{Point3, add, cross, dot, scale};
-use crate::certify::{CertifyError, CertifyOptions, kept};
+use crate::certify::{CertifyError, CertifyOptions, PHASE, Steps, through};
 use sightlines_cells::{CellGraph, Convex, Portal3};
 use sightlines_certificates::convex::{
     ConvexBlock, ConvexCut, ConvexLine, ConvexMaker, ConvexNetwork, ConvexNetworkError, ConvexPlane, ConvexPortal,
@@ -14,13 +14,11 @@ use sightlines_certificates::convex::{
 use sightlines_certificates::{ChainSolver, ChainStep};
 use sightlines_geometry::Random;
 use sightlines_geometry::check_coordinate;
-use sightlines_progress::{Cancelled, Counter};
+use sightlines_progress::Counter;
 use sightlines_pvs::BitMatrix;
 use sightlines_sightline::convex::{Block, BoxProof, ConvexCertificate, ConvexNode, HullProof, PlaneProof};
 use sightlines_sightline::{ConvexStabber, Line3, StabLimits, Verdict};
 
-/// Lines are added in rounds: at first only those that prove at least this many new pairs.
-const ROUNDS: [usize; 3] = [32, 6, 1];
 /// Steps that a stabbing query counts for: it takes about as many times longer than a step in a plan.
 const STEPS_EACH: u64 = 1000;
 /// How often a walk that is too long is repeated with half of its targets.
@@ -47,54 +45,117 @@ pub fn certify_convex(
 ) -> Result<ConvexProofs, CertifyError<ConvexNetworkError>> {
     assert!(rows.n_rows() == graph.n_cells() && rows.n_cols() == graph.n_cells(), "a row for each cell");
     let network = convex_network(graph).map_err(CertifyError::Network)?;
-    let read =
-        |bytes: &[u8]| ConvexProofs::from_bytes(bytes).ok().filter(|proofs| proofs.checksum == network.checksum());
-    kept(options.units, || find(graph, rows, &network, options), ConvexProofs::to_bytes, read)
+    let n = graph.n_cells();
+    let gates = Gates::new(graph);
+    // Lines are sought from each gate and each cell, then walks from each cell.
+    let n_seeks = if options.most_steps > 0 { gates.len() + n } else { 0 };
+    let counter = Counter::new(options.progress, "proofs", n_seeks + n);
+    let shots = shots(&gates, options.chords);
+    let mut order: Vec<u32> = (0..n as u32).collect();
+    order.sort_by_key(|&cell| (rows.count_row(cell as usize), cell));
+    let start = || ConvexSteps {
+        rows,
+        gates: &gates,
+        shots: &shots,
+        order: &order,
+        maker: ConvexMaker::new(&network),
+        seeker: None,
+        guide: Guide::new(&gates, &network),
+        most_steps: options.most_steps,
+        left: options.most_steps_in_all / STEPS_EACH,
+        spent: 0,
+    };
+    let share = 1.0 / (n_seeks + n).max(1) as f64;
+    let found = through(PHASE, [shots.len(), n_seeks, n], (&counter, share), options.units, start)?;
+    Ok(found.maker.finish())
 }
 
-fn find(
-    graph: &CellGraph<Convex>,
-    rows: &BitMatrix,
-    network: &ConvexNetwork,
-    options: &CertifyOptions<'_>,
-) -> Result<ConvexProofs, CertifyError<ConvexNetworkError>> {
-    let gates = Gates::new(graph);
-    let seeks = options.most_steps > 0;
-    // Lines are sought from each gate and each cell, then walks from each cell.
-    let n_seeks = if seeks { gates.len() + graph.n_cells() } else { 0 };
-    let counter = Counter::new(options.progress, "proofs", n_seeks + graph.n_cells());
-    let mut maker = ConvexMaker::new(network);
-    shoot(&gates, &mut maker, options.chords);
-    if seeks {
-        seek(&gates, rows, &mut maker, &counter)?;
+/// Lines for gates and for cells, then walks.
+struct ConvexSteps<'a> {
+    rows: &'a BitMatrix,
+    gates: &'a Gates,
+    shots: &'a [[ConvexLine; 2]],
+    /// The order of walks: the cells that see least come first.
+    order: &'a [u32],
+    maker: ConvexMaker<'a>,
+    /// Made when it is needed: a run that goes on with walks does not need it.
+    seeker: Option<Seeker>,
+    guide: Guide<'a>,
+    most_steps: u64,
+    /// Queries that are left and spent, for all walks together.
+    left: u64,
+    spent: u64,
+}
+
+impl Steps for ConvexSteps<'_> {
+    const ROUNDS: [usize; 3] = [32, 6, 1];
+    const COSTS: [f64; 3] = [0.02, 1.0, 1.0];
+    type Line = ConvexLine;
+
+    fn shot(&self, shot: usize) -> [ConvexLine; 2] {
+        self.shots[shot]
     }
-    for a in 0..graph.n_cells() {
-        for b in rows.iter_ones(a).filter(|&b| b > a) {
-            maker.leave_open(a as u32, b as u32);
+
+    fn take_line(&mut self, line: ConvexLine, at_least: usize) -> bool {
+        self.maker.take_line(line, at_least)
+    }
+
+    fn seek(&mut self, step: usize) {
+        let seeker = self.seeker.get_or_insert_with(|| Seeker::new(self.gates));
+        match step.checked_sub(self.gates.len()) {
+            None => seeker.follow_beams(self.gates, step as u32, self.rows, &mut self.maker),
+            Some(cell) => seeker.follow_sequences(self.gates, cell as u32, self.rows, &mut self.maker),
         }
     }
-    let mut order: Vec<u32> = (0..graph.n_cells() as u32).collect();
-    order.sort_by_key(|&cell| (rows.count_row(cell as usize), cell));
-    let mut guide = Guide::new(&gates, network);
-    let mut left = options.most_steps_in_all / STEPS_EACH;
-    for source in order {
-        let most = options.most_steps / STEPS_EACH;
-        let mut waiting = vec![(maker.left(source), 0)];
+
+    fn begin_walks(&mut self) {
+        self.seeker = None;
+        for a in 0..self.rows.n_rows() {
+            for b in self.rows.iter_ones(a).filter(|&b| b > a) {
+                self.maker.leave_open(a as u32, b as u32);
+            }
+        }
+    }
+
+    fn walk(&mut self, step: usize) {
+        let (source, most) = (self.order[step], self.most_steps / STEPS_EACH);
+        let mut waiting = vec![(self.maker.left(source), 0)];
         while let Some((targets, n_halvings)) = waiting.pop() {
-            guide.left = (most >> n_halvings).min(left);
-            let before = guide.left;
+            self.guide.left = (most >> n_halvings).min(self.left);
+            let before = self.guide.left;
             // If it covers all that is left, the list is empty.
             let listed = if n_halvings == 0 { &[][..] } else { &targets[..] };
-            let is_proven = maker.prove_hidden(source, listed, &mut guide, options.most_steps);
-            left -= before - guide.left;
-            if !is_proven && targets.len() > 1 && n_halvings < MOST_HALVINGS && left > 0 {
+            let is_proven = self.maker.prove_hidden(source, listed, &mut self.guide, self.most_steps);
+            self.spend(before - self.guide.left, 1);
+            if !is_proven && targets.len() > 1 && n_halvings < MOST_HALVINGS && self.left > 0 {
                 let (low, high) = targets.split_at(targets.len() / 2);
                 waiting.extend([(high.to_vec(), n_halvings + 1), (low.to_vec(), n_halvings + 1)]);
             }
         }
-        counter.step()?;
     }
-    Ok(maker.finish())
+
+    fn spent(&self) -> u64 {
+        self.spent
+    }
+
+    fn spend(&mut self, spent: u64, _: usize) -> bool {
+        let Some(left) = self.left.checked_sub(spent) else { return false };
+        self.left = left;
+        self.spent += spent;
+        true
+    }
+
+    fn n_taken(&self) -> [usize; 2] {
+        self.maker.n_taken()
+    }
+
+    fn taken_since(&self, n_taken: [usize; 2]) -> Vec<u8> {
+        self.maker.taken_since(n_taken)
+    }
+
+    fn take_again(&mut self, bytes: &[u8]) -> bool {
+        self.maker.take_again(bytes)
+    }
 }
 
 /// The graph in the form that proofs use.
@@ -118,10 +179,10 @@ fn lines(gate: u32, points: [Point3; 2]) -> [ConvexLine; 2] {
     [ConvexLine::through(gate, a.map(short), b.map(short)), ConvexLine::through(gate, a, b)]
 }
 
-/// Lines through random points of portals, those that prove most first.
-fn shoot(gates: &Gates, maker: &mut ConvexMaker<'_>, per_portal: u32) {
+/// Lines through random points of portals.
+fn shots(gates: &Gates, per_portal: u32) -> Vec<[ConvexLine; 2]> {
     let mut random = Random::new(0x7072_6F6F_6673_0002);
-    let mut shot = Vec::new();
+    let mut shots = Vec::new();
     for gate in (0..gates.len() as u32).step_by(2) {
         for _ in 0..per_portal {
             let (mut sum, mut weights) = ([0.0; 3], 0.0);
@@ -134,61 +195,71 @@ fn shoot(gates: &Gates, maker: &mut ConvexMaker<'_>, per_portal: u32) {
             let way: Point3 = std::array::from_fn(|_| random.open_unit() - 0.5);
             let normal = gates.get(gate).normal;
             let is_back = dot(way, normal) < 0.0;
-            shot.push(lines(gate ^ u32::from(is_back), [from, add(from, scale(way, 1024.0))]));
+            shots.push(lines(gate ^ u32::from(is_back), [from, add(from, scale(way, 1024.0))]));
         }
     }
-    for at_least in ROUNDS {
-        shot.retain(|both| !both.iter().any(|line| maker.take_line(*line, at_least)));
-    }
+    shots
 }
 
 /// Searches for lines to visible cells that have none yet: by beams, then by sequences.
-fn seek(gates: &Gates, rows: &BitMatrix, maker: &mut ConvexMaker<'_>, counter: &Counter<'_>) -> Result<(), Cancelled> {
-    let mut through = BitMatrix::new(gates.len(), gates.n_cells());
-    for gate in 0..gates.len() {
-        through.row_mut(gate).copy_from_slice(&bound::seen_through(gates, gate as u32));
+struct Seeker {
+    /// For each gate the cells that may be seen through it.
+    through: BitMatrix,
+    stabber: ConvexStabber,
+    beams: BeamTracer,
+    sequences: SequenceTracer,
+}
+
+impl Seeker {
+    fn new(gates: &Gates) -> Self {
+        let mut through = BitMatrix::new(gates.len(), gates.n_cells());
+        for gate in 0..gates.len() {
+            through.row_mut(gate).copy_from_slice(&bound::seen_through(gates, gate as u32));
+        }
+        let stabber = ConvexStabber::new(StabLimits::default());
+        Self { through, stabber, beams: BeamTracer::new(gates), sequences: SequenceTracer::new(gates) }
     }
-    let mut stabber = ConvexStabber::new(StabLimits::default());
-    let mut take = |chain: &[u32], maker: &mut ConvexMaker<'_>| {
+
+    /// Searches through a gate.
+    fn follow_beams(&mut self, gates: &Gates, gate: u32, rows: &BitMatrix, maker: &mut ConvexMaker<'_>) {
+        let from = gates.get(gate).from;
+        let in_doubt = rows.row(from as usize).iter().zip(maker.visible().row(from)).map(|(row, known)| row & !known);
+        let mut in_doubt: Vec<u64> = in_doubt.collect();
+        in_doubt[from as usize / 64] &= !(1 << (from % 64));
+        let traced = self.beams.trace(gates, gate, in_doubt, &self.through);
+        traced.chains.iter().for_each(|chain| self.take(gates, chain, maker));
+    }
+
+    /// Searches from a cell.
+    fn follow_sequences(&mut self, gates: &Gates, a: u32, rows: &BitMatrix, maker: &mut ConvexMaker<'_>) {
+        for b in rows.iter_ones(a as usize).map(|b| b as u32).filter(|&b| b > a) {
+            if !maker.visible().has(a, b)
+                && let Verdict::Visible(chain) = self.sequences.decide(gates, [a, b], &self.through)
+            {
+                self.take(gates, &chain, maker);
+            }
+        }
+    }
+
+    /// Passes on a line through a chain of gates, if cells of it have none yet.
+    fn take(&mut self, gates: &Gates, chain: &[u32], maker: &mut ConvexMaker<'_>) {
         let cells = || chain.iter().map(|&g| gates.get(g).from).chain(chain.last().map(|&g| gates.get(g).to));
         if cells().all(|a| cells().all(|b| a == b || maker.visible().has(a, b))) {
             return;
         }
         let shapes: Vec<&Portal3> = chain.iter().map(|&gate| gates.shape(gate)).collect();
-        match stabber.stab(&shapes, None) {
+        match self.stabber.stab(&shapes, None) {
             Verdict::Visible(line) => {
                 let _ = lines(chain[0], [line.a, line.b]).into_iter().any(|line| maker.take_line(line, 1));
             }
             Verdict::Hidden(_) => {}
             Verdict::Undecided(_) => {
-                if let Verdict::Visible(line) = stabber.stab_finely(&shapes) {
+                if let Verdict::Visible(line) = self.stabber.stab_finely(&shapes) {
                     maker.take_line(ConvexLine::through_sums(chain[0], line.points()), 1);
                 }
             }
         }
-    };
-    let mut beams = BeamTracer::new(gates);
-    for gate in 0..gates.len() as u32 {
-        let from = gates.get(gate).from;
-        let in_doubt = rows.row(from as usize).iter().zip(maker.visible().row(from)).map(|(row, known)| row & !known);
-        let mut in_doubt: Vec<u64> = in_doubt.collect();
-        in_doubt[from as usize / 64] &= !(1 << (from % 64));
-        let traced = beams.trace(gates, gate, in_doubt, &through);
-        traced.chains.iter().for_each(|chain| take(chain, maker));
-        counter.step()?;
     }
-    let mut sequences = SequenceTracer::new(gates);
-    for a in 0..gates.n_cells() as u32 {
-        for b in rows.iter_ones(a as usize).map(|b| b as u32).filter(|&b| b > a) {
-            if !maker.visible().has(a, b)
-                && let Verdict::Visible(chain) = sequences.decide(gates, [a, b], &through)
-            {
-                take(&chain, maker);
-            }
-        }
-        counter.step()?;
-    }
-    Ok(())
 }
 
 /// Searches for a line through each chain, or the reason why there is none.

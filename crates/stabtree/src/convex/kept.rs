@@ -85,7 +85,7 @@ impl ConvexSearch {
     }
 
     fn first_in_units(&mut self, observer: Option<&dyn Observer>, units: Units<'_>) -> Result<(), Halt> {
-        units.through(&Phase { name: FIRST, costs: &[1.0] }, || {
+        units.through(&Phase::new(FIRST, &[1.0]), || {
             let mut is_computed = false;
             let result = units.get(FIRST, 0, || {
                 is_computed = true;
@@ -139,7 +139,7 @@ impl ConvexSearch {
             let cost = |&gate: &u32| (self.state.through.count_row(gate as usize) as f64).powi(2);
             let costs: Vec<f64> = ranges.iter().map(|range| self.order[range.clone()].iter().map(cost).sum()).collect();
             let (mut before, were_done) = (Before::default(), is_done.clone());
-            units.through(&Phase { name: phase, costs: &costs }, || {
+            units.through(&Phase::new(phase, &costs), || {
                 for run in before.runs(&self.state, units.runs(phase), ranges.len()) {
                     before.restore(&mut self.state);
                     is_done.clone_from(&were_done);
@@ -195,7 +195,7 @@ impl ConvexSearch {
             let cost = |cells: &Vec<u32>| cells.iter().map(|&cell| self.pairs_in_doubt(cell).len() as f64).sum();
             let costs: Vec<f64> = chunks.iter().map(cost).collect();
             let mut before = Before::default();
-            units.through(&Phase { name: phase, costs: &costs }, || {
+            units.through(&Phase::new(phase, &costs), || {
                 for run in before.runs(&self.state, units.runs(phase), chunks.len()) {
                     before.restore(&mut self.state);
                     for unit in run {

@@ -35,7 +35,7 @@ impl SpaceSearch<'_> {
     ) -> Result<Done, Halt> {
         let costs: Vec<f64> = all.iter().map(|pair| self.cost_of(*pair)).collect();
         let shares_of_time = shares_of(&costs);
-        let (tasks, done) = units.through(&Phase { name: kept::PAIRS, costs: &costs }, || {
+        let (tasks, done) = units.through(&Phase::new(kept::PAIRS, &costs), || {
             let order = units.in_order(kept::PAIRS, 0..all.len());
             let mut tasks: Vec<(usize, Pair)> = order.into_iter().map(|unit| (unit, all[unit])).collect();
             let (mut done, mut is_first) = (Vec::new(), true);
@@ -137,7 +137,7 @@ impl SpaceSearch<'_> {
     ) -> Result<Done, Halt> {
         let costs: Vec<f64> = (0..self.boxes.len()).map(|object| self.cost_of_object(object)).collect();
         let shares_of_time = shares_of(&costs);
-        let (tasks, done) = units.through(&Phase { name: kept::OBJECTS, costs: &costs }, || {
+        let (tasks, done) = units.through(&Phase::new(kept::OBJECTS, &costs), || {
             let order = units.in_order(kept::OBJECTS, 0..self.boxes.len());
             let mut tasks: Vec<(usize, Vec<u32>)> = order.into_iter().map(|object| (object, vec![0])).collect();
             let (mut done, mut is_first) = (Vec::new(), true);

@@ -124,7 +124,7 @@ pub fn stab_trees<C: Space, F: Follower>(
         counter.step_by(shares[cell], is_kept)?;
         Ok(folded)
     };
-    units.through(&Phase { name: PHASE, costs: &costs }, || {
+    units.through(&Phase::new(PHASE, &costs), || {
         let mut shared = Shared::default();
         let mut forest = StabParts { first_root: vec![0], ..StabParts::default() };
         let mut summary = StabTreesSummary::default();

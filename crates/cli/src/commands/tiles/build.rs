@@ -282,7 +282,7 @@ impl World<'_> {
             Ok(counter.step_by(shares[unit], !is_made)?)
         };
         // If others have tiles to do, this may end the bake.
-        units.through(&Phase { name: PHASE, costs: &costs }, || {
+        units.through(&Phase::new(PHASE, &costs), || {
             if units.has_all(PHASE) {
                 kept.before_writing()?;
             }

@@ -126,7 +126,7 @@ pub fn box_visibility(
     let costs: Vec<f64> = (0..boxes.len()).map(n_asked).collect();
     let shares_of_time = shares_of(&costs);
     on_threads(options.threads, |_| known.mark_within(graph, &places));
-    let unfinished = units.through(&Phase { name: PHASE, costs: &costs }, || {
+    let unfinished = units.through(&Phase::new(PHASE, &costs), || {
         on_threads(options.threads, |threads| {
             let mut unfinished: Vec<Unfinished> = (0..boxes.len()).map(Unfinished::all_of).collect();
             (answer.n_assumed, answer.counters) = (0, ShaftCounters::default());
