@@ -160,8 +160,8 @@ mod tests {
             fs::write(Path::new(&path).join(format!("{kind:?}")), b"").unwrap();
         };
         let dead = 1 << 30;
-        [(Hidden::New, dead), (Hidden::Old, dead), (Hidden::New, std::process::id())]
-            .map(|(kind, pid)| hidden(kind, pid));
+        [Hidden::New, Hidden::Old].iter().for_each(|kind| hidden(*kind, dead));
+        hidden(Hidden::New, std::process::id());
         remove_left(&target);
         let own = Hidden::New.beside(&target, 0).unwrap();
         assert_eq!(names(all.path()), [own.file_name().unwrap().to_str().unwrap(), "levels"]);
