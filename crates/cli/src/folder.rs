@@ -2,6 +2,7 @@
 
 use crate::error::OutputError;
 use sightlines::formats::{Hidden, atomic_write, remove_left};
+use std::cell::OnceCell;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -10,17 +11,18 @@ use std::path::{Path, PathBuf};
 #[derive(Debug)]
 pub(crate) struct NewFolder {
     target: PathBuf,
-    beside: PathBuf,
+    /// None before anything is written: what stands empty for long would be taken for something that a killed process left.
+    beside: OnceCell<PathBuf>,
 }
 
 impl NewFolder {
-    /// Creates a folder that will replace `target`, which must not exist or contain only files whose names are `ours`.
+    /// Expects a folder that will replace `target`, which must not exist or contain only files whose names are `ours`.
     pub(crate) fn new(target: &Path, ours: impl Fn(&str) -> bool) -> Result<Self, OutputError> {
         let failed = |source| OutputError::Folder { path: target.to_owned(), source };
         // Resolves names that end in a dot or a slash.
         let target = match target.canonicalize() {
             Ok(found) => found,
-            Err(error) if error.kind() == io::ErrorKind::NotFound => target.to_owned(),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => behind_link(target),
             Err(error) => return Err(failed(error)),
         };
         // What is put back is there from here on.
@@ -34,37 +36,73 @@ impl NewFolder {
                 }
             }
         }
-        let beside = Hidden::New.beside(&target, 0).ok_or_else(|| failed(io::ErrorKind::InvalidInput.into()))?;
-        fs::create_dir(&beside).map_err(failed)?;
-        Ok(Self { target, beside })
+        // One can be made there.
+        fs::remove_dir(create_beside(&target).map_err(failed)?).map_err(failed)?;
+        Ok(Self { target, beside: OnceCell::new() })
+    }
+
+    fn beside(&self) -> Result<&Path, OutputError> {
+        if self.beside.get().is_none() {
+            let made = create_beside(&self.target);
+            let made = made.map_err(|source| OutputError::Folder { path: self.target.clone(), source })?;
+            return Ok(self.beside.get_or_init(|| made));
+        }
+        Ok(self.beside.get().map_or(&self.target, |beside| beside))
     }
 
     /// Writes a file into it.
     pub(crate) fn save(&self, name: &str, bytes: &[u8]) -> Result<(), OutputError> {
-        Ok(atomic_write(self.beside.join(name), bytes)?)
+        Ok(atomic_write(self.beside()?.join(name), bytes)?)
     }
 
     /// Puts it in its place.
     pub(crate) fn finish(self) -> Result<(), OutputError> {
         let failed = |source| OutputError::Folder { path: self.target.clone(), source };
+        let beside = self.beside()?;
         if !self.target.exists() {
-            return fs::rename(&self.beside, &self.target).map_err(failed);
+            return fs::rename(beside, &self.target).map_err(failed);
         }
-        let old = Hidden::Old.beside(&self.target, 0).ok_or_else(|| failed(io::ErrorKind::InvalidInput.into()))?;
+        let old = free_beside(&self.target, Hidden::Old).map_err(failed)?;
         fs::rename(&self.target, &old).map_err(failed)?;
-        if let Err(error) = fs::rename(&self.beside, &self.target) {
+        if let Err(error) = fs::rename(beside, &self.target) {
             // The old folder is put back; the error above is the one to report.
             let _ = fs::rename(&old, &self.target);
             return Err(failed(error));
         }
-        fs::remove_dir_all(&old).map_err(failed)
+        if let Err(error) = fs::remove_dir_all(&old) {
+            tracing::warn!("{}: what the folder was before cannot be removed: {error}", old.display());
+        }
+        Ok(())
     }
+}
+
+/// What a link leads to that leads nowhere; anything else as it is.
+fn behind_link(target: &Path) -> PathBuf {
+    let behind = fs::read_link(target).map(|to| target.parent().unwrap_or(Path::new("")).join(to));
+    behind.unwrap_or_else(|_| target.to_owned())
+}
+
+/// A hidden path that nothing has.
+fn free_beside(target: &Path, hidden: Hidden) -> io::Result<PathBuf> {
+    for attempt in 0..100 {
+        let path = hidden.beside(target, attempt).ok_or(io::ErrorKind::InvalidInput)?;
+        if fs::symlink_metadata(&path).is_err_and(|error| error.kind() == io::ErrorKind::NotFound) {
+            return Ok(path);
+        }
+    }
+    Err(io::ErrorKind::AlreadyExists.into())
+}
+
+fn create_beside(target: &Path) -> io::Result<PathBuf> {
+    let path = free_beside(target, Hidden::New)?;
+    fs::create_dir(&path)?;
+    Ok(path)
 }
 
 impl Drop for NewFolder {
     fn drop(&mut self) {
         // Nothing is left once the folder is in its place.
-        let _ = fs::remove_dir_all(&self.beside);
+        let _ = self.beside.get().map(fs::remove_dir_all);
     }
 }
 
@@ -101,5 +139,31 @@ mod tests {
         assert!(NewFolder::new(&target.join("letter"), ours).is_err());
         assert!(NewFolder::new(&all.path().join("no/such"), ours).is_err());
         assert_eq!(names(all.path()), ["levels"]);
+    }
+
+    /// What a process of another container left that has the same name is in nobody's way; a link that leads nowhere is followed.
+    #[cfg(unix)]
+    #[test]
+    fn names_that_are_taken_are_passed_over() {
+        let all = tempfile::tempdir().unwrap();
+        let (target, link) = (all.path().join("levels"), all.path().join("link"));
+        std::os::unix::fs::symlink("levels", &link).unwrap();
+        for hidden in [Hidden::New, Hidden::Old] {
+            let taken = hidden.beside(&target, 0).unwrap();
+            fs::create_dir(&taken).unwrap();
+            fs::write(taken.join("part"), b"").unwrap();
+        }
+        for files in [["a.x"], ["b.x"]] {
+            let new = NewFolder::new(&link, |name| name.ends_with(".x")).unwrap();
+            assert_eq!(
+                names(all.path()).len(),
+                if files == ["a.x"] { 3 } else { 4 },
+                "no folder before something is written"
+            );
+            new.save(files[0], b"").unwrap();
+            new.finish().unwrap();
+            assert_eq!((names(&target), names(all.path()).len()), (vec![files[0].to_owned()], 4));
+        }
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
     }
 }

@@ -15,7 +15,7 @@ use std::{fs, io};
 pub(crate) const PROGRAM: &str = env!("CARGO_PKG_VERSION");
 
 /// What units are, and what their results mean: to be raised when a bake is divided otherwise, or decides otherwise, between two versions of the program.
-pub(crate) const UNITS: u32 = 2;
+pub(crate) const UNITS: u32 = 3;
 
 /// Whether a bake goes on from an earlier run, and where its results are kept.
 #[derive(Debug, Clone, clap::Args)]

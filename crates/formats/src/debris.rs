@@ -26,7 +26,7 @@ impl Hidden {
 
     /// A path for it, with the machine and the process in the name; `None` for a target without a name.
     ///
-    /// * `attempt`: tells several of a process apart
+    /// * `attempt`: tells those of a process apart, and those of processes of one number in containers that cannot be told apart
     pub fn beside(self, target: &Path, attempt: u32) -> Option<PathBuf> {
         let mut hidden = OsString::from(".");
         hidden.push(target.file_name()?);
@@ -66,9 +66,11 @@ fn read_machine() -> String {
 
 /// Whether a process of this machine is known to have ended.
 fn has_ended(pid: u32) -> bool {
-    // Where the list of processes is none, or one of another container, it tells nothing.
-    let is_ours = fs::read_link("/proc/self").is_ok_and(|own| own.as_os_str() == &*std::process::id().to_string());
-    is_ours && !Path::new(&format!("/proc/{pid}")).exists()
+    // Where the list of processes is none, is one of another container, or hides those of others, it tells nothing; nor does the number of a process where its
+    // container is not known.
+    let own = fs::read_link("/proc/self").is_ok_and(|own| own.as_os_str() == &*std::process::id().to_string());
+    let is_whole = own && Path::new("/proc/1").exists() && fs::read_link("/proc/self/ns/pid").is_ok();
+    is_whole && !Path::new(&format!("/proc/{pid}")).exists()
 }
 
 /// Whether nobody writes a file any more. Its writer holds a lock on it; where its machine or the file system may know nothing of that, age decides alone.
@@ -82,9 +84,13 @@ fn is_left_file(path: &Path, (machine_of, pid): (&str, u32)) -> bool {
     }
 }
 
-/// The same of a folder, which cannot be locked everywhere.
-fn is_left_folder(path: &Path, (machine_of, pid): (&str, u32)) -> bool {
-    (machine_of == machine() && has_ended(pid)) || age(fs::metadata(path)).is_some_and(|age| age > DAY)
+/// Whether nobody fills a folder any more, or puts it in another place. It cannot be locked everywhere, so that of a process of this machine is left once that has
+/// ended. How old that of another machine is tells only of one that is new.
+fn is_left_folder(path: &Path, hidden: Hidden, (machine_of, pid): (&str, u32)) -> bool {
+    if machine_of == machine() {
+        return has_ended(pid);
+    }
+    hidden == Hidden::New && age(fs::metadata(path)).is_some_and(|age| age > DAY)
 }
 
 fn age(of: io::Result<fs::Metadata>) -> Option<Duration> {
@@ -103,12 +109,15 @@ fn left(target: &Path, hidden: Hidden) -> Vec<PathBuf> {
         let mark = found.to_str().and_then(|found| found.strip_prefix(&begin)?.strip_suffix(hidden.ending()));
         let Some(writer) = mark.and_then(parse) else { return false };
         match entry.file_type() {
-            Ok(kind) if kind.is_dir() => is_left_folder(&entry.path(), writer),
+            Ok(kind) if kind.is_dir() => is_left_folder(&entry.path(), hidden, writer),
             Ok(kind) => kind.is_file() && is_left_file(&entry.path(), writer),
             Err(_) => false,
         }
     };
-    entries.flatten().filter(is_left).map(|entry| entry.path()).collect()
+    let mut found: Vec<PathBuf> = entries.flatten().filter(is_left).map(|entry| entry.path()).collect();
+    // The newest first: it may be put back.
+    found.sort_by_key(|path| std::cmp::Reverse(fs::metadata(path).and_then(|of| of.modified()).ok()));
+    found
 }
 
 /// Cleans up after processes that ended while they wrote `target`, a file or a folder: what was to become it is removed, and what it was before is put back

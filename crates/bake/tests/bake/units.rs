@@ -212,6 +212,17 @@ fn kept_proofs_are_not_trusted() {
         // All results of another table that have a place here.
         let foreign: Results = kept(other).1.into_iter().filter(|(key, _)| results.contains_key(key)).collect();
         check(&results.iter().chain(&foreign).map(|(key, bytes)| (*key, bytes.clone())).collect());
+        // Lines that are not shot: one is taken, the step to which is larger than all that there are.
+        let first = *results
+            .keys()
+            .filter(|key| ["proofs", "line-proofs"].contains(&key.0))
+            .min_by_key(|key| (key.0, key.1))
+            .unwrap();
+        for far in [&[1, 0xFE, 0xFF, 0xFF, 0x0F][..], &[1, 0xFE, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x7F]] {
+            let mut changed = results.clone();
+            changed.insert(first, far.to_vec());
+            check(&changed);
+        }
         // Every result that says something, with a byte changed.
         for (k, (key, bytes)) in results.iter().filter(|(_, bytes)| bytes.len() > 3).enumerate().step_by(5) {
             let mut changed = results.clone();

@@ -1,8 +1,8 @@
 //! A bake that several processes share: a folder with a manifest, and a part for each shard.
 //!
 //! The manifest ([`MANIFEST`]) has the command, the key of its results, and the phases that are known, each cut into shards. A phase is known once all
-//! earlier ones are complete, so a job takes as many rounds as its bake has phases. The part of shard `n` is `parts/n.part`: the results of its units, in
-//! order. Beside it lie journals of processes that are at work on it, or were stopped, and files that workers lock while a shard is theirs.
+//! earlier ones are complete, so a job takes as many rounds as its bake has phases. The part of shard `n` is `parts/n.part`, or from 1000 on `parts/k/n.part` with the thousands
+//! `k`: the results of its units, in order. Beside it lie journals of processes that are at work on it, or were stopped, and files that workers lock while a shard is theirs.
 
 mod claims;
 mod cut;

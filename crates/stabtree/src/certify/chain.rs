@@ -183,15 +183,23 @@ impl<S: Steps> Chain<S> {
     /// Takes what a unit has found; `None` if it cannot have found that. Then the search is of no more use.
     fn repeat(&mut self, unit: &Unit, mut bytes: &[u8]) -> Option<()> {
         let (Unit::Seeks(part) | Unit::Walks(part)) = unit else { return self.shoot_again(unit, bytes) };
-        let spent = read_varint(&mut bytes)?;
-        (self.steps.spend(spent, part.len()) && self.steps.take_again(bytes)).then_some(())
+        let (spent, [n_lines, n_walks]) = (read_varint(&mut bytes)?, self.steps.n_taken());
+        if !self.steps.spend(spent, part.len()) || !self.steps.take_again(bytes) {
+            return None;
+        }
+        // A search finds lines, and a walk rests on all of them.
+        let now = self.steps.n_taken();
+        let is_of_kind = if matches!(unit, Unit::Seeks(_)) { now[1] == n_walks } else { now[0] == n_lines };
+        is_of_kind.then_some(())
     }
 
     fn shoot_again(&mut self, unit: &Unit, bytes: &[u8]) -> Option<()> {
         let Unit::Shots(round, part) = unit else { return None };
         for [shot, form] in shots_from_bytes(bytes)? {
-            let is_open = part.contains(&shot) && !self.is_taken[shot];
-            let line = self.steps.shot(shot).into_iter().nth(form).filter(|_| is_open)?;
+            if !part.contains(&shot) || self.is_taken[shot] {
+                return None;
+            }
+            let line = self.steps.shot(shot).into_iter().nth(form)?;
             if !self.steps.take_line(line, S::ROUNDS[*round]) {
                 return None;
             }

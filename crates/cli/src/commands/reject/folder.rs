@@ -169,6 +169,12 @@ impl Folder<'_> {
         }
         let outs: Vec<PathBuf> = done.iter().map(|(k, ..)| self.outs[*k].clone()).collect();
         kept.before_writing_files(&outs)?;
+        if self.args.strict {
+            // Nothing is written if one of them cannot be.
+            for (k, maps, tables) in &done {
+                tables.write(&self.read(*k)?, maps).map_err(|source| self.error(*k, source))?;
+            }
+        }
         let failed = |source| OutputError::Folder { path: self.args.output.clone(), source };
         fs::create_dir_all(&self.args.output).map_err(failed)?;
         for (k, maps, tables) in done {

@@ -13,6 +13,7 @@ use sightlines_geometry::{Aabb, BoxTree};
 use sightlines_progress::{Counter, Halt, Phase};
 use sightlines_pvs::{BitMatrix, ObjectId};
 use sightlines_sightline::{BlockedProof, Blockers, Shaft, Target};
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use terms::translated;
 
 /// The phase of objects.
@@ -271,6 +272,8 @@ impl<'a> Search<'a> {
         find: impl Fn(&mut Shaft<'a>, usize) -> Vec<CheckedProof<'m>> + Sync,
     ) -> Result<Vec<CheckedProof<'m>>, Halt> {
         let units = options.units;
+        // A worker may go through the phase several times.
+        let counted: Vec<AtomicBool> = costs.iter().map(|_| AtomicBool::new(false)).collect();
         let work = |shaft: &mut Shaft<'a>, unit: usize| {
             counter.check()?;
             let mut found = None;
@@ -286,10 +289,10 @@ impl<'a> Search<'a> {
             if let Some(bytes) = result.filter(|_| is_kept && units.has_all(phase)) {
                 found = Some(maker.check_bytes(&bytes).ok_or_else(|| unfit(phase, unit))?);
             }
-            if units.are_kept() {
-                counter.step_by(share, is_kept)?
-            } else {
-                counter.step()?
+            match (units.are_kept(), counted[unit].swap(true, Relaxed)) {
+                (_, true) => counter.check()?,
+                (true, false) => counter.step_by(share, is_kept)?,
+                (false, false) => counter.step()?,
             }
             Ok((unit, found.unwrap_or_default()))
         };
