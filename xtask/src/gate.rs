@@ -1,8 +1,10 @@
 //! What a change has to pass, in order.
 
 use crate::gpu::Wish;
+use crate::groups::{self, Group, Step, Why, Work};
 use crate::step::{self, Failure, cargo};
-use crate::{bevy, deny, lab, metadata, package, python, tally, tidy};
+use crate::tally::{self, Tally};
+use crate::{bevy, deny, lab, metadata, package, python, tidy};
 use std::time::{Duration, Instant};
 
 /// Builds the documentation of every crate; a warning is an error.
@@ -53,34 +55,99 @@ fn default_program() -> Result<(), Failure> {
     step::run(cargo().args(["test", "--release", "-p", "sightlines-cli", "--test", "cli", "--"]).args(skipped))
 }
 
-/// Everything, up to the first failure; the tests last, so that their summary is the last line.
+/// How much of the gate is wanted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Extent {
+    /// The core, and the groups that are chosen.
+    Chosen,
+    /// All groups.
+    All,
+    /// Nothing is run: what would be is printed.
+    Plan,
+}
+
+/// What the core takes on two quiet cores. How much longer it takes says how busy the machine is.
+const CORE: Duration = Duration::from_secs(1020);
+/// After this a group is begun only if it must run.
+const LATE: Duration = Duration::from_secs(40 * 60);
+
+/// The core and the groups that are chosen, up to the first failure. Ends with the times, with what did not run and why, and with the sum of the tests.
 ///
 /// * `gpu`: which device the tests on one are run on
-pub(crate) fn ci(gpu: Wish) -> Result<(), Failure> {
-    type Step = (&'static str, fn() -> Result<(), Failure>);
-    let steps: [Step; 10] = [
-        ("tidy", tidy::tidy),
-        ("deny", deny::check),
-        ("docs", docs),
-        ("alone", alone),
-        ("package", package::check),
-        ("demo", demo),
-        ("program", default_program),
-        ("benches", benches_once),
-        ("stability", lab::quick_stability),
-        ("charts", lab::quick_charts),
-    ];
+pub(crate) fn ci(gpu: Wish, extent: Extent) -> Result<(), Failure> {
+    let mut plan = groups::plan(extent == Extent::All)?;
+    print(&plan);
+    if extent == Extent::Plan {
+        return Ok(());
+    }
+    let start = Instant::now();
     let mut times = Vec::new();
-    for (name, step) in steps {
-        timed(name, &mut times, step)?;
+    type Part = (&'static str, fn() -> Result<(), Failure>);
+    let parts: [Part; 4] = [("tidy", tidy::tidy), ("deny", deny::check), ("docs", docs), ("demo", demo)];
+    for (name, part) in parts {
+        timed(name, &mut times, part)?;
     }
-    timed("python", &mut times, || python::check(false))?;
-    timed("bevy", &mut times, || bevy::check(gpu))?;
-    let tally = timed("test", &mut times, || tally::test(gpu))?;
+    let mut tally = Tally::default();
+    timed("test", &mut times, || tally::core(gpu, &mut tally))?;
+    let core = start.elapsed();
+    for (group, why) in &mut plan {
+        if !why.runs() || tally.has_failed() {
+            continue;
+        }
+        if !why.must() && is_late(start.elapsed(), core, group.seconds) {
+            eprintln!("\n== {}: left out, as this machine is busy", group.name);
+            *why = Why::Late;
+            continue;
+        }
+        timed(group.name, &mut times, || run(group, gpu, &mut tally))?;
+    }
+    print(&plan);
     for (name, time) in times {
-        println!("{name:>9} {:6.1} s", time.as_secs_f64());
+        println!("{name:>10} {:6.1} s", time.as_secs_f64());
     }
+    println!("{:>10} {:6.1} s", "all", start.elapsed().as_secs_f64());
     tally.conclude()
+}
+
+/// Whether a group that takes `seconds` on a quiet machine would end too late on this one.
+///
+/// * `core`: how long the core took here
+fn is_late(elapsed: Duration, core: Duration, seconds: u32) -> bool {
+    let slower = (core.as_secs_f64() / CORE.as_secs_f64()).max(1.0);
+    elapsed + Duration::from_secs(seconds.into()).mul_f64(slower) > LATE
+}
+
+/// Runs the group of this name alone, and ends with the sum of its tests if it has any.
+pub(crate) fn group(name: &str, gpu: Wish) -> Result<(), Failure> {
+    let Some(group) = groups::GROUPS.iter().find(|group| group.name == name) else {
+        let names: Vec<_> = groups::GROUPS.iter().map(|group| group.name).collect();
+        eprintln!("the groups are {}", names.join(", "));
+        return Err(Failure::Found { what: "groups of this name", n: 0 });
+    };
+    let mut tally = Tally::default();
+    run(group, gpu, &mut tally)?;
+    if group.modules().is_empty() { Ok(()) } else { tally.conclude() }
+}
+
+/// Runs one group.
+fn run(group: &Group, gpu: Wish, tally: &mut Tally) -> Result<(), Failure> {
+    match group.work {
+        Work::Tests(modules) => tally::modules(modules, gpu, tally),
+        Work::Step(Step::Alone) => alone(),
+        Work::Step(Step::Package) => package::check(),
+        Work::Step(Step::Program) => default_program(),
+        Work::Step(Step::Benches) => benches_once(),
+        Work::Step(Step::Lab) => lab::quick_stability().and_then(|()| lab::quick_charts()),
+        Work::Step(Step::Python) => python::check(false),
+        Work::Step(Step::Bevy) => bevy::check(gpu),
+    }
+}
+
+/// Prints which groups run, which do not, and why.
+fn print(plan: &[(Group, Why)]) {
+    for (group, why) in plan {
+        println!("{} {:>10}: {why} ({})", if why.runs() { "runs " } else { "waits" }, group.name, group.what);
+    }
 }
 
 fn timed<T>(
@@ -107,5 +174,15 @@ mod tests {
         timed("good", &mut times, || Ok(())).expect("it passes");
         timed("bad", &mut times, || Err::<(), _>(Failure::Found { what: "faults", n: 1 })).expect_err("it fails");
         assert_eq!(times.iter().map(|t| t.0).collect::<Vec<_>>(), ["good", "bad"]);
+    }
+
+    #[test]
+    fn what_would_end_too_late_is_left_out() {
+        let minutes = |n: u64| Duration::from_secs(60 * n);
+        assert!(!is_late(minutes(25), CORE, 300));
+        assert!(is_late(minutes(38), CORE, 300));
+        // A machine that is quicker than it was measured takes no longer; a busy one does.
+        assert!(!is_late(minutes(30), CORE / 2, 590));
+        assert!(is_late(minutes(32), CORE * 2, 300));
     }
 }

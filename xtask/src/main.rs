@@ -11,10 +11,12 @@ mod dist;
 mod freedoom;
 mod gate;
 mod gpu;
+mod groups;
 mod install;
 mod lab;
 mod metadata;
 mod package;
+mod programs;
 mod python;
 mod semver;
 mod spdx;
@@ -23,6 +25,7 @@ mod tally;
 mod tidy;
 
 use clap::{Parser, Subcommand};
+use gate::Extent;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use step::{Failure, cargo};
@@ -37,11 +40,14 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Task {
-    /// Runs every test: units, properties, integration, documentation.
+    /// Runs the tests of the core: units, properties, integration, documentation.
     Test {
         /// Which GPU the tests that need one run on.
         #[arg(long, value_enum, default_value_t)]
         gpu: gpu::Wish,
+        /// Runs the tests of the heavy groups as well; `ci --plan` lists them.
+        #[arg(long)]
+        all: bool,
     },
     /// Throws random and mutated input at readers and algorithms.
     Fuzz {
@@ -107,8 +113,22 @@ enum Task {
         #[arg(long)]
         out: Option<PathBuf>,
     },
-    /// Runs everything that a change has to pass, and ends with the tests.
+    /// Runs what a change has to pass: the core, and the heavy groups that recent changes bring or whose turn it is.
     Ci {
+        /// Which GPU the tests that need one run on.
+        #[arg(long, value_enum, default_value_t)]
+        gpu: gpu::Wish,
+        /// Runs every group.
+        #[arg(long, conflicts_with = "plan")]
+        all: bool,
+        /// Prints which groups would run, and why, and stops.
+        #[arg(long)]
+        plan: bool,
+    },
+    /// Runs one heavy group of the gate.
+    Group {
+        /// Its name, as `ci --plan` prints it.
+        name: String,
         /// Which GPU the tests that need one run on.
         #[arg(long, value_enum, default_value_t)]
         gpu: gpu::Wish,
@@ -159,7 +179,11 @@ fn main() -> ExitCode {
 
 fn run(task: Task) -> Result<(), Failure> {
     match task {
-        Task::Test { gpu } => tally::test(gpu)?.conclude(),
+        Task::Test { gpu, all } => {
+            let mut tally = tally::Tally::default();
+            tally::test(gpu, if all { &[] } else { &groups::GROUPS }, &mut tally)?;
+            tally.conclude()
+        }
         Task::Fuzz { target, seconds, seed, list } => fuzz(target, seconds, seed, list),
         Task::Bench { filter } => {
             let filter = filter.iter().flat_map(|f| ["--", f]);
@@ -180,7 +204,11 @@ fn run(task: Task) -> Result<(), Failure> {
             step::run(cargo().args(["run", "--quiet", "-p", "sightlines-manuals", "--"]).arg(out))
         }
         Task::Dist { out } => dist::make(out).map(|files| println!("in {}", files.display())),
-        Task::Ci { gpu } => gate::ci(gpu),
+        Task::Ci { gpu, all, plan } => {
+            let extent = [(plan, Extent::Plan), (all, Extent::All)].into_iter().find(|(is_wanted, _)| *is_wanted);
+            gate::ci(gpu, extent.map_or(Extent::Chosen, |(_, extent)| extent))
+        }
+        Task::Group { name, gpu } => gate::group(&name, gpu),
         Task::Gpu { gpu } => {
             for (name, value) in gpu::environment(gpu)? {
                 println!("export {name}={}", value.to_string_lossy());
@@ -230,7 +258,7 @@ mod tests {
         };
         assert_eq!(options, ["--quick", "--only", "scale"]);
         let gpu = |words: &[&str]| match Cli::parse_from(words).task {
-            Task::Test { gpu } | Task::Ci { gpu } => gpu,
+            Task::Test { gpu, .. } | Task::Ci { gpu, .. } => gpu,
             other => panic!("{other:?}"),
         };
         assert_eq!(gpu(&["xtask", "test"]), gpu::Wish::Auto);

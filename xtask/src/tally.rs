@@ -2,7 +2,10 @@
 
 use crate::freedoom;
 use crate::gpu::{self, Wish};
+use crate::groups::{GROUPS, Group, Modules};
+use crate::programs::{Environment, Program, compiled};
 use crate::step::{FULL_PROGRAM, Failure, announce, cargo, start_failure, typed};
+use std::ffi::OsString;
 use std::fmt;
 use std::io::{BufRead, BufReader, Write};
 use std::process::Command;
@@ -35,12 +38,8 @@ impl Tally {
     /// `test result: ok. 3 passed; 0 failed; 0 ignored; 0 measured; 0 filtered out; finished in 0.01s`.
     fn add(&mut self, line: &str) {
         self.without_gpu += usize::from(line.starts_with(WITHOUT_GPU));
-        // `     Running tests/pvs/main.rs (target/debug/deps/pvs-0123456789abcdef)`, `   Doc-tests sightlines_pvs`
-        if let Some((_, program)) = line.split_once("Running ").filter(|(before, _)| before.trim().is_empty()) {
-            let file = program.trim_end().rsplit(['/', '\\', '(']).next().unwrap_or_default();
-            let (source, name) = (program.split(" (").next().unwrap_or_default(), file.rsplit_once('-'));
-            self.running = format!("{} ({source})", name.map_or(file, |(name, _)| name));
-        } else if let Some(name) = line.trim_start().strip_prefix("Doc-tests ") {
+        // `   Doc-tests sightlines_pvs`
+        if let Some(name) = line.trim_start().strip_prefix("Doc-tests ") {
             self.running = format!("{} (examples in the documentation)", name.trim_end());
         }
         // A program without a line break at the end of its output puts its result behind it.
@@ -68,13 +67,22 @@ impl Tally {
         programs
     }
 
-    /// Takes in how cargo ended: a failure without a failed test is a build that broke, or a test
-    /// program that ended before its result.
-    fn close(&mut self, success: bool) {
-        if !success && self.failed == 0 {
-            eprintln!("xtask: cargo test failed, though no test did: a build or a test program broke off");
-            self.failed = 1;
+    /// Takes in how a command ended that was begun when `failed_before` tests had failed: a failure without a failed test is a build that
+    /// broke, or a test program that ended before its result.
+    fn close(&mut self, success: bool, failed_before: usize) {
+        if !success && self.failed == failed_before {
+            eprintln!("xtask: {} failed, though no test did: a build or a test program broke off", self.running);
+            self.failed += 1;
         }
+    }
+
+    /// How many tests came to an end.
+    fn n_run(&self) -> usize {
+        self.passed + self.failed
+    }
+
+    pub(crate) fn has_failed(&self) -> bool {
+        self.failed > 0
     }
 
     /// Whether this is what a finished project shows: tests, none failed, none left out.
@@ -95,12 +103,55 @@ impl Tally {
     }
 }
 
-/// Runs all tests of the workspace, with all parts of the program; shows their output, and adds up the results.
+/// Runs all tests, or those of the core, with all parts of the program; shows their output, adds up the results, and prints the slowest programs.
 ///
 /// Examples are compiled by the lints, and not again here.
 ///
 /// * `gpu`: which device the tests on one are run on
-pub(crate) fn test(gpu: Wish) -> Result<Tally, Failure> {
+/// * `left_out`: groups whose modules are left out
+pub(crate) fn test(gpu: Wish, left_out: &[Group], tally: &mut Tally) -> Result<(), Failure> {
+    let environment = environment(gpu)?;
+    for program in compiled(&environment, &["--tests"])? {
+        let modules = left_out.iter().flat_map(Group::modules).filter(|of| of.is_of(&program));
+        let skip: Vec<&str> = modules.flat_map(|of| of.modules).flat_map(|module| ["--skip", module]).collect();
+        run_program(&program, &environment, &skip, tally)?;
+    }
+    let mut documentation = cargo();
+    documentation.args(["test", "--workspace", "--no-fail-fast", "--features", FULL_PROGRAM, "--doc"]);
+    documentation.envs(environment.iter().map(|(name, value)| (name, value)));
+    announce(&documentation);
+    run(documentation, tally)?;
+    println!("\n{} test programs; the slowest ones:", tally.programs.len());
+    for (name, seconds) in tally.slowest(10) {
+        println!("{seconds:8.1} s  {name}");
+    }
+    Ok(())
+}
+
+/// Runs the tests of the core.
+pub(crate) fn core(gpu: Wish, tally: &mut Tally) -> Result<(), Failure> {
+    test(gpu, &GROUPS, tally)
+}
+
+/// Runs modules of test programs, which the core leaves out.
+pub(crate) fn modules(modules: &[Modules], gpu: Wish, tally: &mut Tally) -> Result<(), Failure> {
+    let environment = environment(gpu)?;
+    for of_program in modules {
+        for program in compiled(&environment, &["--test", of_program.program])? {
+            if of_program.is_of(&program) {
+                let before = tally.n_run();
+                run_program(&program, &environment, of_program.modules, tally)?;
+                if tally.n_run() == before {
+                    return Err(Failure::Found { what: "tests in the modules of a group", n: 0 });
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// What tests find their devices and their data by.
+fn environment(gpu: Wish) -> Result<Vec<(&'static str, OsString)>, Failure> {
     let mut environment = gpu::environment(gpu)?;
     for (name, value) in &environment {
         eprintln!("{name}={}", value.to_string_lossy());
@@ -113,24 +164,23 @@ pub(crate) fn test(gpu: Wish) -> Result<Tally, Failure> {
     if std::env::var_os("CARGO_INCREMENTAL").is_none() {
         environment.push(("CARGO_INCREMENTAL", "0".into()));
     }
-    let mut tally = Tally::default();
-    for kind in ["--tests", "--doc"] {
-        let mut command = cargo();
-        command.args(["test", "--workspace", "--no-fail-fast", "--features", FULL_PROGRAM, kind]);
-        command.envs(environment.iter().map(|(name, value)| (name, value)));
-        run(command, &mut tally)?;
-    }
-    println!("\n{} test programs; the slowest ones:", tally.programs.len());
-    for (name, seconds) in tally.slowest(10) {
-        println!("{seconds:8.1} s  {name}");
-    }
-    Ok(tally)
+    Ok(environment)
+}
+
+fn run_program(
+    program: &Program,
+    environment: &Environment,
+    options: &[&str],
+    tally: &mut Tally,
+) -> Result<(), Failure> {
+    tally.running = format!("{} ({})", program.name, program.source);
+    run(program.command(environment, options), tally)
 }
 
 /// Runs a command of tests, shows all its output on standard output, and adds up the results.
 fn run(mut command: Command, tally: &mut Tally) -> Result<(), Failure> {
-    announce(&command);
     let typed = typed(&command);
+    let failed_before = tally.failed;
     let failure = |error| Failure::Start { program: typed.clone(), error };
     // One pipe for both: the names of programs are on standard error, their results on standard output.
     let (output, input) = std::io::pipe().map_err(failure)?;
@@ -147,7 +197,7 @@ fn run(mut command: Command, tally: &mut Tally) -> Result<(), Failure> {
         line.clear();
     }
     let status = child.wait().map_err(failure)?;
-    tally.close(status.success());
+    tally.close(status.success(), failed_before);
     Ok(())
 }
 
@@ -164,7 +214,6 @@ mod tests {
     #[test]
     fn results_are_added_up() {
         let sum = tally(&[
-            "     Running unittests src/lib.rs (target/debug/deps/sightlines_pvs-0123456789abcdef)\n",
             "running 3 tests",
             "test result: ok. 3 passed; 0 failed; 0 ignored; 0 measured; 0 filtered out; finished in 0.01s\n",
             "   Doc-tests sightlines_pvs\n",
@@ -172,7 +221,7 @@ mod tests {
             "test result: who knows",
             "GPU test not run: forms of any size: SIGHTLINES_GPU=off",
         ]);
-        let names = ["sightlines_pvs (unittests src/lib.rs)", "sightlines_pvs (examples in the documentation)"];
+        let names = ["", "sightlines_pvs (examples in the documentation)"];
         assert_eq!(sum.slowest(9), [(names[1], 2.5), (names[0], 0.01)]);
         assert_eq!((sum.passed, sum.failed, sum.ignored, sum.without_gpu), (13, 2, 1, 1));
         assert_eq!(sum.to_string(), "13 passed, 2 failed");
@@ -186,7 +235,7 @@ mod tests {
         assert!(good.is_good());
         assert!(!Tally { ignored: 1, ..good.clone() }.is_good());
         let mut broken = good;
-        broken.close(false);
+        broken.close(false, 0);
         assert_eq!((broken.failed, broken.is_good()), (1, false));
     }
 }
