@@ -55,17 +55,6 @@ fn default_program() -> Result<(), Failure> {
     step::run(cargo().args(["test", "--release", "-p", "sightlines-cli", "--test", "cli", "--"]).args(skipped))
 }
 
-/// How much of the gate is wanted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Extent {
-    /// The core, and the groups that are chosen.
-    Chosen,
-    /// All groups.
-    All,
-    /// Nothing is run: what would be is printed.
-    Plan,
-}
-
 /// What the core takes on two quiet cores. How much longer it takes says how busy the machine is.
 const CORE: Duration = Duration::from_secs(1020);
 /// After this a group is begun only if it must run.
@@ -74,12 +63,9 @@ const LATE: Duration = Duration::from_secs(40 * 60);
 /// The core and the groups that are chosen, up to the first failure. Ends with the times, with what did not run and why, and with the sum of the tests.
 ///
 /// * `gpu`: which device the tests on one are run on
-pub(crate) fn ci(gpu: Wish, extent: Extent) -> Result<(), Failure> {
-    let mut plan = groups::plan(extent == Extent::All)?;
+/// * `plan`: what becomes of each group
+pub(crate) fn ci(gpu: Wish, mut plan: Vec<(Group, Why)>) -> Result<(), Failure> {
     print(&plan);
-    if extent == Extent::Plan {
-        return Ok(());
-    }
     let start = Instant::now();
     let mut times = Vec::new();
     type Part = (&'static str, fn() -> Result<(), Failure>);
@@ -144,7 +130,7 @@ fn run(group: &Group, gpu: Wish, tally: &mut Tally) -> Result<(), Failure> {
 }
 
 /// Prints which groups run, which do not, and why.
-fn print(plan: &[(Group, Why)]) {
+pub(crate) fn print(plan: &[(Group, Why)]) {
     for (group, why) in plan {
         println!("{} {:>10}: {why} ({})", if why.runs() { "runs " } else { "waits" }, group.name, group.what);
     }

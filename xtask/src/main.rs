@@ -25,7 +25,6 @@ mod tally;
 mod tidy;
 
 use clap::{Parser, Subcommand};
-use gate::Extent;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use step::{Failure, cargo};
@@ -119,11 +118,14 @@ enum Task {
         #[arg(long, value_enum, default_value_t)]
         gpu: gpu::Wish,
         /// Runs every group.
-        #[arg(long, conflicts_with = "plan")]
+        #[arg(long)]
         all: bool,
         /// Prints which groups would run, and why, and stops.
         #[arg(long)]
         plan: bool,
+        /// Prints the packages of Debian that the groups which would run need, and stops.
+        #[arg(long, conflicts_with = "plan")]
+        packages: bool,
     },
     /// Runs one heavy group of the gate.
     Group {
@@ -204,9 +206,17 @@ fn run(task: Task) -> Result<(), Failure> {
             step::run(cargo().args(["run", "--quiet", "-p", "sightlines-manuals", "--"]).arg(out))
         }
         Task::Dist { out } => dist::make(out).map(|files| println!("in {}", files.display())),
-        Task::Ci { gpu, all, plan } => {
-            let extent = [(plan, Extent::Plan), (all, Extent::All)].into_iter().find(|(is_wanted, _)| *is_wanted);
-            gate::ci(gpu, extent.map_or(Extent::Chosen, |(_, extent)| extent))
+        Task::Ci { gpu, all, plan, packages } => {
+            let chosen = groups::plan(all)?;
+            if packages {
+                groups::packages(&chosen).iter().for_each(|name| println!("{name}"));
+                Ok(())
+            } else if plan {
+                gate::print(&chosen);
+                Ok(())
+            } else {
+                gate::ci(gpu, chosen)
+            }
         }
         Task::Group { name, gpu } => gate::group(&name, gpu),
         Task::Gpu { gpu } => {

@@ -33,6 +33,8 @@ pub(crate) struct Group {
     turn: usize,
     /// How long it takes on two quiet cores, when the core has run.
     pub(crate) seconds: u32,
+    /// Packages of Debian that it needs beside a compiler and Chromium; without them its tests skip.
+    packages: &'static [&'static str],
     pub(crate) work: Work,
 }
 
@@ -83,6 +85,7 @@ pub(crate) const GROUPS: [Group; 12] = [
         paths: &["crates/cli/src/commands/job/", "crates/cli/src/kept.rs", "crates/cli/tests/cli/slurm.rs"],
         turn: 0,
         seconds: 40,
+        packages: &["munge", "slurm-wlm"],
         work: Work::Tests(&[Modules { program: "cli", sources: "crates/cli/tests/cli", modules: &["slurm::"] }]),
     },
     Group {
@@ -101,6 +104,7 @@ pub(crate) const GROUPS: [Group; 12] = [
         ],
         turn: 1,
         seconds: 20,
+        packages: &["darkplaces-server", "zdbsp", "dsda-doom"],
         work: Work::Tests(&[Modules {
             program: "cli",
             sources: "crates/cli/tests/cli",
@@ -114,6 +118,7 @@ pub(crate) const GROUPS: [Group; 12] = [
         paths: &["crates/capi/"],
         turn: 2,
         seconds: 60,
+        packages: &["valgrind"],
         work: Work::Tests(&[Modules { program: "capi", sources: "crates/capi/tests/capi", modules: &["programs::"] }]),
     },
     Group {
@@ -133,6 +138,7 @@ pub(crate) const GROUPS: [Group; 12] = [
         ],
         turn: 3,
         seconds: 60,
+        packages: &[],
         work: Work::Tests(&[
             Modules {
                 program: "workspace",
@@ -158,6 +164,7 @@ pub(crate) const GROUPS: [Group; 12] = [
         ],
         turn: 4,
         seconds: 60,
+        packages: &[],
         work: Work::Tests(&[Modules {
             program: "cli",
             sources: "crates/cli/tests/cli",
@@ -171,6 +178,7 @@ pub(crate) const GROUPS: [Group; 12] = [
         paths: &["Cargo.toml", "Cargo.lock"],
         turn: 5,
         seconds: 100,
+        packages: &[],
         work: Work::Step(Step::Alone),
     },
     Group {
@@ -180,6 +188,7 @@ pub(crate) const GROUPS: [Group; 12] = [
         paths: &["Cargo.toml", "Cargo.lock", "xtask/src/package.rs"],
         turn: 0,
         seconds: 45,
+        packages: &[],
         work: Work::Step(Step::Package),
     },
     Group {
@@ -189,6 +198,7 @@ pub(crate) const GROUPS: [Group; 12] = [
         paths: &["crates/cli/"],
         turn: 1,
         seconds: 200,
+        packages: &[],
         work: Work::Step(Step::Program),
     },
     Group {
@@ -198,6 +208,7 @@ pub(crate) const GROUPS: [Group; 12] = [
         paths: &["benches/"],
         turn: 2,
         seconds: 250,
+        packages: &[],
         work: Work::Step(Step::Benches),
     },
     Group {
@@ -207,6 +218,7 @@ pub(crate) const GROUPS: [Group; 12] = [
         paths: &["lab/"],
         turn: 3,
         seconds: 250,
+        packages: &[],
         work: Work::Step(Step::Lab),
     },
     Group {
@@ -229,6 +241,7 @@ pub(crate) const GROUPS: [Group; 12] = [
         paths: &["python/", "xtask/src/python.rs"],
         turn: 4,
         seconds: 200,
+        packages: &[],
         work: Work::Step(Step::Python),
     },
     Group {
@@ -238,6 +251,7 @@ pub(crate) const GROUPS: [Group; 12] = [
         paths: &["integrations/bevy/", "xtask/src/bevy.rs"],
         turn: 5,
         seconds: 480,
+        packages: &[],
         work: Work::Step(Step::Bevy),
     },
 ];
@@ -307,6 +321,11 @@ pub(crate) fn plan(all: bool) -> Result<Vec<(Group, Why)>, Failure> {
         return Ok(GROUPS.iter().map(|&group| (group, Why::Asked)).collect());
     }
     Ok(choose(&GROUPS, &Layers::read()?, History::read().as_ref(), history::turn()?, SECONDS))
+}
+
+/// The packages of Debian that the groups which run need.
+pub(crate) fn packages(plan: &[(Group, Why)]) -> Vec<&'static str> {
+    plan.iter().filter(|(_, why)| why.runs()).flat_map(|(group, _)| group.packages).copied().collect()
 }
 
 /// Chooses among `groups`: those whose turn it is, then those that a change brings, the newest change first, while the time lasts.
