@@ -160,9 +160,11 @@ fn environment(gpu: Wish) -> Result<Vec<(&'static str, OsString)>, Failure> {
         eprintln!("{}={}", freedoom::VARIABLE, folder.display());
         environment.push((freedoom::VARIABLE, folder.into_os_string()));
     }
-    // Everything is compiled at once, so incremental builds would cost more than they save.
-    if std::env::var_os("CARGO_INCREMENTAL").is_none() {
-        environment.push(("CARGO_INCREMENTAL", "0".into()));
+    // Everything is compiled at once, so incremental builds would cost more than they save; and each crate as one unit, which makes tests quicker.
+    for (name, value) in [("CARGO_INCREMENTAL", "0"), ("CARGO_PROFILE_DEV_CODEGEN_UNITS", "1")] {
+        if std::env::var_os(name).is_none() {
+            environment.push((name, value.into()));
+        }
     }
     Ok(environment)
 }

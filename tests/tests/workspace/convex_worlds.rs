@@ -74,9 +74,9 @@ fn nothing_that_lines_show_is_hidden() {
         n_seen += n;
     };
     for (name, world) in world_families() {
-        look(name, &world, 3000);
+        look(name, &world, 2000);
     }
-    for seed in 0..12 {
+    for seed in 0..6 {
         look("random", &random(seed, 40, 60), 3000);
         look("axial", &random(seed, 40, 0), 3000);
         look("far", &random(seed, 25, 60).moved([1e6, -1e6, 1e6]), 2000);
@@ -86,7 +86,7 @@ fn nothing_that_lines_show_is_hidden() {
         let level = quake_like(QuakeLikeOptions { seed, rooms_x: 2, rooms_y: 2, floors: 2 }).expect("few rooms");
         look("level", &level, 3000);
     }
-    assert!(n_seen > 8000, "{n_seen}");
+    assert!(n_seen > 5000, "{n_seen}");
 }
 
 #[test]

@@ -6,6 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::LazyLock;
 
 /// What `docs/layers.toml` says of one crate.
 #[derive(Debug, Clone, Default)]
@@ -306,9 +307,16 @@ fn real_layers() -> Layers {
     read_layers(&fs::read_to_string(root().join("docs/layers.toml")).expect("docs/layers.toml is readable"))
 }
 
+/// What `docs/layers.toml` says, what there is, and what is wrong with it. Read once: that takes long.
+static REAL: LazyLock<(Layers, Vec<Package>, Vec<String>, Counts)> = LazyLock::new(|| {
+    let (layers, packages) = (real_layers(), read_packages());
+    let (complaints, counts) = check(&layers, &packages);
+    (layers, packages, complaints, counts)
+});
+
 #[test]
 fn layers_every_package_keeps_to_its_row() {
-    let (complaints, counts) = check(&real_layers(), &read_packages());
+    let (_, _, complaints, counts) = &*REAL;
     assert!(complaints.is_empty(), "{}", complaints.join("\n"));
     assert!(counts.packages >= 17, "{counts:?}");
     assert!(counts.dependencies >= 60, "{counts:?}");
@@ -317,7 +325,7 @@ fn layers_every_package_keeps_to_its_row() {
 
 #[test]
 fn layers_what_a_game_ships_stands_alone() {
-    let packages = read_packages();
+    let packages = &REAL.1;
     let pvs = packages.iter().find(|p| p.folder == "pvs").expect("pvs exists");
     let allowed = ["glam", "crc32fast", "thiserror"];
     assert!(!pvs.dependencies.is_empty(), "nothing was checked");
@@ -327,7 +335,7 @@ fn layers_what_a_game_ships_stands_alone() {
 #[test]
 fn layers_the_architecture_tells_the_same_rows() {
     let text = fs::read_to_string(root().join("docs/ARCHITECTURE.md")).expect("docs/ARCHITECTURE.md is readable");
-    let layers = real_layers();
+    let layers = &REAL.0;
     for (name, layer) in &layers.crates {
         let start = format!("| {} | {name} |", layer.row);
         assert!(text.lines().any(|l| l.starts_with(&start)), "ARCHITECTURE.md has no table row `{start}`");
@@ -341,8 +349,8 @@ fn layers_the_architecture_tells_the_same_rows() {
 
 /// What `spoil` adds to the complaints about the real workspace.
 fn complaints_after(spoil: impl FnOnce(&mut Layers, &mut Vec<Package>)) -> Vec<String> {
-    let (mut layers, mut packages) = (real_layers(), read_packages());
-    let before: BTreeSet<String> = check(&layers, &packages).0.into_iter().collect();
+    let (layers, packages, before, _) = &*REAL;
+    let (mut layers, mut packages) = (layers.clone(), packages.clone());
     spoil(&mut layers, &mut packages);
     check(&layers, &packages).0.into_iter().filter(|c| !before.contains(c)).collect()
 }
@@ -395,7 +403,7 @@ fn impostor_a_copy_of_the_lints_that_differs_is_caught() {
     let with = |change: fn(&mut toml::Table)| complaints_after(|_, p| change(&mut package(p, "capi").lints));
     let differs = ["capi has other lints than the workspace, not only for unsafe code"];
     let table = |lints: &mut toml::Table, key: &str| lints[key].as_table().expect("lints of a tool").clone();
-    assert!(table(&mut real_layers().lints, "clippy").contains_key("undocumented_unsafe_blocks"));
+    assert!(table(&mut REAL.0.lints.clone(), "clippy").contains_key("undocumented_unsafe_blocks"));
     let dropped = |lints: &mut toml::Table| {
         lints["clippy"].as_table_mut().map(|clippy| clippy.remove("undocumented_unsafe_blocks"));
     };

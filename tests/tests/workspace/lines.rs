@@ -1,9 +1,9 @@
 //! Lines of sight for the pairs of tables: each is followed by other code, joins only what the table lists, and is that of the
 //! explanation of its pair alone.
 
-use sightlines::bake::from_table::{self, axial_graph, convex_graph, planar_graph};
+use sightlines::bake::from_table;
 use sightlines::bake::lines::{LineOptions, Lines, Obstacle, lines};
-use sightlines::bake::{BakeOptions, bake};
+use sightlines::bake::{BakeOptions, TableGraph, bake};
 use sightlines::cells::PortalId;
 use sightlines::certificates::space::{BoxLine, BoxNetwork, BoxPortal};
 use sightlines::formats::quake::{Bsp, BspFormat};
@@ -13,6 +13,7 @@ use sightlines::scenes::{OfficeOptions, TowerOptions, office, tower};
 use sightlines::sightline::Verdict;
 use sightlines::stabtree::{Sight, explain, explain_convex, explain_space};
 use sightlines_tests::world_files::{bsp_bytes, prt_of_world};
+use std::sync::LazyLock;
 
 const ALL: LineOptions = LineOptions { max_lines: usize::MAX, max_hidden: 300 };
 
@@ -21,10 +22,10 @@ fn plan() -> Table {
     bake(&plan, &BakeOptions::default()).expect("a table").table
 }
 
-fn building() -> Table {
-    let scene = tower(TowerOptions { floors: 2, ..TowerOptions::default() }).expect("a tower");
-    bake(&scene, &BakeOptions::default()).expect("a table").table
-}
+static BUILDING: LazyLock<Table> = LazyLock::new(|| {
+    let options = TowerOptions { floors: 2, rooms_x: 3, rooms_y: 2, furniture: 1, ..TowerOptions::default() };
+    bake(&tower(options).expect("a tower"), &BakeOptions::default()).expect("a table").table
+});
 
 fn map() -> Table {
     let world = quake_like(QuakeLikeOptions { seed: 7, rooms_x: 3, rooms_y: 2, floors: 2 }).expect("few rooms");
@@ -38,20 +39,21 @@ fn lines_of(table: &Table, options: LineOptions) -> Lines {
 }
 
 /// The portals of the explanation of one pair alone.
-fn explained(table: &Table, from: CellId, to: CellId) -> Option<Vec<PortalId>> {
-    match from_table::graph(table).expect("the table has portals") {
-        _ if table.kind().is_quake() => match explain_convex(&convex_graph(table)?, from, to, 1_000) {
+fn explained(graph: &TableGraph, from: CellId, to: CellId) -> Option<Vec<PortalId>> {
+    match graph {
+        TableGraph::Convex(graph) => match explain_convex(graph, from, to, 1_000) {
             Verdict::Visible(Sight::Along(path)) => Some(path.gates.iter().map(|gate| gate.portal).collect()),
             _ => None,
         },
-        _ if table.dimension() == 2 => match explain(&planar_graph(table)?, from, to, 1, 100_000) {
+        TableGraph::Planar(graph) => match explain(graph, from, to, 1, 100_000) {
             Verdict::Visible(Sight::Along(path)) => Some(path.portals),
             _ => None,
         },
-        _ => match explain_space(&axial_graph(table)?, &[], from, to, 2_000) {
+        TableGraph::Axial(graph) => match explain_space(graph, &[], from, to, 2_000) {
             Verdict::Visible(Sight::Along(path)) => Some(path.portals),
             _ => None,
         },
+        _ => panic!("cells without portals"),
     }
 }
 
@@ -65,7 +67,8 @@ fn n_contradicted(table: &Table, found: &Lines) -> usize {
 
 #[test]
 fn lines_join_all_visible_pairs_and_no_others() {
-    for table in [plan(), building(), map()] {
+    for table in [plan(), BUILDING.clone(), map()] {
+        let graph = from_table::graph(&table).expect("the table has portals");
         let found = lines_of(&table, ALL);
         let visible: usize =
             (0..).take(table.n_cells()).map(|a| table.visible(CellId(a)).filter(|b| b.0 > a).count()).sum();
@@ -81,13 +84,13 @@ fn lines_join_all_visible_pairs_and_no_others() {
         }
         for line in found.lines.iter().step_by(17) {
             let (first, last) = (line.cells[0], line.cells[line.cells.len() - 1]);
-            assert_eq!(explained(&table, first, last).as_ref(), Some(&line.portals), "{first} and {last}");
+            assert_eq!(explained(&graph, first, last).as_ref(), Some(&line.portals), "{first} and {last}");
         }
         assert!(!found.hidden.is_empty());
         for pair in &found.hidden {
             let [a, b] = pair.cells;
             assert!(!table.sees(a, b));
-            assert_eq!(explained(&table, a, b), None);
+            assert_eq!(explained(&graph, a, b), None);
             match &pair.obstacle {
                 Obstacle::NotConnected => {}
                 Obstacle::Portals(portals) => assert!(!portals.is_empty()),
@@ -108,7 +111,7 @@ fn lines_join_all_visible_pairs_and_no_others() {
 /// The checker of proofs, which knows nothing of how lines are found, follows each through the same cells.
 #[test]
 fn lines_in_space_are_followed_by_the_checker_of_proofs() {
-    let table = building();
+    let table = &*BUILDING;
     let cells: Vec<_> = table.cells().iter().map(|cell| [cell.min, cell.max]).collect();
     let portal = |portal: &PortalRecord| {
         let corner = |pick: fn(f64, f64) -> f64| {
@@ -122,7 +125,7 @@ fn lines_in_space_are_followed_by_the_checker_of_proofs() {
     };
     let portals: Vec<BoxPortal> = table.portals().iter().map(portal).collect();
     let network = BoxNetwork::new(&cells, &portals).expect("a network");
-    let found = lines_of(&table, ALL);
+    let found = lines_of(table, ALL);
     let mut n_followed = 0;
     for line in &found.lines {
         let Some([from, to]) = line.ends else { continue };
@@ -141,13 +144,13 @@ fn lines_in_space_are_followed_by_the_checker_of_proofs() {
 
 #[test]
 fn lines_do_not_depend_on_threads_and_are_bounded() {
-    let table = building();
+    let table = &*BUILDING;
     let with = |n: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build().expect("threads");
-        pool.install(|| lines_of(&table, LineOptions { max_lines: 200, max_hidden: 40 }))
+        pool.install(|| lines_of(table, LineOptions { max_lines: 200, max_hidden: 40 }))
     };
     let (one, three) = (with(1), with(3));
     assert_eq!(one, three);
     assert!(one.lines.len() <= 200 && one.hidden.len() <= 40 && one.n_joined < one.n_pairs);
-    assert_eq!(lines_of(&table, LineOptions { max_lines: 0, max_hidden: 0 }).lines, []);
+    assert_eq!(lines_of(table, LineOptions { max_lines: 0, max_hidden: 0 }).lines, []);
 }

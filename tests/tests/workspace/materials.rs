@@ -44,13 +44,15 @@ fn by_sightlines(scene: &Scene) -> Table {
 }
 
 fn by_method(scene: &Scene, method: OcclusionMethod, cells: &CellsFrom, sightlines: bool) -> Table {
-    let factory = OcclusionMethodFactory::new(method, scene, &BufferOptions::default()).unwrap();
+    // Small buffers and few rays are enough for few things.
+    let buffers = BufferOptions { planes: 2, texels: 64, ..BufferOptions::default() };
+    let factory = OcclusionMethodFactory::new(method, scene, &buffers).unwrap();
     let make = || factory.instance();
     let options = RegionBakeOptions {
         cells,
         method: Some(&make),
         sightlines,
-        split: Split::default(),
+        split: Split { n_rays: 1024, ..Split::default() },
         cut: cut(),
         portals: Default::default(),
         threads: 2,

@@ -86,9 +86,9 @@ fn eyes(faces: &Faces, size: [u32; 2]) -> Vec<Camera> {
 fn methods_agree_on_generated_scenes() {
     let mut tally = Tally::default();
     for seed in 1..4 {
-        for (name, scene) in generated(150, seed) {
+        for (name, scene) in generated(80, seed) {
             let faces = Faces::of_scene(&scene).unwrap();
-            agree(name, &faces, &eyes(&faces, [61, 47]), &mut tally);
+            agree(name, &faces, &eyes(&faces, [41, 31]), &mut tally);
         }
     }
     let options = TowerOptions { floors: 1, rooms_x: 2, rooms_y: 1, furniture: 1, ..TowerOptions::default() };

@@ -165,13 +165,13 @@ fn compare(scene: &Scene, plan: &Plan, height: f64, n: usize, seed: u64) -> [usi
 
 fn generated() -> Vec<(Scene, Vec<f64>)> {
     let tower = |seed| {
-        tower(TowerOptions { seed, floors: 2, rooms_x: 3, rooms_y: 2, furniture: 2, ..TowerOptions::default() })
+        tower(TowerOptions { seed, floors: 2, rooms_x: 3, rooms_y: 2, furniture: 1, ..TowerOptions::default() })
             .unwrap()
     };
     vec![
         (tower(1), vec![0.37, 1.234, 2.9, 4.61]),
         (tower(2), vec![1.1, 3.333]),
-        (city(CityOptions::default()).unwrap(), vec![0.5, 3.1, 11.7]),
+        (city(CityOptions { blocks_x: 4, blocks_z: 4, ..CityOptions::default() }).unwrap(), vec![0.5, 3.1, 11.7]),
     ]
 }
 

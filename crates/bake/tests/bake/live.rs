@@ -42,7 +42,7 @@ fn edits() -> impl Strategy<Value = Vec<Edit>> {
         index().prop_map(Edit::Turn),
         Just(Edit::Undo),
     ];
-    prop::collection::vec(edit, 1..5)
+    prop::collection::vec(edit, 1..4)
 }
 
 fn edited(scene: &Scene, first: &Scene, edit: &Edit) -> Scene {
@@ -79,7 +79,7 @@ fn small_tower(seed: u64, furniture: u32) -> Scene {
 
 fn a_few_boxes() -> impl Strategy<Value = Scene> {
     let ends = || prop::array::uniform3(0..=6i8);
-    let boxes = prop::collection::vec((ends(), ends()), 2..12);
+    let boxes = prop::collection::vec((ends(), ends()), 2..10);
     boxes.prop_map(|boxes| {
         let point = |p: [i8; 3]| p.map(f64::from);
         let mut objects = vec![

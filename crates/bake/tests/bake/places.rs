@@ -7,7 +7,7 @@ use sightlines_bake::{BakeError, BakeOptions, CellsFrom, Report, SceneMethod, Ta
 use sightlines_cells::{Scene, SceneObject};
 use sightlines_geometry::{Aabb, Point3, Random};
 use sightlines_kdtree::{Matter, SceneOptions};
-use sightlines_multifocal::RaySampler;
+use sightlines_multifocal::{RaySampler, Split};
 use sightlines_progress::{Cancelled, Progress};
 use sightlines_pvs::BitMatrix;
 use sightlines_scenes::{CityOptions, TowerOptions, city, tower};
@@ -40,7 +40,17 @@ fn blocks() -> impl Strategy<Value = (Vec<(Aabb<3>, bool)>, u32)> {
         let max = std::array::from_fn(|k| f64::from(min[k] + size[k]));
         (boxed(min.map(f64::from), max), turned)
     });
-    (prop::collection::vec(one, 1..8), 1u32..40)
+    (prop::collection::vec(one, 1..8), 1u32..20)
+}
+
+/// A city of so many blocks, each house of which is a box of twelve triangles.
+pub(crate) fn city_of_boxes([blocks_x, blocks_z]: [u32; 2]) -> Scene {
+    let city = city(CityOptions { blocks_x, blocks_z, ..CityOptions::default() }).expect("a city");
+    let as_box = |house: &SceneObject| SceneObject {
+        name: house.name.clone(),
+        ..block(&Aabb::around(house.vertices.iter().copied()), false)
+    };
+    scene(city.objects().iter().map(as_box).collect())
 }
 
 fn cut(scene: &Scene, n_cells: u32) -> Places {
@@ -223,7 +233,8 @@ fn hidden_wrongly(scene: &Scene, cells: &[Aabb<3>], seen: &BitMatrix) -> (usize,
 #[test]
 fn scenes_without_walls_along_axes_have_sound_tables_of_places() {
     let scene = rooms();
-    let options = |method, threads| BakeOptions { method, threads, ..BakeOptions::default() };
+    let split = Split { n_rays: 1024, ..Split::default() };
+    let options = |method, threads| BakeOptions { method, split, threads, ..BakeOptions::default() };
     let baked = bake(&scene, &options(SceneMethod::Auto, 1)).expect("a table");
     let (TableGraph::Boxes(cells), Report::Regions(report)) = (&baked.graph, &baked.report) else {
         panic!("places are boxes")
@@ -261,10 +272,10 @@ fn axial_buildings_keep_their_cells() {
 
 #[test]
 fn sizes_and_numbers_are_kept() {
-    let city = city(CityOptions::default()).expect("a city");
+    let city = city_of_boxes([3, 3]);
     let how = |n_cells, cell_size| PlaceOptions { n_cells, cell_size };
     let cut = |how: PlaceOptions| places(&city, &SceneOptions::default(), &how);
-    for n_cells in [1, 7, 64, 300] {
+    for n_cells in [1, 7, 64, 150] {
         let places = cut(how(Some(n_cells), None)).expect("places");
         assert_eq!((places.cells.len(), faults(&places)), (n_cells as usize, 0), "{n_cells}: {:?}", places.summary);
         assert_eq!(places, cut(how(Some(n_cells), None)).expect("places"), "the same again");
@@ -306,7 +317,7 @@ fn sizes_and_numbers_are_kept() {
 /// Long cuts tell how far they are, and can be cancelled; who looks on changes nothing.
 #[test]
 fn cutting_is_observed() {
-    let city = city(CityOptions::default()).expect("a city");
+    let city = city_of_boxes([3, 3]);
     let how = PlaceOptions { n_cells: Some(40), cell_size: None };
     let seen = Mutex::new(Vec::new());
     let stop_at = AtomicU64::new(u64::MAX);
@@ -358,7 +369,7 @@ fn the_progress_of_cuts_never_falls_and_ends_when_they_do() {
         scene(vec![wall(0.0), wall(4.0), post(0.0), post(7.0), block(&boxed([0.0, 7.5, 0.0], [8.0; 3]), false)]);
     // All is solid, which is found late: then nothing is, and all is cut once more.
     let filled = scene(vec![wall(0.0), wall(4.0)]);
-    let city = city(CityOptions::default()).expect("a city");
+    let city = city_of_boxes([3, 3]);
     let size = |size: f64| PlaceOptions { n_cells: Some(1), cell_size: Some(size) };
     let n = |n: u32| PlaceOptions { n_cells: Some(n), cell_size: None };
     let longest = (0..3).map(|k| city.bounds().max[k] - city.bounds().min[k]).fold(0.0, f64::max);

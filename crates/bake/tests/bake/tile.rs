@@ -1,5 +1,6 @@
 //! Tiles of a world: together they say what a bake of the whole world says, as far as they look.
 
+use crate::places::city_of_boxes;
 use sightlines_bake::methods::{BufferOptions, OcclusionMethod};
 use sightlines_bake::tile::{BakedTile, Columns, NearTile, Tile, bake_far, bake_tile, tile_cells, tile_extent};
 use sightlines_bake::{BakeOptions, CellsFrom, SceneMethod, bake};
@@ -8,7 +9,6 @@ use sightlines_formats::{ViewCell, ViewCells};
 use sightlines_geometry::{Aabb, Random};
 use sightlines_multifocal::RaySampler;
 use sightlines_pvs::{CellId, Table};
-use sightlines_scenes::{CityOptions, city};
 use std::collections::BTreeSet;
 
 /// Blocks of the city along each side; each is a tile.
@@ -23,8 +23,7 @@ struct Block {
 
 /// The blocks of a city without its ground, and cells along the streets of each.
 fn blocks() -> Vec<Block> {
-    let n = N as u32;
-    let whole = city(CityOptions { blocks_x: n, blocks_z: n, ..CityOptions::default() }).unwrap();
+    let whole = city_of_boxes([N as u32; 2]);
     let block = |(x, z): (usize, usize)| {
         let of_block = format!("block_{x}_{z}/");
         let houses = whole.objects().iter().filter(|o| o.name.starts_with(&of_block)).cloned();
@@ -104,10 +103,10 @@ fn objects_of(table: &Table, cell: usize) -> Vec<u32> {
     seen.iter_ones(cell).map(|o| o as u32).collect()
 }
 
-/// The table of the whole city, with the cells and objects block by block.
-fn whole(blocks: &[Block], options: &BakeOptions<'_>) -> Table {
+/// The table of the whole city, with the objects block by block, and the cells of some of the blocks, in this order.
+fn whole(blocks: &[Block], of: &[usize], options: &BakeOptions<'_>) -> Table {
     let objects = blocks.iter().flat_map(|b| b.scene.objects().to_vec()).collect();
-    let cells = blocks.iter().flat_map(|b| b.cells.clone()).enumerate();
+    let cells = of.iter().flat_map(|&k| blocks[k].cells.clone()).enumerate();
     let cells = cells.map(|(k, cell)| ViewCell { id: k.to_string(), ..cell }).collect();
     let options = BakeOptions { cells: CellsFrom::Boxes(ViewCells { cells, axes: None }), ..options.clone() };
     bake(&Scene::new(objects).unwrap(), &options).unwrap().table
@@ -123,7 +122,7 @@ fn by(method: SceneMethod) -> BakeOptions<'static> {
 fn with_all_others_nearby_tiles_are_parts_of_the_whole_table() {
     let blocks = blocks();
     let options = by(SceneMethod::Sightlines);
-    let whole = whole(&blocks, &options);
+    let whole = whole(&blocks, &Vec::from_iter(0..N * N), &options);
     let (mut n_seen, mut n_all) = (0, 0);
     for tile in 0..N * N {
         let baked = bake_one(&blocks, tile, N, &options);
@@ -162,14 +161,17 @@ fn lost(blocks: &[Block], seen: &dyn Fn(usize) -> Seen, tile: usize, n_rays: u32
     (n_hits, n_lost)
 }
 
+/// Tiles at a corner, beside the middle and in it.
+const TILES: [usize; 3] = [0, N + 2, N * N / 2];
+
 #[test]
 fn tiles_show_what_rays_hit_and_little_more_than_the_whole_table() {
     let blocks = blocks();
     for method in [SceneMethod::Sightlines, SceneMethod::FromRegion(OcclusionMethod::LineSpace), SceneMethod::Both] {
         let options = by(method);
-        let whole = whole(&blocks, &options);
+        let whole = whole(&blocks, &TILES, &options);
         let (mut n_hits, mut n_tiles, mut n_near, mut n_of_whole) = (0, 0, 0, 0);
-        for tile in [0, 7, N * N / 2] {
+        for (k, tile) in TILES.into_iter().enumerate() {
             let baked = bake_one(&blocks, tile, 1, &options);
             let (hits, lost) = lost(&blocks, &|cell| baked.seen(&blocks, cell), tile, 4_000);
             assert_eq!(lost, 0, "{method} of tile {tile}");
@@ -180,12 +182,12 @@ fn tiles_show_what_rays_hit_and_little_more_than_the_whole_table() {
                 // Nearby, everything that hides there is known.
                 let is_near = |k: u32| k as usize / 4 == tile || baked.near.contains(&(k as usize / 4));
                 n_near += seen.objects.len();
-                let id = CellId((tile * 4 + cell) as u32);
+                let id = CellId((k * 4 + cell) as u32);
                 n_of_whole += objects_of(&whole, id.idx()).into_iter().filter(|o| is_near(*o)).count();
             }
         }
         assert!(n_hits > 20_000, "{n_hits}");
-        let n_far = [0, 7, N * N / 2].map(|tile| around(tile, 1).1.len() * 4).iter().sum::<usize>();
+        let n_far = TILES.map(|tile| around(tile, 1).1.len() * 4).iter().sum::<usize>();
         assert!(n_tiles > 0 && n_tiles * 2 < n_far, "{method}: {n_tiles} of {n_far} tiles far away are seen");
         assert!(
             n_near >= n_of_whole && n_near * 20 <= n_of_whole * 21,

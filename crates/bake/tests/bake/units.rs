@@ -1,6 +1,7 @@
 //! Bakes whose results are kept by units of work: stopped and taken up again, or shared by processes, they end with the same bytes.
 
 use crate::limit::building;
+use crate::places::city_of_boxes;
 use sightlines_bake::methods::{BufferOptions, OcclusionMethod, OcclusionMethodFactory};
 use sightlines_bake::region::{PackRegionsError, pack_regions};
 use sightlines_bake::{
@@ -16,7 +17,7 @@ use sightlines_geometry::Aabb;
 use sightlines_packed::{PackOptions, SizeClass, pack};
 use sightlines_progress::{Halt, Units};
 use sightlines_pvs::CellId;
-use sightlines_scenes::{CityOptions, OfficeOptions, TowerOptions, city, city_crossings, office, tower};
+use sightlines_scenes::{CityOptions, OfficeOptions, TowerOptions, city_crossings, office, tower};
 use sightlines_stabtree::{CertifyOptions, convex_network, plan_network, space_network};
 use sightlines_testkit::units::{Memory, Results, check_impostor, check_units};
 use std::collections::BTreeSet;
@@ -30,7 +31,7 @@ fn baked<'a>(
 }
 
 fn scene() -> sightlines_cells::Scene {
-    tower(TowerOptions { floors: 2, rooms_x: 4, rooms_y: 3, furniture: 1, ..TowerOptions::default() }).unwrap()
+    tower(TowerOptions { floors: 2, rooms_x: 2, rooms_y: 1, furniture: 0, ..TowerOptions::default() }).unwrap()
 }
 
 #[test]
@@ -43,34 +44,33 @@ fn sightlines_of_a_scene() {
     check_impostor(baked((&scene).into(), &options), "objects");
 }
 
-/// Eyes at the crossings of a city and beside them.
-fn streets(city: CityOptions) -> CellsFrom {
-    let crossings = city_crossings(city).unwrap();
-    let beside = |by: f64| {
-        let moved = move |b: &Aabb<3>| Aabb {
-            min: [b.min[0] + by, b.min[1], b.min[2]],
-            max: [b.max[0] + by, b.max[1], b.max[2]],
-        };
-        crossings.iter().map(moved).collect::<Vec<_>>()
+/// Eyes so far beside the crossings of a city of so many blocks.
+fn streets([blocks_x, blocks_z]: [u32; 2], beside: &[f64]) -> CellsFrom {
+    let crossings = city_crossings(CityOptions { blocks_x, blocks_z, ..CityOptions::default() }).unwrap();
+    let moved = |by: &f64| {
+        let along =
+            |b: &Aabb<3>| Aabb { min: [b.min[0] + by, b.min[1], b.min[2]], max: [b.max[0] + by, b.max[1], b.max[2]] };
+        crossings.iter().map(along).collect::<Vec<_>>()
     };
-    let boxes = [0.0, 8.0, 16.0, 24.0].map(beside).concat();
+    let boxes: Vec<Aabb<3>> = beside.iter().flat_map(moved).collect();
     let cell = |(k, bounds): (usize, Aabb<3>)| ViewCell { id: k.to_string(), bounds };
     CellsFrom::Boxes(ViewCells { cells: boxes.into_iter().enumerate().map(cell).collect(), axes: None })
 }
 
 #[test]
 fn cells_by_from_region_methods() {
-    let options = CityOptions { blocks_x: 4, blocks_z: 4, ..CityOptions::default() };
-    let scene = city(options).unwrap();
-    let buffers = BufferOptions { planes: 2, texels: 64, ..BufferOptions::default() };
+    // Few triangles: a scene is prepared anew for each way.
+    let blocks = [3, 3];
+    let scene = city_of_boxes(blocks);
+    let buffers = BufferOptions { planes: 2, texels: 32, ..BufferOptions::default() };
     for method in [OcclusionMethod::Multifocal, OcclusionMethod::Voxels] {
         let options = BakeOptions {
             method: SceneMethod::FromRegion(method),
-            cells: streets(options),
+            cells: streets(blocks, &[0.0, 8.0, 16.0]),
             buffers,
             ..BakeOptions::default()
         };
-        assert_eq!(check_units(baked((&scene).into(), &options)), [("cells", 36)]);
+        assert_eq!(check_units(baked((&scene).into(), &options)), [("cells", 12)]);
         check_impostor(baked((&scene).into(), &options), "cells");
     }
 }
@@ -84,8 +84,8 @@ fn both_methods_one_after_the_other() {
     let phases = check_units(baked((&scene).into(), &options));
     assert_eq!(phases, [("cells", 6), ("boxes", 6)]);
     check_impostor(baked((&scene).into(), &options), "boxes");
-    let scene =
-        tower(TowerOptions { floors: 1, rooms_x: 2, rooms_y: 1, furniture: 0, ..TowerOptions::default() }).unwrap();
+    let walls = TowerOptions { floors: 1, rooms_x: 2, rooms_y: 1, furniture: 0, ..TowerOptions::default() };
+    let scene = tower(TowerOptions { windows: false, ..walls }).unwrap();
     let options = BakeOptions { cells: CellsFrom::KdTree, ..options };
     let phases: Vec<_> = check_units(baked((&scene).into(), &options)).into_iter().map(|(name, _)| name).collect();
     assert_eq!(phases, ["pairs", "objects", "cells"]);
@@ -163,7 +163,7 @@ fn proofs_of_tables() {
     let options = OfficeOptions { rooms_x: 3, rooms_y: 1, block: 2, ..OfficeOptions::default() };
     let (plan, prt) = (office(options).unwrap(), rooms(4, 2));
     let scene =
-        tower(TowerOptions { floors: 1, rooms_x: 2, rooms_y: 1, furniture: 1, ..TowerOptions::default() }).unwrap();
+        tower(TowerOptions { floors: 1, rooms_x: 2, rooms_y: 1, furniture: 0, ..TowerOptions::default() }).unwrap();
     for (input, phases, least) in [
         (BakeInput::from(&plan), &["proofs"][..], 60),
         ((&scene).into(), &["proofs", "object-proofs", "line-proofs"], 40),
@@ -182,7 +182,8 @@ fn proofs_of_tables() {
 fn kept_proofs_are_not_trusted() {
     let bakes = |rooms_x: u32| {
         let options = OfficeOptions { rooms_x, rooms_y: 1, block: 2, ..OfficeOptions::default() };
-        let tower_options = TowerOptions { floors: 1, rooms_x, rooms_y: 1, furniture: 1, ..TowerOptions::default() };
+        let tower_options = TowerOptions { floors: 1, rooms_x: rooms_x - 1, rooms_y: 1, ..TowerOptions::default() };
+        let tower_options = TowerOptions { furniture: 1, ..tower_options };
         let (plan, scene, prt) = (office(options).unwrap(), tower(tower_options).unwrap(), rooms(rooms_x, 2));
         [BakeInput::from(&plan), (&scene).into(), (&prt).into()]
             .map(|input| bake(input, &BakeOptions::default()).unwrap())
@@ -260,8 +261,7 @@ fn check_proofs(baked: &Baked<TableGraph, Report>, bytes: &[u8]) {
 /// Row by row the packed table is written that the whole one gives.
 #[test]
 fn rows_one_by_one_make_the_same_packed_table() {
-    let options = CityOptions { blocks_x: 4, blocks_z: 4, ..CityOptions::default() };
-    let (scene, cells) = (city(options).unwrap(), streets(options));
+    let (scene, cells) = (city_of_boxes([3, 3]), streets([3, 3], &[0.0, 8.0, 16.0, 24.0]));
     let factory = OcclusionMethodFactory::new(OcclusionMethod::Voxels, &scene, &BufferOptions::default()).unwrap();
     let make = || factory.instance();
     let options = RegionBakeOptions { method: Some(&make), sightlines: false, ..RegionBakeOptions::new(&cells) };

@@ -26,6 +26,9 @@ pub(crate) fn run(folder: &Path, n: [usize; 2], role: Role) -> Result<Vec<u8>, O
 }
 
 proptest! {
+    // Each case writes many files, and waits for the disk each time.
+    #![proptest_config(ProptestConfig { cases: ProptestConfig::default().cases / 6 + 1, ..ProptestConfig::default() })]
+
     /// Invariant: shards in any order, some of them twice, and a merge give the bytes of a bake of one process.
     #[test]
     fn shards_make_the_same_bytes(n in [0..12_usize, 0..12_usize], max_shards in 1..6_usize, order in any::<u64>()) {
@@ -179,6 +182,9 @@ fn other_inputs_and_programs_are_refused() {
 }
 
 proptest! {
+    // Each case writes many files, and waits for the disk each time.
+    #![proptest_config(ProptestConfig { cases: ProptestConfig::default().cases / 6 + 1, ..ProptestConfig::default() })]
+
     /// Invariant: however shards are grouped, each part has the bytes that a process of its own writes, and so has the merge.
     #[test]
     fn groups_of_shards_make_the_same_parts(n in [1..16_usize, 1..16_usize], max_shards in 1..8_usize, groups in any::<u64>()) {

@@ -31,6 +31,9 @@ fn others(folder: &Path, end: &str) -> Vec<String> {
 }
 
 proptest! {
+    // Each case writes many files, and waits for the disk each time.
+    #![proptest_config(ProptestConfig { cases: ProptestConfig::default().cases / 6 + 1, ..ProptestConfig::default() })]
+
     /// Invariant: workers compute each unit once, all come to the end, and one of them writes what a bake of one process makes.
     #[test]
     fn workers_share_a_bake(n in [0..12_usize, 0..12_usize], max_shards in 1..8_usize, n_workers in 1..5_usize) {

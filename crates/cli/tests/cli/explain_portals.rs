@@ -25,7 +25,7 @@ fn point(value: &Value) -> [f64; 3] {
     serde_json::from_value(value.clone()).expect("three numbers")
 }
 
-/// Every pair of a map: the answer is the table's, the portal file and the table give the same, a line that is shown
+/// Every pair of a map, from the one or from the other: the answer is the table's, the portal file and the table give the same, a line that is shown
 /// passes the portals that it says where it says, and the checker accepts everything.
 #[test]
 fn clusters_are_explained() {
@@ -34,7 +34,8 @@ fn clusters_are_explained() {
     let graph = graph_of_prt(&parse_prt(map.prt.as_bytes()).expect("sound portals"));
     let table = Table::from_bytes(&folder.read("map.pvs")).expect("a sound table");
     let (mut n_visible, mut n_hidden) = (0, 0);
-    for [a, b] in (0..15).flat_map(|a| (0..15).filter(move |&b| a != b).map(move |b| [a, b])) {
+    let is_asked = |a: u32, b: u32| if (a + b).is_multiple_of(2) { a < b } else { a > b };
+    for [a, b] in (0..15).flat_map(|a| (0..15).filter(move |&b| is_asked(a, b)).map(move |b| [a, b])) {
         let listed = table.sees(CellId(a), CellId(b));
         let run = explain(&folder, "map.pvs", [a, b], &["--json"]).expect(i32::from(!listed));
         let reply = run.json();
@@ -69,7 +70,7 @@ fn clusters_are_explained() {
             n_hidden += 1;
         }
     }
-    assert!(n_visible > 50 && n_hidden > 50, "{n_visible} {n_hidden}");
+    assert!(n_visible > 50 && n_hidden > 25, "{n_visible} {n_hidden}");
 }
 
 #[test]

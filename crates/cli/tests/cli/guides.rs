@@ -5,6 +5,7 @@ use crate::common::quake::row_of_leafs;
 use crate::common::{Folder, bytes, levels};
 use sightlines::formats::quake::BspFormat;
 use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
 
 /// A block of a guide between fences: what stands behind the opening fence, and the lines.
 fn blocks(guide: &str) -> Vec<(String, String)> {
@@ -30,9 +31,20 @@ fn guide(name: &str) -> String {
     std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// Runs the commands of a guide in a folder that has what it starts from; how many there were. Files that a guide shows are written first.
+/// The commands of a block, each in words without what stands behind `#`, a comment as for a shell.
+fn commands(block: &str) -> impl Iterator<Item = Vec<&str>> {
+    let lines = block.lines().filter(|line| !line.trim().is_empty() && !line.starts_with("cargo "));
+    lines.map(|line| line.split_whitespace().take_while(|word| *word != "#").collect())
+}
+
+/// Runs the commands of a guide in a folder that has what it starts from; how many there were.
 fn follow(folder: &Folder, name: &str) -> usize {
-    let mut n_commands = 0;
+    outputs_of(folder, name).len()
+}
+
+/// Runs the commands of a guide in a folder that has what it starts from; each with what it printed. Files that a guide shows are written first.
+fn outputs_of(folder: &Folder, name: &str) -> Vec<(String, String)> {
+    let mut outputs = Vec::new();
     for (kind, text) in blocks(&guide(name)) {
         if let Some(file) = ["json ", "csv ", "rej "].iter().find_map(|kinds| kind.strip_prefix(kinds)) {
             folder.write(file, &text);
@@ -40,15 +52,13 @@ fn follow(folder: &Folder, name: &str) -> usize {
         if kind != "sh" {
             continue;
         }
-        for line in text.lines().filter(|line| !line.trim().is_empty() && !line.starts_with("cargo ")) {
-            // What stands behind `#` is a comment, as for a shell.
-            let mut words = line.split_whitespace().take_while(|word| *word != "#");
-            let program = words.next();
+        for words in commands(&text) {
             // Quotes keep patterns from the shell.
-            let args: Vec<&str> = words.map(|word| word.trim_matches('\'')).collect();
-            let run = match program {
-                Some("sightlines") => folder.run(&args),
-                Some("sightlines-vis") => folder.run_vis(&args),
+            let args: Vec<&str> = words[1..].iter().map(|word| word.trim_matches('\'')).collect();
+            let line = words.join(" ");
+            let run = match words[0] {
+                "sightlines" => folder.run(&args),
+                "sightlines-vis" => folder.run_vis(&args),
                 _ => panic!("{name}: {line}"),
             };
             // The answer may be no: two cells that do not see each other.
@@ -59,10 +69,10 @@ fn follow(folder: &Folder, name: &str) -> usize {
                 run.code,
                 run.err
             );
-            n_commands += 1;
+            outputs.push((line, run.out));
         }
     }
-    n_commands
+    outputs
 }
 
 #[test]
@@ -75,8 +85,7 @@ fn the_guide_for_engines_works() {
 }
 
 /// The share of the polygons that a viewer has on average, in the last line of `build`.
-fn polygons_of_a_viewer(folder: &Folder, args: &[&str]) -> f64 {
-    let out = folder.run(&[&["build"], args, &["-o", "measured.pvs"]].concat()).expect(0).out;
+fn polygons_of_a_viewer(out: &str) -> f64 {
     let (_, share) = out.split_once(": a viewer has ").expect("in the last line");
     share.split_whitespace().next().and_then(|number| number.parse().ok()).expect("a number")
 }
@@ -153,16 +162,22 @@ fn the_guide_for_scans_works() {
     let folder = Folder::new();
     folder.write("scan.glb", levels::scan(false));
     folder.write("pieces.glb", levels::scan(true));
-    assert_eq!(follow(&folder, "scans.md"), 8);
+    let outputs = outputs_of(&folder, "scans.md");
+    assert_eq!(outputs.len(), 8);
     for name in ["scan-before.svg", "scan-after.svg"] {
         assert_same_picture(name, &folder.read(name));
     }
-    let cells = ["--view-region", "0,0.5,0,32,3,32", "--grid", "12,1,12", "--method"];
-    let polygons = |scene: &'static str, method: &'static str| {
-        polygons_of_a_viewer(&folder, &[&[scene][..], &cells, &[method]].concat())
+    // What the guide builds, and the pieces with lines of sight alone.
+    let built = |scene: &str| {
+        let start = format!("sightlines build {scene} ");
+        let is_built = |line: &str| line.starts_with(&start) && line.contains(" --method auto ");
+        let (_, out) = outputs.iter().find(|(line, _)| is_built(line)).expect("the guide builds it");
+        polygons_of_a_viewer(out)
     };
-    assert_eq!((polygons("pieces.glb", "sightlines"), polygons("scan.glb", "auto")), (100.0, 100.0));
-    assert!((50.0..70.0).contains(&polygons("pieces.glb", "auto")));
+    let cells = ["--view-region", "0,0.5,0,32,3,32", "--grid", "12,1,12", "--method", "sightlines"];
+    let lines = folder.run(&[&["build", "pieces.glb", "-o", "lines.pvs"][..], &cells].concat()).expect(0).out;
+    assert_eq!((polygons_of_a_viewer(&lines), built("scan.glb")), (100.0, 100.0));
+    assert!((50.0..70.0).contains(&built("pieces.glb")));
 }
 
 /// A picture of the documents is the one that the program draws.
@@ -174,16 +189,33 @@ fn assert_same_picture(name: &str, drawn: &[u8]) {
     assert!(drawn == std::fs::read(kept).expect("the picture is there"), "{name}: BLESS=1 draws it anew");
 }
 
+/// The commands of the README, and the page that one of them writes.
+static README: LazyLock<(Vec<String>, Vec<u8>)> = LazyLock::new(|| {
+    let folder = Folder::new();
+    let lines = outputs_of(&folder, "../../README.md").into_iter().map(|(line, _)| line).collect();
+    (lines, folder.read("tower.html"))
+});
+
 #[test]
 fn the_guide_to_the_viewer_works() {
-    let folder = Folder::new();
-    assert_eq!(follow(&folder, "viewer.md"), 3);
-    assert!(folder.read("tower.html").starts_with(b"<!DOCTYPE html>"));
+    let blocks = blocks(&guide("viewer.md"));
+    let blocks = blocks.iter().filter(|(kind, _)| kind == "sh");
+    let lines: Vec<String> = blocks.flat_map(|(_, text)| commands(text)).map(|words| words.join(" ")).collect();
+    assert_eq!(lines.len(), 3);
+    // Commands of the README, in its order, are not run twice.
+    let page = if README.0.iter().filter(|line| lines.contains(line)).eq(&lines) {
+        README.1.clone()
+    } else {
+        let folder = Folder::new();
+        follow(&folder, "viewer.md");
+        folder.read("tower.html")
+    };
+    assert!(page.starts_with(b"<!DOCTYPE html>"));
 }
 
 #[test]
 fn the_commands_of_the_readme_work() {
-    assert_eq!(follow(&Folder::new(), "../../README.md"), 7);
+    assert_eq!(README.0.len(), 7);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Jobs: builds that processes share.
 
 use crate::common::quake::rooms;
-use crate::common::{Folder, wad};
+use crate::common::{Folder, one_floor, wad};
 use serde_json::{Value, json};
 use std::process::{Command, Stdio};
 
@@ -15,8 +15,7 @@ pub(crate) const COMMANDS: [(&str, &str); 4] = [
 
 pub(crate) fn inputs() -> Folder {
     let folder = Folder::new();
-    let small = ["--floors", "1", "--rooms-x", "2", "--rooms-y", "1", "--furniture", "1"];
-    folder.run(&[&["generate", "tower", "-o", "tower.glb"][..], &small].concat()).expect(0);
+    folder.write("tower.glb", one_floor(1, 0));
     let map = rooms(4, 3);
     folder.write("map.bsp", map.bsp);
     folder.write("map.prt", map.prt);

@@ -1,14 +1,13 @@
 //! Budgets of memory: what is refused before the work, what fits otherwise, and what is stopped.
 
-use crate::common::Folder;
+use crate::common::{Folder, small_tower};
 use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
 
 /// A scene, and a build of it in many cells.
 fn scene() -> Folder {
     let folder = Folder::new();
-    let small = ["--floors", "1", "--rooms-x", "2", "--rooms-y", "1", "--furniture", "1"];
-    folder.run(&[&["generate", "tower", "-o", "tower.glb"][..], &small].concat()).expect(0);
+    folder.write("tower.glb", small_tower());
     folder
 }
 
@@ -101,10 +100,7 @@ fn shards_have_budgets_too() {
 /// Killed once it has results, and taken up, levels have the bytes of those that were left alone.
 #[test]
 fn levels_go_on_where_they_were_killed() {
-    let folder = Folder::new();
-    let small = ["--floors", "1", "--rooms-x", "2", "--rooms-y", "1", "--furniture", "1"];
-    folder.run(&[&["generate", "tower", "-o", "tower.glb"][..], &small].concat()).expect(0);
-    folder.run(&["build", "tower.glb", "-o", "tower.pvs", "-q"]).expect(0);
+    let folder = Folder::with_bare_tower();
     let args = ["levels", "tower.glb", "--table", "tower.pvs", "--method", "none", "--budget", "0.0001", "-q"];
     let args = [&args[..], &["--save-after", "0", "-o"]].concat();
     let with = |out: &'static str, more: &[&'static str]| [&args[..], &[out], more].concat();

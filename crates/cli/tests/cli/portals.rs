@@ -27,8 +27,9 @@ fn a_map_without_its_portal_file_has_portals() {
         folder.run(&["vis", "map.bsp", "-o", "two.bsp", "--prt", "made.prt"]).expect(0);
         assert_eq!(folder.read("one.bsp"), folder.read("two.bsp"), "{format:?}");
         folder.run(&["build", "map.bsp", "-o", "map.pvs"]).expect(0);
-        folder.run(&["verify", "map.pvs", "map.bsp"]).expect(0);
-        folder.run(&["verify", "one.bsp", "map.bsp"]).expect(0);
+        for table in ["map.pvs", "one.bsp"] {
+            folder.run(&["verify", table, "map.bsp", "--rays", "10000"]).expect(0);
+        }
         // A portal file goes before.
         folder.write("map.prt", row_of_leafs(format).prt);
         let own = folder.run(&["vis", "map.bsp", "-o", "own.bsp"]).expect(0);
@@ -78,7 +79,7 @@ fn maps_without_a_tree_are_refused() {
     assert_eq!(folder.names(), ["map.bsp"]);
 }
 
-/// Every byte of a small map, changed: an answer or an error, and nothing half written.
+/// Every byte of a small map, changed in one of three ways in turn: an answer or an error, and nothing half written.
 #[test]
 fn changed_maps_are_refused_or_have_portals() {
     use sightlines::bake::quake::portals_of_map;
@@ -86,16 +87,14 @@ fn changed_maps_are_refused_or_have_portals() {
     for format in BspFormat::ALL {
         let bytes = row_of_leafs(format).bsp;
         for at in 0..bytes.len() {
-            for flip in [0xFF, 0x80, 0x01] {
-                let mut changed = bytes.clone();
-                changed[at] ^= flip;
-                let Ok(bsp) = sightlines::formats::Bsp::parse(changed) else { continue };
-                match portals_of_map(&bsp) {
-                    Ok(_) => n_made += 1,
-                    Err(error) => {
-                        assert!(!error.to_string().is_empty());
-                        n_refused += 1;
-                    }
+            let mut changed = bytes.clone();
+            changed[at] ^= [0xFF, 0x80, 0x01][at % 3];
+            let Ok(bsp) = sightlines::formats::Bsp::parse(changed) else { continue };
+            match portals_of_map(&bsp) {
+                Ok(_) => n_made += 1,
+                Err(error) => {
+                    assert!(!error.to_string().is_empty());
+                    n_refused += 1;
                 }
             }
         }

@@ -1,9 +1,10 @@
 //! Builds that are stopped, and go on.
 
-use crate::common::Folder;
+use crate::common::{Folder, small_tower};
 use sightlines::checkpoint::{Journal, Key, Opening};
 use sightlines::progress::UnitStore;
 use std::process::{Child, Command, Stdio};
+use std::sync::LazyLock;
 use std::time::{Duration, Instant};
 
 /// A build of some seconds in 48 units, with its results in a file from the first one on.
@@ -34,15 +35,18 @@ fn start(folder: &Folder, args: &[&str]) -> Child {
 
 /// The folder with the scene, the bytes of a build that nobody stopped, and how long that took.
 fn scene() -> (Folder, Vec<u8>, Duration) {
+    static WHOLE: LazyLock<(Vec<u8>, Duration)> = LazyLock::new(|| {
+        let folder = Folder::new();
+        folder.write("tower.glb", small_tower());
+        let begin = Instant::now();
+        folder.run(&BUILD).expect(0);
+        let took = begin.elapsed();
+        assert_eq!(folder.names(), ["out.pvs", "tower.glb"], "a build that is done leaves no state");
+        (folder.read("out.pvs"), took)
+    });
     let folder = Folder::new();
-    let small = ["--floors", "1", "--rooms-x", "2", "--rooms-y", "1", "--furniture", "1"];
-    folder.run(&[&["generate", "tower", "-o", "tower.glb"][..], &small].concat()).expect(0);
-    let begin = Instant::now();
-    folder.run(&BUILD).expect(0);
-    let took = begin.elapsed();
-    let whole = folder.read("out.pvs");
-    std::fs::remove_file(folder.path("out.pvs")).unwrap();
-    assert_eq!(folder.names(), ["tower.glb"], "a build that is done leaves no state");
+    folder.write("tower.glb", small_tower());
+    let (whole, took) = WHOLE.clone();
     (folder, whole, took)
 }
 
@@ -53,17 +57,22 @@ fn journal(folder: &Folder) -> Journal {
     Journal::open(&folder.path(STATE), key, env!("CARGO_PKG_VERSION"), Opening::Resume, Duration::ZERO).unwrap()
 }
 
-/// Killed twenty times at moments of chance, and taken up each time, a build ends with the bytes of one that was left alone.
+/// Killed six times at moments of chance, every other time once it has more results, and taken up each time, a build ends with the bytes of one that was left alone.
 #[test]
 fn a_build_that_is_killed_again_and_again_loses_nothing() {
     let (folder, whole, took) = scene();
     let resumed = [&BUILD[..], &["--resume"]].concat();
     let (mut seed, mut n_kills, mut n_before) = (1_u64, 0, 0);
     let mut kept = Vec::new();
-    while n_kills < 20 {
+    while n_kills < 6 {
         seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        let n_bytes = || std::fs::metadata(folder.path(STATE)).map_or(0, |state| state.len());
+        let least = if n_kills % 2 == 1 { n_bytes() + 1000 } else { 0 };
         let mut child = start(&folder, &resumed);
-        std::thread::sleep(took.mul_f64((seed >> 40) as f64 / (1 << 24) as f64 * 0.7));
+        while n_bytes() < least && child.try_wait().unwrap().is_none() {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        std::thread::sleep(took.mul_f64((seed >> 40) as f64 / (1 << 24) as f64 * 0.3));
         child.kill().expect("a child can be killed");
         if child.wait().expect("a child ends").code().is_some() {
             // It was faster; another build begins.

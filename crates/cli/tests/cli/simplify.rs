@@ -1,6 +1,6 @@
 //! `simplify` and `levels`: scenes with fewer triangles, what they may be used for, and what is refused.
 
-use crate::common::{Folder, levels, names};
+use crate::common::{Folder, levels, names, one_floor};
 use serde_json::{Value, json};
 use sightlines::cells::Scene;
 use sightlines::formats::levels::read_levels_index;
@@ -9,6 +9,11 @@ use std::collections::BTreeSet;
 
 /// A box in the small tower.
 const VOLUME: &str = "1,0.5,1,2,1.5,2";
+
+/// A wall with a triangle behind it, and one before it; and a box from where the wall hides the one.
+const WALL: &str = "v -9 -9 0\nv 9 -9 0\nv 9 9 0\nv -9 9 0\nv 0 0 -1\nv 1 0 -1\nv 0 1 -1\nv 0 0 1\nv 1 0 1\nv 0 1 1\n\
+                    o wall\nusemtl red\nf 1 2 3 4\no behind\nf 5 6 7\no before\nf 8 9 10\n";
+const BEFORE_WALL: &str = "-0.5,-0.5,4,0.5,0.5,5";
 
 /// The triangles of all objects, by name, with the bits of their corners.
 fn triangles(scene: &Scene) -> BTreeSet<(String, [[u64; 3]; 3])> {
@@ -25,7 +30,7 @@ fn simplified(folder: &Folder, out: &str, more: &[&str]) -> Value {
 
 #[test]
 fn what_is_hidden_goes_and_the_rest_stays() {
-    let folder = Folder::with_tower();
+    let folder = Folder::with_bare_tower();
     let reply = simplified(&folder, "o.glb", &["--volume", VOLUME, "--report"]);
     let n = |key: &str| reply[key].as_u64().unwrap_or_else(|| panic!("{key}: {reply}"));
     assert_eq!(n("n_before"), n("n_hidden") + n("n_left"));
@@ -60,7 +65,9 @@ fn what_is_hidden_goes_and_the_rest_stays() {
     assert!(both["n_left"].as_u64() >= reply["n_left"].as_u64());
     let nobody = simplified(&folder, "c.glb", &["--volume", VOLUME, "--method", "none"]);
     assert_eq!((&nobody["n_hidden"], &nobody["n_left"]), (&json!(0), &reply["n_before"]));
-    let text = folder.run(&["simplify", "tower.glb", "--volume", VOLUME, "-o", "c.glb", "--report"]).expect(0).out;
+    // The rays of a report are quick in a scene of a few triangles.
+    folder.write("wall.obj", WALL);
+    let text = folder.run(&["simplify", "wall.obj", "--volume", BEFORE_WALL, "-o", "c.glb", "--report"]).expect(0).out;
     for line in [
         "eyes           in a box; hidden by multifocal\n",
         "promised       0.0 %",
@@ -102,13 +109,51 @@ fn budgets_are_kept_and_moved_scenes_hide_nothing() {
 
 #[test]
 fn cells_of_a_table_are_views_too() {
-    let folder = Folder::with_tower();
-    let cells = ["--table", "tower.pvs", "--cell", "0,1"];
-    let by_table = simplified(&folder, "t.glb", &[&cells[..], &["--method", "none", "--report"]].concat());
-    assert!(by_table["n_hidden"].as_u64() > Some(0), "{by_table}");
+    let folder = Folder::new();
+    folder.write("rooms.obj", three_rooms());
+    folder.run(&["build", "rooms.obj", "-o", "rooms.pvs", "-q"]).expect(0);
+    let simplified = |more: &[&str]| {
+        let args = ["simplify", "rooms.obj", "-o", "t.glb", "--json", "-q", "--table", "rooms.pvs", "--cell", "0,1"];
+        folder.run(&[&args[..], more].concat()).expect(0).json()
+    };
+    let by_table = simplified(&["--method", "none", "--report"]);
+    // The table in the last room, and the wall behind it.
+    assert!(by_table["n_hidden"].as_u64() >= Some(4) && by_table["n_left"].as_u64() > Some(0), "{by_table}");
     assert_eq!(by_table["report"]["changed"], json!(0.0));
-    let by_both = simplified(&folder, "t.glb", &cells);
+    let by_both = simplified(&[]);
     assert!(by_both["n_hidden"].as_u64() >= by_table["n_hidden"].as_u64());
+}
+
+/// Three closed rooms in a row, with a table in the last one.
+fn three_rooms() -> String {
+    let mut text = String::new();
+    for (name, [min, max]) in [
+        ("wall", [[0, 0, 0], [0, 3, 4]]),
+        ("wall", [[4, 0, 0], [4, 3, 4]]),
+        ("wall", [[8, 0, 0], [8, 3, 4]]),
+        ("wall", [[12, 0, 0], [12, 3, 4]]),
+        ("side", [[0, 0, 0], [12, 3, 0]]),
+        ("side", [[0, 0, 4], [12, 3, 4]]),
+        ("floor", [[0, 0, 0], [12, 0, 4]]),
+        ("ceiling", [[0, 3, 0], [12, 3, 4]]),
+        ("table", [[10, 1, 1], [11, 1, 3]]),
+    ] {
+        let [u, v] = match (0..3).find(|&k| min[k] == max[k]) {
+            Some(0) => [1, 2],
+            Some(1) => [0, 2],
+            _ => [0, 1],
+        };
+        text += &format!("o {name}\n");
+        for (far_u, far_v) in [(false, false), (true, false), (true, true), (false, true)] {
+            let mut corner: [i32; 3] = min;
+            for (axis, is_far) in [(u, far_u), (v, far_v)] {
+                corner[axis] = if is_far { max[axis] } else { min[axis] };
+            }
+            text += &format!("v {} {} {}\n", corner[0], corner[1], corner[2]);
+        }
+        text += "f -4 -3 -2 -1\n";
+    }
+    text
 }
 
 /// A closed room with a floor of many squares, turned about z, in single precision.
@@ -155,11 +200,8 @@ fn what_is_merged_along_a_frame_hides_nothing() {
 #[test]
 fn objs_lose_their_materials_and_nothing_else() {
     let folder = Folder::new();
-    // A wall with a square behind it, and one before it.
-    let obj = "v -9 -9 0\nv 9 -9 0\nv 9 9 0\nv -9 9 0\nv 0 0 -1\nv 1 0 -1\nv 0 1 -1\nv 0 0 1\nv 1 0 1\nv 0 1 1\n\
-               o wall\nusemtl red\nf 1 2 3 4\no behind\nf 5 6 7\no before-mirror\nf 8 9 10\n";
-    folder.write("s.obj", obj);
-    let args = ["simplify", "s.obj", "--volume", "-0.5,-0.5,4,0.5,0.5,5", "-o", "s.glb"];
+    folder.write("s.obj", WALL.replace("before", "before-mirror"));
+    let args = ["simplify", "s.obj", "--volume", BEFORE_WALL, "-o", "s.glb"];
     assert!(folder.run(&args).expect(2).err.contains("the scene has mirrors (1)"));
     let run = folder.run(&[&args[..], &["--ignore-mirrors"]].concat()).expect(0);
     assert!(run.err.contains("s.obj: of an OBJ, triangles and names are kept; materials are not"), "{}", run.err);
@@ -261,8 +303,8 @@ fn levels_of_decimals_are_rounded_aloud() {
 
 #[test]
 fn bad_input_is_refused() {
-    let folder = Folder::with_tower();
-    folder.run(&["generate", "tower", "-o", "other.glb", "--floors", "2"]).expect(0);
+    let folder = Folder::with_bare_tower();
+    folder.write("other.glb", one_floor(1, 1));
     folder.write("word.glb", "word");
     let refused = |args: &[&str], what: &str| {
         let run = folder.run(&[args, &["-q"]].concat()).expect(2);
@@ -309,7 +351,7 @@ fn bad_input_is_refused() {
 
 #[test]
 fn levels_are_written_and_walked_with() {
-    let folder = Folder::with_tower();
+    let folder = Folder::with_bare_tower();
     let args = [
         "levels",
         "tower.glb",
@@ -365,7 +407,7 @@ fn levels_are_written_and_walked_with() {
     let text = folder.run(&[&walk[..], &["l"]].concat()).expect(0).out;
     assert!(text.contains("with levels on average"), "{text}");
     // Levels of another table, and none.
-    folder.run(&["generate", "tower", "-o", "other.glb", "--floors", "2"]).expect(0);
+    folder.write("other.glb", one_floor(1, 1));
     folder.run(&["build", "other.glb", "-o", "other.pvs", "-q"]).expect(0);
     let error = folder.refused(&["walk", "other.pvs", "--random", "9", "--levels", "l"]);
     assert!(error.starts_with("l/index.json: the levels are for another table: the index has "), "{error}");

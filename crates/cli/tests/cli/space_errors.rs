@@ -132,7 +132,7 @@ fn sizes_and_flat_scenes() {
     for size in ["1e60", "1e-41"] {
         folder.write("far.obj", format!("o wall\nv 0 0 0\nv {size} 0 0\nv 0 {size} {size}\nf 1 2 3\n"));
         folder.run(&["build", "far.obj", "-o", "far.pvs"]).expect(0);
-        folder.run(&["draw", "far.pvs", "-o", &format!("far.{DRAWN}"), "--isometric"]).expect(0);
+        folder.run(&["draw", "far.pvs", "-o", &format!("far.{DRAWN}"), "--isometric", "--size", "200"]).expect(0);
         folder.run(&["draw", "far.pvs", "-o", "far.svg", "--cell", "0"]).expect(0);
     }
     folder.write("floor.obj", "o floor\nv 0 0 0\nv 4 0 0\nv 0 0 4\nf 1 2 3\n");

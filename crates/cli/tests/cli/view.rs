@@ -1,17 +1,18 @@
 //! Pages of tables: what is refused, what is left out. That they show what the tables say is tested in a browser.
 
-use crate::common::Folder;
+use crate::common::{Folder, maze_text, one_floor};
 use serde_json::{Value, json};
+use sightlines::cells::{Scene, SceneObject};
+use sightlines::formats::scene::{parse_glb, read_scene, write_glb};
 use sightlines_testkit::browser::{Opened, chromium};
 use std::path::Path;
 
 #[test]
 fn a_page_is_written_of_plain_and_packed_tables() {
-    let folder = Folder::new();
-    folder.run(&["demo", "--out", "."]).expect(0);
-    folder.run(&["pack", "plan.pvs", "-o", "plan.pvz"]).expect(0);
-    for table in ["plan.pvs", "plan.pvz"] {
-        let command = ["view", table, "--title", "same", "--scene", "plan.geojson", "-o", "page.html", "--json"];
+    let folder = Folder::with_office();
+    folder.run(&["pack", "office.pvs", "-o", "office.pvz"]).expect(0);
+    for table in ["office.pvs", "office.pvz"] {
+        let command = ["view", table, "--title", "same", "--scene", "office.geojson", "-o", "page.html", "--json"];
         let reply = folder.run(&command).expect(0).json();
         let page = folder.read("page.html");
         assert_eq!((&reply["n_bytes"], &reply["n_left_out"]), (&json!(page.len()), &json!(0)));
@@ -25,29 +26,28 @@ fn a_page_is_written_of_plain_and_packed_tables() {
 
 #[test]
 fn what_does_not_belong_together_is_refused() {
-    let folder = Folder::new();
-    folder.run(&["demo", "--out", "office"]).expect(0);
-    folder.run(&["demo", "--out", "other", "--seed", "2"]).expect(0);
-    folder.run(&["demo", "tower", "--out", "tower"]).expect(0);
-    folder.run(&["generate", "tower", "--floors", "1", "-o", "small.glb"]).expect(0);
-    std::fs::write(folder.path("walk.json"), r#"{"frames": [{"eye": [1, 2, 3], "dir": [0, 1]}]}"#).expect("a file");
-    folder.run(&["demo", "tower", "--out", "tower2", "--seed", "2"]).expect(0);
+    let (folder, office) = (Folder::with_tower(), Folder::with_office());
+    for name in ["office.geojson", "office.pvs"] {
+        folder.write(name, office.read(name));
+    }
+    folder.write("other.geojson", maze_text(1));
+    folder.run(&["build", "other.geojson", "-o", "other.pvs"]).expect(0);
+    folder.write("small.glb", one_floor(1, 0));
+    folder.write("walk.json", r#"{"frames": [{"eye": [1, 2, 3], "dir": [0, 1]}]}"#);
+    // As many objects, with the same names, and one that stands elsewhere.
+    let mut objects = read_scene(folder.path("tower.glb")).expect("a scene").scene.objects().to_vec();
+    objects.last_mut().expect("objects").vertices.iter_mut().for_each(|corner| corner[0] += 1.0);
+    folder.write("moved.glb", write_glb(&Scene::new(objects).expect("a scene")).expect("single precision"));
     let cases: [(&[&str], &str); 9] = [
-        (
-            &["tower/tower.pvs", "--scene", "tower2/tower.glb"],
-            "tower2/tower.glb: the table was made of another scene: it",
-        ),
-        (
-            &["office/plan.pvs", "--scene", "other/plan.geojson"],
-            "other/plan.geojson: the table was made of another scene: its lines",
-        ),
-        (&["office/plan.pvs", "--scene", "tower/tower.glb"], "the table is of a plan"),
-        (&["tower/tower.pvs", "--scene", "office/plan.geojson"], "the table is of a scene in space"),
-        (&["tower/tower.pvs", "--scene", "small.glb"], "small.glb: the table was made of another scene: it has"),
-        (&["office/plan.pvs", "--against", "other/plan.pvs"], "cannot be compared"),
-        (&["office/plan.pvs", "--walk", "walk.json"], "walk.json: frame 0: eye has 3 numbers"),
-        (&["office/plan.geojson"], "not a table"),
-        (&["office/plan.pvs", "--scene", "no.geojson"], "no.geojson"),
+        (&["tower.pvs", "--scene", "moved.glb"], "moved.glb: the table was made of another scene: its triangles"),
+        (&["office.pvs", "--scene", "other.geojson"], "other.geojson: the table was made of another scene: its lines"),
+        (&["office.pvs", "--scene", "tower.glb"], "the table is of a plan"),
+        (&["tower.pvs", "--scene", "office.geojson"], "the table is of a scene in space"),
+        (&["tower.pvs", "--scene", "small.glb"], "small.glb: the table was made of another scene: it has"),
+        (&["office.pvs", "--against", "other.pvs"], "cannot be compared"),
+        (&["office.pvs", "--walk", "walk.json"], "walk.json: frame 0: eye has 3 numbers"),
+        (&["office.geojson"], "not a table"),
+        (&["office.pvs", "--scene", "no.geojson"], "no.geojson"),
     ];
     for (words, expected) in cases {
         let error = folder.refused(&[&["view"], words, &["-o", "page.html"]].concat());
@@ -55,15 +55,33 @@ fn what_does_not_belong_together_is_refused() {
         assert!(!folder.path("page.html").exists(), "nothing is left");
     }
     // A table that is cut short is named, with the place.
-    let bytes = folder.read("office/plan.pvs");
+    let bytes = folder.read("office.pvs");
     std::fs::write(folder.path("cut.pvs"), &bytes[..bytes.len() / 2]).expect("a file");
     assert!(folder.refused(&["view", "cut.pvs", "-o", "page.html"]).contains("cut.pvs: "));
+}
+
+/// A small tower, and heaps of small triangles in it: the table is as quick to make as that of the tower, and the page is large.
+fn heaps() -> Vec<u8> {
+    let tower = parse_glb(&one_floor(1, 0), None).expect("a scene").scene;
+    let (mut objects, mut seed) = (tower.objects().to_vec(), 1_u64);
+    let mut chance = || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        // Numbers of single precision, up to a tenth of a metre.
+        f64::from((seed >> 48) as u16) / 1_048_576.0
+    };
+    for k in 0..64_u32 {
+        let place = [1.0 + 0.125 * f64::from(k % 8), 0.5, 1.0 + 0.125 * f64::from(k / 8)];
+        let vertices = (0..1500).map(|_| place.map(|x| x + chance())).collect();
+        let triangles = (0..500).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        objects.push(SceneObject { name: format!("heap {k}"), vertices, triangles });
+    }
+    write_glb(&Scene::new(objects).expect("a scene")).expect("single precision")
 }
 
 #[test]
 fn what_does_not_fit_is_left_out_and_said() {
     let folder = Folder::new();
-    folder.run(&["generate", "tower", "--floors", "6", "-o", "t.glb"]).expect(0);
+    folder.write("t.glb", heaps());
     folder.run(&["build", "t.glb", "-o", "t.pvs"]).expect(0);
     let view = |most: &str| {
         let command = ["view", "t.pvs", "--scene", "t.glb", "--max-mb", most, "-o", "page.html"];
@@ -82,10 +100,9 @@ fn what_does_not_fit_is_left_out_and_said() {
 
 #[test]
 fn two_bakes_and_a_walk_are_on_the_page() {
-    let folder = Folder::new();
-    folder.run(&["demo", "--out", "."]).expect(0);
+    let folder = Folder::with_office();
     std::fs::write(folder.path("walk.json"), r#"{"frames": [{"eye": [1, 2], "dir": [0, 1]}]}"#).expect("a file");
-    folder.run(&["view", "plan.pvs", "--against", "plan.pvs", "--walk", "walk.json", "-o", "page.html"]).expect(0);
+    folder.run(&["view", "office.pvs", "--against", "office.pvs", "--walk", "walk.json", "-o", "page.html"]).expect(0);
     let page = String::from_utf8(folder.read("page.html")).expect("a text");
     assert!(page.contains(r#"id="against""#) && page.contains(r#""walk":[{"eye":[1.0,2.0,0.0]"#));
 }

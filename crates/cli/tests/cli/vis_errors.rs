@@ -88,7 +88,10 @@ fn portals_of_another_map_are_refused() {
 fn damaged_maps_are_refused() {
     let folder = Folder::new();
     let mut n_refused = 0;
-    for map in small_maps() {
+    // Each map once, with the first of the portals that go with it.
+    let mut maps = small_maps();
+    maps.dedup_by(|a, b| a.bsp == b.bsp);
+    for map in maps {
         folder.write("map.prt", &map.prt);
         for len in [0, 3, 8, 60, map.bsp.len() / 2, map.bsp.len() - 1] {
             folder.write("map.bsp", &map.bsp[..len]);

@@ -1,6 +1,6 @@
 //! Workers: processes that go through all of a job together.
 
-use crate::common::{Folder, bytes};
+use crate::common::{Folder, bytes, small_tower};
 use crate::jobs::{COMMANDS, inputs};
 use serde_json::{Value, json};
 use std::process::{Child, Command, Stdio};
@@ -44,6 +44,7 @@ fn end(worker: Child) -> (Option<i32>, Value, String) {
 fn workers_write_the_same_bytes() {
     let folder = inputs();
     folder.run(&["generate", "world", "--blocks", "2", "--per-tile", "1", "-o", "city"]).expect(0);
+    crate::tiles::thin(&folder, 12);
     let mut n_shards = 0;
     for (k, (command, out)) in commands().into_iter().enumerate() {
         folder.run(&words(command, out)).expect(0);
@@ -117,6 +118,7 @@ fn killed_workers_lose_nothing() {
 #[test]
 fn workers_need_few_open_files() {
     let folder = inputs();
+    folder.write("tower.glb", small_tower());
     folder.run(&["build", "tower.glb", "-o", "whole.pvs"]).expect(0);
     let args = ["job", "plan", "-o", "job", "--shards", "100000", "--json", "build", "tower.glb", "-o", "shared.pvs"];
     let n_shards = folder.run(&args).expect(0).json()["n_shards"].as_u64().unwrap();

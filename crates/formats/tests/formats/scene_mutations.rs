@@ -70,7 +70,7 @@ fn check_obj(bytes: &[u8]) -> Option<usize> {
 /// Runs the mutations of `seed`; both what is accepted and what is refused must be well represented.
 fn run(seed: &[u8], check: fn(&[u8]) -> Option<usize>) {
     assert!(check(seed).is_some_and(|n| n > 0), "the seed itself is read");
-    let (rounds, first) = (setting("SIGHTLINES_FUZZ_ROUNDS", 20_000), setting("SIGHTLINES_FUZZ_SEED", 0));
+    let (rounds, first) = (setting("SIGHTLINES_FUZZ_ROUNDS", 5_000), setting("SIGHTLINES_FUZZ_SEED", 0));
     let mut accepted = 0;
     for number in first..first + rounds {
         let broken = mutate(seed, &mut SplitMix::new(number));

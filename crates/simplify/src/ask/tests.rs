@@ -7,7 +7,7 @@ use std::sync::Arc;
 /// Groups of boxes hide nothing that a ray reaches, and as much as each box asked for itself.
 #[test]
 fn groups_hide_as_much_as_boxes_and_nothing_seen() {
-    let options = TowerOptions { floors: 2, rooms_x: 2, rooms_y: 2, furniture: 1, ..TowerOptions::default() };
+    let options = TowerOptions { floors: 1, rooms_x: 2, rooms_y: 2, furniture: 1, ..TowerOptions::default() };
     let scene = tower(options).unwrap();
     let faces = Faces::of_scene(&scene).unwrap();
     // Three rooms in eight boxes each: more than a group.

@@ -27,27 +27,35 @@ fn seen(graph: &CellGraph<Axial>, solid: &[Aabb<3>], eyes: &[Aabb<3>], things: &
     one
 }
 
-/// The same space and walls, with cells cut along the faces of boxes.
+/// Cuts off what of a piece is beyond each face of a box that it overlaps; what is left is inside of the box.
+fn cut_off(piece: Aabb<3>, along: &Aabb<3>) -> Vec<Aabb<3>> {
+    if (0..3).any(|k| piece.max[k] <= along.min[k] || along.max[k] <= piece.min[k]) {
+        return vec![piece];
+    }
+    let (mut pieces, mut rest) = (Vec::new(), piece);
+    for k in 0..3 {
+        if rest.min[k] < along.min[k] {
+            let mut below = rest;
+            (below.max[k], rest.min[k]) = (along.min[k], along.min[k]);
+            pieces.push(below);
+        }
+        if along.max[k] < rest.max[k] {
+            let mut above = rest;
+            (above.min[k], rest.max[k]) = (along.max[k], along.max[k]);
+            pieces.push(above);
+        }
+    }
+    pieces.push(rest);
+    pieces
+}
+
+/// The same space and walls, with cells cut along boxes: each piece is inside or outside of each box.
 fn cut_along(graph: &CellGraph<Axial>, boxes: &[Aabb<3>]) -> CellGraph<Axial> {
     let mut pieces: Vec<(usize, Aabb<3>)> = Vec::new();
     for (cell, own) in graph.cells().iter().enumerate() {
-        let borders: Vec<Vec<f64>> = (0..3)
-            .map(|k| {
-                let (min, max) = (own.bounds.min[k], own.bounds.max[k]);
-                let ends = boxes.iter().flat_map(|b| [b.min[k], b.max[k]]).filter(|x| min < *x && *x < max);
-                let mut at: Vec<f64> = ends.chain([min, max]).collect();
-                at.sort_by(f64::total_cmp);
-                at.dedup();
-                at
-            })
-            .collect();
-        for x in borders[0].windows(2) {
-            for y in borders[1].windows(2) {
-                for z in borders[2].windows(2) {
-                    pieces.push((cell, Aabb { min: [x[0], y[0], z[0]], max: [x[1], y[1], z[1]] }));
-                }
-            }
-        }
+        let whole = vec![Aabb { min: own.bounds.min, max: own.bounds.max }];
+        let cut = |pieces: Vec<Aabb<3>>, b| pieces.into_iter().flat_map(|piece| cut_off(piece, b)).collect();
+        pieces.extend(boxes.iter().fold(whole, cut).into_iter().map(|piece| (cell, piece)));
     }
     let mut portals = Vec::new();
     for (i, (cell, own)) in pieces.iter().enumerate() {

@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 use std::sync::Mutex;
 
 /// Two rooms that are joined by a door, and one that is shut: some 560 points.
-pub(crate) fn rooms() -> (Walls, Points, Matrix) {
+fn rooms() -> (Walls, Points, Matrix) {
     let walls = Walls(vec![
         [[1, 1], [61, 1]],
         [[61, 1], [61, 41]],
@@ -20,6 +20,26 @@ pub(crate) fn rooms() -> (Walls, Points, Matrix) {
         [[5, 9], [16, 13]],
         [[25, 31], [41, 27]],
     ]);
+    of_walls(walls)
+}
+
+/// The same with fewer points, some 300: more than one batch.
+pub(crate) fn small_rooms() -> (Walls, Points, Matrix) {
+    let walls = Walls(vec![
+        [[1, 1], [45, 1]],
+        [[45, 1], [45, 29]],
+        [[45, 29], [1, 29]],
+        [[1, 29], [1, 1]],
+        [[21, 1], [21, 12]],
+        [[21, 17], [21, 29]],
+        [[37, 1], [37, 29]],
+        [[5, 9], [16, 13]],
+        [[25, 23], [33, 21]],
+    ]);
+    of_walls(walls)
+}
+
+fn of_walls(walls: Walls) -> (Walls, Points, Matrix) {
     let points = Grid::over(&walls.plan(), 2.0).unwrap().enclosed().unwrap();
     let at: Vec<[i64; 2]> = points.coordinates().iter().map(|p| [p.x as i64, p.y as i64]).collect();
     let matrix = Matrix::of(&walls, &at);
@@ -54,7 +74,8 @@ fn threads_change_nothing() {
 /// Points of several batches have the depths of the matrix; the shut room counts for itself.
 #[test]
 fn batches_are_right() {
-    let (_, points, matrix) = rooms();
+    let (_, points, matrix) = small_rooms();
+    assert!(points.len() > 256, "more than one batch: {}", points.len());
     let graph = matrix.graph(&Effort::default()).unwrap();
     let found = analysis(&graph, &points, &Effort::default()).global.unwrap();
     for (i, depths) in matrix.depths().iter().enumerate() {
@@ -69,7 +90,7 @@ fn batches_are_right() {
 
 #[test]
 fn groups_are_reported_and_can_be_cancelled() {
-    let (_, points, matrix) = rooms();
+    let (_, points, matrix) = small_rooms();
     let graph = matrix.graph(&Effort::default()).unwrap();
     let phases = Mutex::new(BTreeSet::new());
     let observer = |progress: Progress| {

@@ -1,7 +1,7 @@
 //! Analyses whose results are kept by units of work end with the same bits.
 
 use crate::dense::{Matrix, Walls};
-use crate::threads::rooms;
+use crate::threads::small_rooms;
 use sightlines_progress::{Halt, Units};
 use sightlines_testkit::units::{check_impostor, check_units};
 use sightlines_visibility_graph::{Analysis, AnalysisOptions, Effort, GraphError, Measure, Points};
@@ -17,7 +17,7 @@ fn analysed((_, points, matrix): &(Walls, Points, Matrix), effort: &Effort<'_>) 
 
 #[test]
 fn all_groups() {
-    let rooms = rooms();
+    let rooms = small_rooms();
     let n = rooms.1.len();
     let [few, many] = [n.div_ceil(256), n.div_ceil(64)];
     let expected =
@@ -30,7 +30,7 @@ fn all_groups() {
 
 #[test]
 fn other_results_are_noticed() {
-    let rooms = rooms();
+    let rooms = small_rooms();
     for phase in ["sight", "local-measures", "depths", "metric-paths", "angular-paths"] {
         check_impostor(|units, threads| analysed(&rooms, &Effort { threads, units, ..Effort::default() }), phase);
     }

@@ -22,7 +22,7 @@ fn n_wrong(method: &dyn VisibleSurface, faces: &Faces, camera: &Camera) -> usize
 /// Three in a circle, a lattice and faces in one plane are wrong too.
 #[test]
 fn the_painter_is_wrong_where_mid_points_mislead_and_the_others_are_right() {
-    let camera = Camera::look_at(surfaces::EYE, surfaces::AT, surfaces::UP, surfaces::ANGLE, [128, 96]).unwrap();
+    let camera = Camera::look_at(surfaces::EYE, surfaces::AT, surfaces::UP, surfaces::ANGLE, [64, 48]).unwrap();
     let some = SurfaceOptions { triangles: 12, ..SurfaceOptions::default() };
     for scene in [interleaved(2), cycles(3), lattice(60), coplanar(some)] {
         let faces = Faces::of_scene(&scene.unwrap()).unwrap();

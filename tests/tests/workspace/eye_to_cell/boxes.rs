@@ -189,7 +189,7 @@ fn check(room: &Room, n_on_grid: usize, seed: u64, counts: &mut Counts) -> Resul
 #[test]
 fn rooms_with_boxes_are_seen_as_they_are() {
     let mut counts = Counts::default();
-    for seed in 0..12 {
+    for seed in 0..8 {
         let room = Room::random(seed, 2 + seed as usize % 4);
         for n_on_grid in [0, 0, 1, 2, 3] {
             let seed = 100 * seed + counts.n_frames as u64;
@@ -197,7 +197,7 @@ fn rooms_with_boxes_are_seen_as_they_are() {
         }
     }
     eprintln!("{counts:?}");
-    assert!(counts.n_frames > 500 && counts.n_seen > 5_000, "{counts:?}");
+    assert!(counts.n_frames > 500 && counts.n_seen > 3_000, "{counts:?}");
     assert!(counts.n_cells.is_sorted_by(|a, b| a > b) && counts.n_objects.is_sorted_by(|a, b| a >= b), "{counts:?}");
     assert!(counts.n_surplus * 10 < counts.n_exact, "{counts:?}");
 }

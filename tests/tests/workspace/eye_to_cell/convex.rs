@@ -225,7 +225,7 @@ fn convex_worlds_are_seen_as_rays_see_them() {
     for (name, world) in world_families() {
         look(name, &world, 12);
     }
-    for seed in 0..6 {
+    for seed in 0..3 {
         let options = BspWorldOptions { seed, leafs: 40, solid_percent: 45, tilted_percent: 60 };
         let world = bsp_world(options).expect("options within their ranges");
         look("random", &world, 12);
@@ -236,7 +236,7 @@ fn convex_worlds_are_seen_as_rays_see_them() {
     let level = quake_like(QuakeLikeOptions { seed: 1, rooms_x: 2, rooms_y: 2, floors: 1 }).expect("few rooms");
     look("level", &level, 24);
     eprintln!("{counts:?}");
-    assert!(counts.n_frames > 2_000 && counts.n_seen > 8_000, "{counts:?}");
+    assert!(counts.n_frames > 2_000 && counts.n_seen > 6_000, "{counts:?}");
     assert!(counts.n_cells.is_sorted_by(|a, b| a > b), "{counts:?}");
     assert!(counts.n_confirmed * 100 > counts.n_exact * 85, "{counts:?}");
 }

@@ -156,7 +156,7 @@ fn a_small_tower_is_seen_as_rays_see_it() {
     .expect("the table has its geometry")
     .table;
     let mut counts = Counts::default();
-    stage.check(&[&stage.table, &trees], 40, 300, &mut counts).unwrap_or_else(|wrong| panic!("{wrong}"));
+    stage.check(&[&stage.table, &trees], 40, 120, &mut counts).unwrap_or_else(|wrong| panic!("{wrong}"));
     eprintln!("{counts:?}");
     assert!(counts.n_frames > 300 && counts.n_seen > 3_000, "{counts:?}");
     assert!(counts.n_cells.is_sorted_by(|a, b| a > b) && counts.n_objects.is_sorted_by(|a, b| a >= b), "{counts:?}");

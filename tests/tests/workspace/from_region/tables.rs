@@ -35,7 +35,7 @@ fn bake(scene: &Scene, cells: &CellsFrom, by: By, split: u32, threads: usize) ->
     let options = RegionBakeOptions {
         method: (by != By::Sightlines).then_some(&make),
         sightlines: by != By::Multifocal,
-        split: Split { depth: split, ..Split::default() },
+        split: Split { depth: split, n_rays: 1024, ..Split::default() },
         threads,
         ..RegionBakeOptions::new(cells)
     };
@@ -61,12 +61,12 @@ fn check(scene: &Scene, table: &Table, what: &str) -> usize {
     let mut n = 0;
     for (id, cell) in (0..).zip(&cells) {
         let listed = table.visible_objects(CellId(id));
-        for object in rays.witness_objects(*cell, 7, 2000) {
+        for object in rays.witness_objects(*cell, 7, 500) {
             assert!(listed.binary_search(&ObjectId(object)).is_ok(), "{what}: cell {id} sees object {object}");
             n += 1;
         }
     }
-    for (a, b) in rays.witness_cells(&cells, 8, 200) {
+    for (a, b) in rays.witness_cells(&cells, 8, 50) {
         assert!(table.sees(CellId(a), CellId(b)), "{what}: cell {a} sees cell {b}");
     }
     n
@@ -74,7 +74,7 @@ fn check(scene: &Scene, table: &Table, what: &str) -> usize {
 
 #[test]
 fn a_city_is_seen_as_rays_see_it_and_mostly_hidden() {
-    let options = CityOptions { blocks_x: 4, blocks_z: 4, ..CityOptions::default() };
+    let options = CityOptions { blocks_x: 3, blocks_z: 3, ..CityOptions::default() };
     let scene = city(options).unwrap();
     let crossings = city_crossings(options).unwrap();
     let named = crossings
@@ -99,8 +99,9 @@ fn a_city_is_seen_as_rays_see_it_and_mostly_hidden() {
 
 #[test]
 fn both_methods_hide_what_either_hides() {
-    let scene = tower(TowerOptions { floors: 1, furniture: 0, ..TowerOptions::default() }).unwrap();
-    let boxes = CellsFrom::Boxes(grid(&scene.bounds(), [4, 3, 2]).unwrap());
+    let scene =
+        tower(TowerOptions { floors: 1, rooms_x: 2, rooms_y: 1, furniture: 0, ..TowerOptions::default() }).unwrap();
+    let boxes = CellsFrom::Boxes(grid(&scene.bounds(), [3, 2, 2]).unwrap());
     for cells in [CellsFrom::KdTree, boxes] {
         let [lines, region, both] = [By::Sightlines, By::Multifocal, By::Both].map(|by| {
             let baked = bake(&scene, &cells, by, 0, 2);

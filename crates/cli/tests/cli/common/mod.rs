@@ -12,10 +12,12 @@ pub(crate) mod udmf;
 
 use sightlines::formats::doom::{DoomMapSource, ML_TWOSIDED, SourceLine};
 use sightlines::formats::geojson;
+use sightlines::formats::scene::write_glb;
 use sightlines::formats::wad::{LumpName, WadBuilder, WadKind};
-use sightlines::scenes::{DoomLike, OfficeOptions, maze, office};
+use sightlines::scenes::{DoomLike, OfficeOptions, TowerOptions, maze, office, tower};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use std::sync::LazyLock;
 
 /// The environment variable with the time between two lines of progress.
 pub(crate) const PROGRESS: &str = "SIGHTLINES_PROGRESS_SECONDS";
@@ -102,20 +104,51 @@ impl Folder {
 
     /// `office.geojson` and its table `office.pvs`.
     pub(crate) fn with_office() -> Self {
-        let folder = Self::new();
-        let plan = office(OfficeOptions { rooms_x: 6, rooms_y: 3, ..OfficeOptions::default() }).expect("an office");
-        folder.write("office.geojson", geojson::write_plan(&plan));
-        folder.run(&["build", "office.geojson", "-o", "office.pvs"]).expect(0);
-        folder
+        static FILES: LazyLock<Files> = LazyLock::new(|| {
+            let folder = Folder::new();
+            let plan = office(OfficeOptions { rooms_x: 6, rooms_y: 3, ..OfficeOptions::default() }).expect("an office");
+            folder.write("office.geojson", geojson::write_plan(&plan));
+            folder.run(&["build", "office.geojson", "-o", "office.pvs"]).expect(0);
+            bytes(&folder, ".")
+        });
+        Self::with(&FILES)
     }
 
     /// `tower.glb`, a small tower, and its table `tower.pvs`.
     pub(crate) fn with_tower() -> Self {
+        static FILES: LazyLock<Files> = LazyLock::new(|| {
+            let folder = Folder::new();
+            folder.write("tower.glb", small_tower());
+            folder.run(&["build", "tower.glb", "-o", "tower.pvs"]).expect(0);
+            bytes(&folder, ".")
+        });
+        Self::with(&FILES)
+    }
+
+    /// As [`Self::with_tower`], of a tower with a quarter of the triangles: one room, without furniture.
+    pub(crate) fn with_bare_tower() -> Self {
+        static FILES: LazyLock<Files> = LazyLock::new(|| {
+            let folder = Folder::new();
+            folder.write("tower.glb", one_floor(1, 0));
+            folder.run(&["build", "tower.glb", "-o", "tower.pvs"]).expect(0);
+            bytes(&folder, ".")
+        });
+        Self::with(&FILES)
+    }
+
+    /// Files that were made once for all tests.
+    fn with(files: &[(String, Vec<u8>)]) -> Self {
         let folder = Self::new();
-        let small = ["--floors", "1", "--rooms-x", "2", "--rooms-y", "1", "--furniture", "1"];
-        folder.run(&[&["generate", "tower", "-o", "tower.glb"][..], &small].concat()).expect(0);
-        folder.run(&["build", "tower.glb", "-o", "tower.pvs"]).expect(0);
+        folder.write_all(".", files);
         folder
+    }
+
+    /// Writes files into a folder in this one.
+    pub(crate) fn write_all(&self, to: &str, files: &[(String, Vec<u8>)]) {
+        std::fs::create_dir_all(self.path(to)).expect("the folder can be written");
+        for (name, bytes) in files {
+            self.write(&format!("{to}/{name}"), bytes);
+        }
     }
 
     /// `maps.wad` with maps MAP01 to MAP03 between other lumps; MAP02 has a REJECT lump made by hand.
@@ -134,8 +167,35 @@ pub(crate) fn names(folder: &Path) -> Vec<String> {
     names
 }
 
+/// What `demo` prints with `--json` and writes.
+pub(crate) static DEMO: LazyLock<(Run, Files)> = LazyLock::new(|| demo(&["demo", "--out", "demo", "--json"]));
+
+/// What `demo tower` prints and writes: as text, and in another run with `--json`.
+pub(crate) static DEMO_TOWER: LazyLock<[(Run, Files); 2]> =
+    LazyLock::new(|| [&[][..], &["--json"]].map(|more| demo(&[&["demo", "tower", "--out", "demo"], more].concat())));
+
+fn demo(args: &[&str]) -> (Run, Files) {
+    let folder = Folder::new();
+    let run = folder.run(args).expect(0);
+    (run, bytes(&folder, "demo"))
+}
+
+/// Names and bytes of files.
+pub(crate) type Files = Vec<(String, Vec<u8>)>;
+
+/// A tower of one floor with two rooms side by side, furnished, as `generate tower` writes it.
+pub(crate) fn small_tower() -> Vec<u8> {
+    one_floor(2, 1)
+}
+
+/// A tower of one floor with so many rooms side by side, at this level of furniture.
+pub(crate) fn one_floor(rooms_x: u32, furniture: u32) -> Vec<u8> {
+    let options = TowerOptions { floors: 1, rooms_x, rooms_y: 1, furniture, ..TowerOptions::default() };
+    write_glb(&tower(options).expect("a small tower")).expect("single precision")
+}
+
 /// The names and bytes of all files of an output, which may be a folder; a file has no name.
-pub(crate) fn bytes(folder: &Folder, out: &str) -> Vec<(String, Vec<u8>)> {
+pub(crate) fn bytes(folder: &Folder, out: &str) -> Files {
     let path = folder.path(out);
     if !path.is_dir() {
         return vec![(String::new(), folder.read(out))];

@@ -3,7 +3,7 @@
 use crate::common::looks::table;
 use crate::common::picture::DRAWN;
 use crate::common::quake::{rooms, row_of_leafs};
-use crate::common::{Folder, doom_map, levels, maze_text};
+use crate::common::{DEMO, DEMO_TOWER, Folder, doom_map, levels, maze_text};
 use serde_json::Value;
 use sightlines::formats::LumpName;
 use sightlines::formats::doom::{DoomMapSource, write_doom_map};
@@ -112,7 +112,7 @@ fn plans(all: &mut Results) {
     folder.write("named.pvs", Table::new(parts).expect("a sound table").to_bytes());
     all.line(&folder, "query of a point", "query named.pvs --eye 3,3");
     all.line(&folder, "query of a view by all methods", "query named.pvs --eye 3,3 --method all");
-    all.line(&folder, "demo of the office", "demo --out demo");
+    all.0.push(("demo of the office", DEMO.0.json()));
 
     let line = |points: &str, mirror: bool| {
         let geometry = format!(r#"{{"type": "LineString", "coordinates": {points}}}"#);
@@ -147,7 +147,7 @@ fn slanted() -> String {
 }
 
 fn jobs(all: &mut Results) {
-    let folder = Folder::with_tower();
+    let folder = Folder::with_bare_tower();
     let mut add = |heading, line: &str| all.line(&folder, heading, line);
     add(
         "job plan",
@@ -192,7 +192,8 @@ fn scenes(all: &mut Results) {
     let least = "--floors 1 --rooms-x 1 --rooms-y 1 --furniture 0";
     add("generate tower", &format!("generate tower -o least.glb {least}"));
     add("generate world", "generate world --blocks 2 --per-tile 1 -o city");
-    add("tiles build", "tiles build city/world.json --method shafts --grid 2,1,2 -o tiles");
+    crate::tiles::thin(&folder, 8);
+    add("tiles build", "tiles build city/world.json --method shafts -o tiles");
     add("tiles query", "tiles query tiles --eye 42,1.7,44");
     add("tiles query", "tiles query tiles --eye -100,0,0");
     add("tiles check", "tiles check tiles");
@@ -267,7 +268,7 @@ fn scenes(all: &mut Results) {
     let multifocal = format!("multifocal boards.obj --volume={VOLUME} --plane z=20 --texels 8 -o m.png --backend cpu");
     add("multifocal", &multifocal);
     add("multifocal", &format!("{multifocal} --distance d.png"));
-    add("demo tower", "demo tower --out demo");
+    all.0.push(("demo tower", DEMO_TOWER[1].0.json()));
 }
 
 /// A WAD of two maps; the second has a line to nowhere.

@@ -13,7 +13,9 @@ use sightlines_testkit::mutate::{SplitMix, flipped_bits, mutate};
 
 /// Whether a damaged drawing is read; what is read is a plan that can be written.
 fn check(bytes: &[u8]) -> bool {
-    let Ok(file) = parse_dxf(bytes, &PlanReadOptions::default()) else { return false };
+    // Few pieces: how many there are is for others to check.
+    let options = PlanReadOptions { deviation: Some(0.5), ..PlanReadOptions::default() };
+    let Ok(file) = parse_dxf(bytes, &options) else { return false };
     assert_eq!(parse_plan(write_plan(&file.plan).as_bytes()).unwrap(), file.plan);
     true
 }
@@ -22,7 +24,7 @@ fn check(bytes: &[u8]) -> bool {
 fn damaged_drawings_are_read_or_refused() {
     let seed = small_drawing();
     assert!(check(&seed));
-    let (rounds, first) = (setting("SIGHTLINES_FUZZ_ROUNDS", 20_000), setting("SIGHTLINES_FUZZ_SEED", 0));
+    let (rounds, first) = (setting("SIGHTLINES_FUZZ_ROUNDS", 5_000), setting("SIGHTLINES_FUZZ_SEED", 0));
     let mut n_read = 0;
     for number in first..first + rounds {
         let broken = mutate(&seed, &mut SplitMix::new(number));

@@ -17,7 +17,8 @@ use sightlines_scenes::{
     turned_pillared_hall,
 };
 use sightlines_verify::{Findings, Truth, VerifyOptions, WorldChild, WorldNode, WorldTree, verify};
-use std::sync::Arc;
+use std::ops::Deref;
+use std::sync::{Arc, LazyLock};
 
 /// The scene of a table.
 pub(crate) enum Real {
@@ -202,20 +203,31 @@ pub(crate) fn with_mirrors() -> Vec<Case> {
     ]
 }
 
-/// A table of each kind.
-pub(crate) fn cases() -> Vec<Case> {
-    vec![
-        plan_case("office by k-d tree", an_office(), Subdivide::KdTree),
-        plan_case("office by triangulation", an_office(), Subdivide::Triangulation),
-        plan_case("maze", maze(5, 6, 6).expect("a maze"), Subdivide::Auto),
-        plan_case("Doom-like map", doom_like(2, 3).expect("a map"), Subdivide::Auto),
-        plan_case("turned pillars", turned_pillared_hall(1, 4, 3).expect("a hall"), Subdivide::Auto),
-        space_case(),
-        grid_case("boxes by multifocal buffers", false),
-        grid_case("boxes by both", true),
-        portals_case(),
-        map_case(),
-    ]
+/// A table of each kind, made once for all tests.
+static CASES: [LazyLock<Case>; 10] = [
+    LazyLock::new(|| plan_case("office by k-d tree", an_office(), Subdivide::KdTree)),
+    LazyLock::new(|| plan_case("office by triangulation", an_office(), Subdivide::Triangulation)),
+    LazyLock::new(|| plan_case("maze", maze(5, 6, 6).expect("a maze"), Subdivide::Auto)),
+    LazyLock::new(|| plan_case("Doom-like map", doom_like(2, 3).expect("a map"), Subdivide::Auto)),
+    LazyLock::new(|| plan_case("turned pillars", turned_pillared_hall(1, 4, 3).expect("a hall"), Subdivide::Auto)),
+    LazyLock::new(space_case),
+    LazyLock::new(|| grid_case("boxes by multifocal buffers", false)),
+    LazyLock::new(|| grid_case("boxes by both", true)),
+    LazyLock::new(portals_case),
+    LazyLock::new(map_case),
+];
+
+pub(crate) fn cases() -> impl Iterator<Item = &'static Case> {
+    CASES.iter().map(LazyLock::deref)
+}
+
+/// What is found in these tables, which are true, with many random rays: made once.
+pub(crate) fn checked() -> &'static [(&'static Case, Findings)] {
+    static CHECKED: LazyLock<Vec<(&'static Case, Findings)>> = LazyLock::new(|| {
+        let options = VerifyOptions { rays: 20_000, ..quick() };
+        cases().map(|case| (case, check(&case.table, &case.real, &options))).collect()
+    });
+    &CHECKED
 }
 
 /// The table with other parts.

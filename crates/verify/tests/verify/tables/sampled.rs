@@ -93,13 +93,13 @@ fn narrow(case: &Case, n: usize) -> Vec<([CellId; 2], f64)> {
 fn pairs_with_one_free_segment_in_a_hundred_are_found() {
     let (mut n_runs, mut n_missed, mut n_missed_by_few) = (0, 0, 0);
     let options = VerifyOptions::default().segments;
-    for case in cases().into_iter().filter(|case| matches!(case.real, Real::Plan(_) | Real::Scene(_))) {
-        for (pair, share) in narrow(&case, 3) {
+    for case in cases().filter(|case| matches!(case.real, Real::Plan(_) | Real::Scene(_))) {
+        for (pair, share) in narrow(case, 3) {
             let wrong = hide(&case.table, pair);
             for seed in 0..8 {
                 n_runs += 1;
-                n_missed += usize::from(!is_found(&wrong, &case, pair, &segments(options, seed)));
-                n_missed_by_few += usize::from(!is_found(&wrong, &case, pair, &segments(4, seed)));
+                n_missed += usize::from(!is_found(&wrong, case, pair, &segments(options, seed)));
+                n_missed_by_few += usize::from(!is_found(&wrong, case, pair, &segments(4, seed)));
             }
             println!("{}: {pair:?}, {:.1} % free", case.name, 100.0 * share);
         }
@@ -125,7 +125,7 @@ fn the_share_that_is_found_follows_from_the_number_of_segments() {
 #[test]
 fn hidden_objects_are_found() {
     let (mut n_found, mut n_all) = (0, 0);
-    for case in cases().into_iter().filter(|case| matches!(case.real, Real::Scene(_))) {
+    for case in cases().filter(|case| matches!(case.real, Real::Scene(_))) {
         let Some(seen) = &case.table.parts().objects_seen else { continue };
         assert!(check(&case.table, &case.real, &segments(459, 1)).is_true(), "{}", case.name);
         let mut random = Random::new(3);
@@ -153,7 +153,7 @@ fn hidden_objects_are_found() {
 /// Where cells leave gaps, a table that hides two groups of them from each other has no pair next to a visible one; all hidden pairs are looked at.
 #[test]
 fn cells_with_gaps_between_them_are_sampled() {
-    let case = cases().into_iter().find(|case| case.table.kind().leaves_gaps()).expect("given cells");
+    let case = cases().find(|case| case.table.kind().leaves_gaps()).expect("given cells");
     let n = case.table.n_cells();
     let blind = changed(&case.table, |parts| {
         (0..n).for_each(|a| (0..n).filter(|&b| a != b).for_each(|b| parts.rows.set(a, b, false)));
