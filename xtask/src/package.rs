@@ -25,7 +25,8 @@ pub(crate) fn check() -> Result<(), Failure> {
         .args(["check", "--workspace", "--lib", "--bins", "--offline", "--target-dir"])
         .arg(target());
     // As the profile of the workspace, so that what both depend on is compiled once.
-    step::run(command.envs([("CARGO_PROFILE_DEV_OPT_LEVEL", "1"), ("CARGO_PROFILE_DEV_DEBUG", "false")]))?;
+    let profile = [("OPT_LEVEL", "1"), ("DEBUG", "false"), ("LTO", "off")];
+    step::run(command.envs(profile.map(|(name, value)| (format!("CARGO_PROFILE_DEV_{name}"), value))))?;
     eprintln!("{} packages compile as packaged", packages.len());
     Ok(())
 }
