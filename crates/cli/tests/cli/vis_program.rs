@@ -78,7 +78,7 @@ fn editors_get_the_bytes_of_the_other_program() {
     // Each call is made on every fourth of the small maps of a format, by the names in turn.
     let mut made = BTreeMap::<String, BTreeSet<usize>>::new();
     for (m, map) in small_maps().into_iter().enumerate() {
-        let is_wanted = |k: usize, is_whole: bool| (m + k) % 4 == 0 && (m / 4 % 2 == 1) == is_whole;
+        let is_wanted = |k: usize, is_whole: bool| (m + k).is_multiple_of(4) && (m / 4 % 2 == 1) == is_whole;
         n_calls += check_calls(&map, &CALLS, is_wanted);
         let wanted = (0..CALLS.len()).filter(|&k| IS_WHOLE.iter().any(|&is_whole| is_wanted(k, is_whole)));
         made.entry(format!("{:?}", map.format)).or_default().extend(wanted);
