@@ -76,6 +76,8 @@ pub(crate) fn ci(gpu: Wish, mut plan: Vec<(Group, Why)>) -> Result<(), Failure> 
     let mut tally = Tally::default();
     timed("test", &mut times, || tally::core(gpu, &mut tally))?;
     let core = start.elapsed();
+    // Those that must run are first, so that what is left out on a busy machine is left out at the end.
+    plan.sort_by_key(|(_, why)| !why.must());
     for (group, why) in &mut plan {
         if !why.runs() || tally.has_failed() {
             continue;
