@@ -204,7 +204,7 @@ fn cut_stab_trees_are_found() {
     for ((name, baked, real), least) in with_trees().into_iter().zip([TRIES, 3, 8]) {
         let mut n_caught = 0;
         let case = Case { name, table: baked, real, least_caught: [1.0; 2] };
-        // Sixteen sequences for each pair: of those that the tower's trees have not, the most suspicious sixth.
+        // Sixteen sequences for each pair: of those that the tower's trees have not, the most suspicious twentieth.
         let options = VerifyOptions { pairs: 500, ..quick() };
         let whole = check(&case.table, &case.real, &options);
         assert_eq!(whole.violations, [], "{name}");
