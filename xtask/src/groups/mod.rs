@@ -76,7 +76,7 @@ pub(crate) enum Step {
     Bevy,
 }
 
-/// All groups. Those of one turn take about as long together as those of another.
+/// All groups. Each turn has two.
 pub(crate) const GROUPS: [Group; 12] = [
     Group {
         name: "slurm",
