@@ -6,7 +6,7 @@
 //! independent program reached in the given one.
 
 use clap::Parser;
-use sightlines::bake::{BakeInput, BakeOptions, Baked, CellsFrom, Gap, SceneMethod, bake};
+use sightlines::bake::{BakeInput, BakeRequest, Baked, CellsFrom, Runtime, SceneMethod};
 use sightlines::cells::{Point3, Scene, SceneObject};
 use sightlines::formats::scene::{parse_glb, write_glb};
 use sightlines::formats::{SceneInfo, ViewCell, ViewCells};
@@ -258,11 +258,14 @@ struct Row {
 
 fn row(case: &Case, change: &Change, args: &Args, info: &SceneInfo) -> Result<Row, Box<dyn Error>> {
     let (scene, cells) = (change.scene(&case.scene), change.cells(&case.cells));
-    let mut options =
-        BakeOptions { method: args.method, gap: Gap::OfFile, threads: args.threads, ..BakeOptions::default() };
-    options.cells = CellsFrom::Boxes(cells.clone());
+    let request = BakeRequest {
+        method: Some(args.method),
+        cells: Some(CellsFrom::Boxes(cells.clone())),
+        ..BakeRequest::default()
+    };
+    let runtime = Runtime { threads: args.threads, ..Runtime::default() };
     let start = seconds();
-    let Baked { table, .. } = bake(BakeInput::Scene(&scene, Some(info)), &options)?;
+    let Baked { table, .. } = runtime.bake(BakeInput::Scene(&scene, Some(info)), &request)?;
     let seconds = seconds() - start;
     let (rays, targets) = (RayScene::new(&scene), Targets::new(&scene));
     let gap = table.frame().map_or(0.0, |frame| frame.gap());

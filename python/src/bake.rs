@@ -6,10 +6,9 @@ use crate::long;
 use crate::table::Table;
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
-use sightlines_bake::auto::own_cells;
 use sightlines_bake::places::PlaceOptions;
 use sightlines_bake::{
-    BakeError, BakeInput, BakeOptions, Bakeable, BakeableError, Baked, CellsFrom, Gap, Report, SceneMethod, bake,
+    BakeError, BakeInput, BakeRequest, Bakeable, BakeableError, Baked, CellsFrom, Gap, Report, Runtime,
 };
 use sightlines_cells::{Scene, SceneObject};
 use sightlines_formats::view_cells::ViewCell;
@@ -22,7 +21,7 @@ use std::time::Instant;
 /// What a bake did: pairs that see each other, pairs assumed to, and those not decided in time.
 pub(crate) type Said = (u64, u64, u64);
 
-/// How to bake a scene in space; what means nothing for an input is ignored.
+/// How to bake a scene in space; what means nothing for an input is refused.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Options<'py> {
@@ -43,13 +42,7 @@ pub(crate) struct Options<'py> {
 
 /// The same, checked, and without anything of Python.
 struct Checked {
-    method: Option<SceneMethod>,
-    cells: Option<CellsFrom>,
-    view_region: Option<Aabb<3>>,
-    gap: Gap,
-    detail_below: Option<f64>,
-    keep_solid: bool,
-    max_cells: Option<u32>,
+    request: BakeRequest,
     time_limit: Option<f64>,
     threads: usize,
 }
@@ -92,7 +85,7 @@ impl Options<'_> {
             }
             Some(other) => return Err(value_error(format!("'{other}' is no kind of cells"))),
         };
-        Ok(Checked {
+        let request = BakeRequest {
             method: self.method.as_deref().map(|name| name.parse().map_err(value_error)).transpose()?,
             cells,
             view_region: self.view_region.map(|b| aabb(b, "view_region")).transpose()?,
@@ -100,40 +93,25 @@ impl Options<'_> {
             detail_below: self.detail_below,
             keep_solid: self.keep_solid,
             max_cells: self.max_cells,
-            time_limit: self.time_limit,
-            threads: self.threads,
-        })
+            ..BakeRequest::default()
+        };
+        Ok(Checked { request, time_limit: self.time_limit, threads: self.threads })
     }
 }
 
 impl Checked {
-    /// Bakes an input. Cells that nobody chose are those that the program `sightlines` takes.
+    /// Bakes an input.
     fn bake(self, input: BakeInput<'_>, observer: &dyn Observer) -> Result<Baked, BakeError> {
-        let scene = if let BakeInput::Scene(scene, _) = input { Some(scene) } else { None };
-        let own = |scene: &Scene| {
-            let may_choose = self.method != Some(SceneMethod::Sightlines) && scene.mirrors().is_empty();
-            if may_choose { own_cells(scene) } else { CellsFrom::KdTree }
-        };
-        let chosen = self.cells.is_none();
-        let cells = self.cells.unwrap_or_else(|| scene.map_or(CellsFrom::KdTree, own));
-        let by_places = chosen && matches!(cells, CellsFrom::Places(_));
-        let method = self.method.unwrap_or(if by_places { SceneMethod::Auto } else { SceneMethod::Sightlines });
-        let (threads, gap) = (self.threads, self.gap);
-        let mut options =
-            BakeOptions { method, cells, gap, threads, progress: Some(observer), ..BakeOptions::default() };
-        options.cut.view_region = self.view_region;
-        options.cut.keep_solid = self.keep_solid;
-        options.cut.detail_below = self.detail_below;
-        if let Some(n) = self.max_cells {
-            options.cut.max_cells = n;
-        }
         let start = Instant::now();
         let limit = self.time_limit.unwrap_or(f64::INFINITY);
         let spent = move || start.elapsed().as_secs_f64() / limit;
-        if self.time_limit.is_some() {
-            options.budget = Some(&spent);
-        }
-        bake(input, &options)
+        let runtime = Runtime {
+            threads: self.threads,
+            progress: Some(observer),
+            budget: if self.time_limit.is_some() { Some(&spent) } else { None },
+            ..Runtime::default()
+        };
+        self.request.prepare(input, &runtime)?.run(&runtime)
     }
 }
 

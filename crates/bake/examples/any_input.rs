@@ -3,16 +3,15 @@
 //!
 //! Run as `cargo run --release -p sightlines-bake --example any_input`.
 
-use sightlines_bake::auto::choose_for;
 use sightlines_bake::methods::OcclusionMethod;
-use sightlines_bake::{BakeInput, BakeOptions, Baked, CellsFrom, Report, SceneMethod, StabOptions, bake};
+use sightlines_bake::{BakeInput, BakeRequest, Baked, CellsFrom, Report, Runtime, SceneMethod, StabOptions, bake};
 use sightlines_formats::quake::prt::parse_prt;
 use sightlines_scenes::{OfficeOptions, TowerOptions, office, tower};
 use sightlines_stabtree::CertifyOptions;
 use std::error::Error;
 
 /// Bakes, and prints what the table and the report say.
-fn show<'i>(what: &str, input: impl Into<BakeInput<'i>>, options: &BakeOptions<'_>) -> Result<Baked, Box<dyn Error>> {
+fn show<'i>(what: &str, input: impl Into<BakeInput<'i>>, options: &BakeRequest) -> Result<Baked, Box<dyn Error>> {
     let baked = bake(input, options)?;
     let n_pairs = match &baked.report {
         Report::Plan(report) => report.n_visible_pairs,
@@ -34,18 +33,20 @@ fn main() -> Result<(), Box<dyn Error>> {
     let floor = office(OfficeOptions { seed: 5, rooms_x: 6, rooms_y: 3, ..OfficeOptions::default() })?;
     let scene = tower(TowerOptions { floors: 1, rooms_x: 2, rooms_y: 1, furniture: 1, ..TowerOptions::default() })?;
     let rooms = parse_prt(ROOMS)?;
-    let standard = BakeOptions::default();
+    let standard = BakeRequest::default();
 
     let plan = show("an office floor", &floor, &standard)?;
     show("a storey by sightlines", &scene, &standard)?;
-    let method = SceneMethod::FromRegion(OcclusionMethod::Shafts);
-    let grid = BakeOptions { method, cells: CellsFrom::Grid([3, 1, 2]), ..BakeOptions::default() };
+    let method = Some(SceneMethod::FromRegion(OcclusionMethod::Shafts));
+    let grid = BakeRequest { method, cells: Some(CellsFrom::Grid([3, 1, 2])), ..BakeRequest::default() };
     show("a grid in the storey by view shafts", &scene, &grid)?;
     show("rooms of a portal file", &rooms, &standard)?;
 
-    let (choice, options) = choose_for(&(&scene).into(), &standard);
+    let auto = BakeRequest { method: Some(SceneMethod::Auto), ..BakeRequest::default() };
+    let prepared = auto.prepare(&scene, &Runtime::default())?;
+    let choice = prepared.decisions().choice.as_ref().ok_or("nothing was chosen")?;
     println!("auto chooses {} for the storey: {}", choice.method, choice.reasons.join("; "));
-    assert_eq!(options.method, SceneMethod::Sightlines, "its walls are perpendicular to axes");
+    assert_eq!(prepared.recipe().method, SceneMethod::Sightlines, "its walls are perpendicular to axes");
 
     let (plan, trees) = plan.with_stab_trees(&StabOptions::default())?;
     println!("the floor has {} sequences of portals with a sightline", trees.trees.n_sequences);

@@ -3,7 +3,7 @@
 //! Nothing here decides what is hidden; a bad choice costs time, or hides less than another one would.
 
 use crate::input::BakeInput;
-use crate::options::{BakeOptions, SceneMethod};
+use crate::options::{Recipe, SceneMethod};
 use crate::places::PlaceOptions;
 use crate::region::CellsFrom;
 use sightlines_cells::Scene;
@@ -267,44 +267,33 @@ pub struct Choice {
     pub facts: Option<SceneFacts>,
 }
 
-/// Chooses methods for an input, and returns the options that stand for the choice.
+/// Chooses the method of a scene whose cells are decided, and puts it into the recipe.
 ///
-/// Cells that are given are few, and worth more work: line space takes the place of sheets for them.
-///
-/// Only [`BakeOptions::method`], [`BakeOptions::buffers`] and, in place of a k-d tree, [`BakeOptions::cells`] differ from the
-/// options given. Plans, portal files and Quake maps always take sightlines. [`BakeOptions::progress`] receives a report of each measurement, and
-/// cannot cancel.
-pub fn choose_for<'a>(input: &BakeInput<'_>, options: &BakeOptions<'a>) -> (Choice, BakeOptions<'a>) {
-    let plain = |reason: &str| {
-        let choice = Choice { method: "sightlines".to_owned(), reasons: vec![reason.to_owned()], facts: None };
-        (choice, BakeOptions { method: SceneMethod::Sightlines, ..options.clone() })
-    };
-    match input {
-        BakeInput::Scene(scene, _) => {
-            let (facts, mut choice) = choose_observed(scene, options.progress);
-            let mut chosen = options.clone();
-            let are_given = matches!(options.cells, CellsFrom::Grid(_) | CellsFrom::Boxes(_));
-            if choice.sheets && are_given {
-                choice.use_line_space();
-            }
-            if chosen.cells == CellsFrom::KdTree {
-                chosen.cells = facts.own_cells();
-            }
-            chosen.method = if choice.uses_region_method() { SceneMethod::Both } else { SceneMethod::Sightlines };
-            (chosen.buffers.planes, chosen.buffers.texels) = (choice.planes, choice.texels);
-            if !choice.sheets {
-                chosen.buffers.sheets = 0;
-            }
-            chosen.buffers.line_space = choice.line_space;
-            (Choice { method: choice.to_string(), reasons: choice.reasons, facts: Some(facts) }, chosen)
-        }
-        BakeInput::Plan(_) => {
-            plain("a plan is solved in the plane, exactly; its walls' directions and groups say how it is cut")
-        }
-        BakeInput::Portals(_) | BakeInput::Map(..) => {
-            plain("cells and portals are given, convex and in any direction: beams, then sequences")
-        }
+/// Cells that are given are few, and worth more work: line space takes the place of sheets for them. An observer receives a report of each
+/// measurement, and cannot cancel.
+pub(crate) fn choose_for(scene: &Scene, recipe: &mut Recipe, progress: Option<&dyn Observer>) -> Choice {
+    let (facts, mut choice) = choose_observed(scene, progress);
+    if choice.sheets && matches!(recipe.cells, CellsFrom::Grid(_) | CellsFrom::Boxes(_)) {
+        choice.use_line_space();
     }
+    recipe.method = if choice.uses_region_method() { SceneMethod::Both } else { SceneMethod::Sightlines };
+    (recipe.buffers.planes, recipe.buffers.texels) = (choice.planes, choice.texels);
+    if !choice.sheets {
+        recipe.buffers.sheets = 0;
+    }
+    recipe.buffers.line_space = choice.line_space;
+    Choice { method: choice.to_string(), reasons: choice.reasons, facts: Some(facts) }
+}
+
+/// What there is to choose for an input that is no scene: nothing.
+pub(crate) fn no_choice(input: &BakeInput<'_>) -> Choice {
+    let reason = match input {
+        BakeInput::Plan(_) => {
+            "a plan is solved in the plane, exactly; its walls' directions and groups say how it is cut"
+        }
+        _ => "cells and portals are given, convex and in any direction: beams, then sequences",
+    };
+    Choice { method: "sightlines".to_owned(), reasons: vec![reason.to_owned()], facts: None }
 }
 
 #[cfg(test)]

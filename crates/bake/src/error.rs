@@ -16,6 +16,9 @@ use sightlines_triangulation::TriangulationError;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BakeError {
+    /// An option that means nothing for what is baked.
+    #[error(transparent)]
+    Meaningless(#[from] Meaningless),
     /// The triangulation has nothing to cut.
     #[error(transparent)]
     Triangulation(#[from] TriangulationError),
@@ -60,6 +63,18 @@ pub enum BakeError {
     /// The parts of the table do not fit together: a defect of this crate.
     #[error("the table is inconsistent: {0}")]
     Table(#[from] TableError),
+}
+
+/// An option of a request that means nothing for what is baked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("{option} is for {meant}, and this is {found}")]
+pub struct Meaningless {
+    /// Its name; the program writes `-` for `_`.
+    pub option: &'static str,
+    /// What it is for.
+    pub meant: &'static str,
+    /// What was found.
+    pub found: &'static str,
 }
 
 impl From<Halt> for BakeError {

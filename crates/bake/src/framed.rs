@@ -1,9 +1,9 @@
 //! Scenes, or cells given for them, that do not stand along the axes of the file: finding a frame before they are baked.
 
 use crate::gap::Gap;
-use crate::input::BakeInput;
-use crate::options::{BakeOptions, SceneMethod};
+use crate::options::{Recipe, SceneMethod};
 use crate::region::{CellsFrom, upright};
+use crate::request::BakeRequest;
 use sightlines_cells::Scene;
 use sightlines_formats::{SceneInfo, ViewCell, ViewCells};
 use sightlines_frame::{Areas, FoundAxes, MoveError, Moved, are_near, axes_near, find_axes};
@@ -21,6 +21,29 @@ const LEAST_GAIN: f64 = 0.05;
 const AS_GOOD: f64 = 0.8;
 /// Without a stated gap, at least this share of the area has to lie across an axis of the frame.
 const LEAST_FLAT: f64 = 0.5;
+
+/// What of a request decides the frame.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Asked<'a> {
+    gap: Gap,
+    cells: Option<&'a ViewCells>,
+    /// Whether nothing but sightlines hides.
+    sightlines_alone: bool,
+}
+
+impl<'a> Asked<'a> {
+    fn of(request: &'a BakeRequest) -> Self {
+        let cells = match &request.cells {
+            Some(CellsFrom::Boxes(given)) => Some(given),
+            _ => None,
+        };
+        let sightlines_alone = match request.method {
+            None => request.for_lines,
+            Some(method) => method == SceneMethod::Sightlines,
+        };
+        Self { gap: request.gap, cells, sightlines_alone }
+    }
+}
 
 /// What a frame is along.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -49,8 +72,7 @@ pub struct Framed {
 }
 
 impl Framed {
-    /// Finds the frame of a scene; `None` if it stays as it is: because the gap is 0, because [`BakeOptions::frame`] names a frame
-    /// that it is in already, or because nothing is gained.
+    /// Finds the frame of a scene; `None` if it stays as it is: because the gap is 0, or because nothing is gained.
     ///
     /// With [`Gap::OfFile`], something is gained if at least half of the area of what hides lies across an axis of the frame, and a
     /// twentieth did not lie across one before; or if a side of a given cell is on a wall but for the rounding of the file. With a stated width, if
@@ -63,16 +85,18 @@ impl Framed {
     ///
     /// # Errors
     /// [`MoveError`] if a stated gap is below the rounding of the coordinates, or these become too large.
-    pub fn of(scene: &Scene, file: Option<&SceneInfo>, options: &BakeOptions<'_>) -> Result<Option<Self>, MoveError> {
-        let (gap, is_stated) = match options.gap {
+    pub fn of(scene: &Scene, file: Option<&SceneInfo>, request: &BakeRequest) -> Result<Option<Self>, MoveError> {
+        let asked = Asked::of(request);
+        let (gap, is_stated) = match asked.gap {
             Gap::OfFile => (file.map_or(0.0, |file| Gap::of_file(scene, file)), false),
+            Gap::OfSingle => (Gap::of_single(scene), false),
             Gap::Width(width) => (width, true),
         };
-        if options.frame.is_some() || !gap.is_finite() || gap <= 0.0 && is_stated {
+        if !gap.is_finite() || gap <= 0.0 && is_stated {
             return Ok(None);
         }
         let before = Areas::of(scene);
-        let Some((axes, gap, along)) = axes(scene, gap, is_stated, before, options) else { return Ok(None) };
+        let Some((axes, gap, along)) = axes(scene, gap, is_stated, before, asked) else { return Ok(None) };
         let Ok(frame) = Frame::new(axes, gap) else { return Ok(None) };
         let moved = match Moved::new(scene, &frame) {
             Ok(moved) => moved,
@@ -89,31 +113,24 @@ impl Framed {
         let framed = Self { frame, digest: scene.digest(), along, moved, before, after };
         // Of a scene with walls along the axes of its file, by default the cells alone are a reason.
         let has_walls = !is_stated && before.axial_share() > 1.0 - LEAST_GAIN;
-        let stays = is_upright && (has_walls || framed.moved.n_snapped == 0) && !framed.moves_cells(&options.cells);
+        let stays = is_upright && (has_walls || framed.moved.n_snapped == 0) && !framed.moves_cells(asked.cells);
         Ok(if stays || is_flat(&framed.moved.scene) && !is_flat(scene) { None } else { Some(framed) })
     }
 
-    /// The scene along the frame as an input.
-    pub fn input<'a>(&'a self, file: Option<&'a SceneInfo>) -> BakeInput<'a> {
-        BakeInput::Scene(&self.moved.scene, file)
-    }
-
-    /// The options for the scene along the frame: given cells and the view region as boxes along it, around what they were.
-    pub fn options<'o>(&self, options: &BakeOptions<'o>) -> BakeOptions<'o> {
-        let mut framed = options.clone();
-        (framed.frame, framed.digest) = (Some(self.frame), Some(self.digest));
+    /// Puts the frame into a recipe: given cells and the view region become boxes along it, around what they were.
+    pub(crate) fn put_into(&self, recipe: &mut Recipe) {
+        (recipe.frame, recipe.digest) = (Some(self.frame), Some(self.digest));
         let region = |region: Aabb<3>| self.moved.box_around(&self.frame, &region, &PLAIN);
-        framed.cut.view_region = framed.cut.view_region.map(region);
-        if let CellsFrom::Boxes(given) = &mut framed.cells {
+        recipe.cut.view_region = recipe.cut.view_region.map(region);
+        if let CellsFrom::Boxes(given) = &mut recipe.cells {
             *given = ViewCells { cells: self.cells(given), axes: None };
         }
-        framed
     }
 
     /// Whether the frame, which is along the axes of the file, puts sides of given cells on walls that they are near: sides of cells are
     /// decimals, and corners of single precision are not.
-    fn moves_cells(&self, cells: &CellsFrom) -> bool {
-        let CellsFrom::Boxes(given) = cells else { return false };
+    fn moves_cells(&self, cells: Option<&ViewCells>) -> bool {
+        let Some(given) = cells else { return false };
         cell_axes(cells).is_none() && self.cells(given) != upright(given)
     }
 
@@ -127,8 +144,8 @@ impl Framed {
 
 /// How many times the surface of given cells the boxes have that are taken in their place: those along the frame, or without one along the axes
 /// of the scene. 1, but for rounding and the gap, where the cells stand along these, and exactly 1 where none are given.
-pub fn growth_of_cells(cells: &CellsFrom, framed: Option<&Framed>) -> f64 {
-    let CellsFrom::Boxes(given) = cells else { return 1.0 };
+pub fn growth_of_cells(cells: Option<&CellsFrom>, framed: Option<&Framed>) -> f64 {
+    let Some(CellsFrom::Boxes(given)) = cells else { return 1.0 };
     let around = match framed {
         Some(framed) => framed.cells(given),
         None => upright(given),
@@ -145,19 +162,13 @@ pub fn growth_of_cells(cells: &CellsFrom, framed: Option<&Framed>) -> f64 {
 }
 
 /// The axes of the frame, its gap, and what it is along.
-fn axes(
-    scene: &Scene,
-    gap: f64,
-    is_stated: bool,
-    before: Areas,
-    options: &BakeOptions<'_>,
-) -> Option<(Axes, f64, Along)> {
-    let given = matches!(options.cells, CellsFrom::Boxes(_));
+fn axes(scene: &Scene, gap: f64, is_stated: bool, before: Areas, asked: Asked<'_>) -> Option<(Axes, f64, Along)> {
+    let given = asked.cells.is_some();
     if gap == 0.0 {
         // Nothing is known of cracks, but the cells are turned.
-        let (cells, gap) = (cell_axes(&options.cells)?, Gap::of_rounding(scene));
+        let (cells, gap) = (cell_axes(asked.cells)?, Gap::of_rounding(scene));
         let cells = axes_near(scene, gap, cells);
-        let follows = suits(&cells, None, before.axial, options) && is_turned(&cells, before);
+        let follows = suits(&cells, None, before.axial, asked) && is_turned(&cells, before);
         return follows.then_some((cells.axes, gap, Along::Cells));
     }
     if !is_stated && before.axial_share() > 1.0 - LEAST_GAIN {
@@ -166,9 +177,9 @@ fn axes(
     let found = find_axes(scene, gap);
     let (mut axes, mut flat) = found.map_or((PLAIN, 0.0), |found| (found.axes, found.flat));
     if given {
-        let cells = axes_near(scene, gap, cell_axes(&options.cells).unwrap_or(PLAIN));
-        if suits(&cells, found.map(|found| found.axes), flat.max(before.axial), options) {
-            if is_turned(&cells, before) && cell_axes(&options.cells).is_some() {
+        let cells = axes_near(scene, gap, cell_axes(asked.cells).unwrap_or(PLAIN));
+        if suits(&cells, found.map(|found| found.axes), flat.max(before.axial), asked) {
+            if is_turned(&cells, before) && cell_axes(asked.cells).is_some() {
                 return Some((cells.axes, gap, Along::Cells));
             }
             (axes, flat) = (if are_near(cells.axes, PLAIN) { PLAIN } else { axes }, cells.flat);
@@ -183,9 +194,9 @@ fn axes(
 
 /// Whether the axes of given cells suit a scene, across the axes of whose walls lies an area of `flat`: if the cells are along other axes, across which
 /// nearly as much lies, as in one of several buildings; or if there are no such walls, unless they are all that is used.
-fn suits(cells: &FoundAxes, walls: Option<Axes>, flat: f64, options: &BakeOptions<'_>) -> bool {
+fn suits(cells: &FoundAxes, walls: Option<Axes>, flat: f64, asked: Asked<'_>) -> bool {
     let others = walls.is_none_or(|walls| !are_near(cells.axes, walls));
-    let no_walls = flat < LEAST_FLAT * cells.all && options.method != SceneMethod::Sightlines;
+    let no_walls = flat < LEAST_FLAT * cells.all && !asked.sightlines_alone;
     others && cells.flat >= AS_GOOD * flat || no_walls
 }
 
@@ -195,9 +206,8 @@ fn is_turned(axes: &FoundAxes, before: Areas) -> bool {
 }
 
 /// The axes of given cells that do not stand along those of the scene.
-fn cell_axes(cells: &CellsFrom) -> Option<Axes> {
-    let CellsFrom::Boxes(cells) = cells else { return None };
+fn cell_axes(cells: Option<&ViewCells>) -> Option<Axes> {
     // Along the axes of the scene in another order or with other signs is along them.
     let is_along = |axis: &[f64; 3]| axis.iter().filter(|x| **x != 0.0).count() == 1;
-    cells.axes.filter(|axes| !axes.iter().all(is_along))
+    cells?.axes.filter(|axes| !axes.iter().all(is_along))
 }

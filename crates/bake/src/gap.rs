@@ -13,6 +13,9 @@ pub enum Gap {
     /// exactly as they are.
     #[default]
     OfFile,
+    /// As precise as single precision is, whatever file the scene comes from, where a frame makes walls of much that is none without it; for
+    /// scenes that were built from numbers in single precision.
+    OfSingle,
     /// This width, in scene units; 0 takes all coordinates exactly as they are.
     Width(f64),
 }
@@ -37,7 +40,7 @@ impl Gap {
     }
 
     /// The precision of a scene whose coordinates were rounded to single precision, as [`Gap::of_file`] derives it.
-    fn of_single(scene: &Scene) -> f64 {
+    pub(crate) fn of_single(scene: &Scene) -> f64 {
         let corners: Vec<Point3> = scene.occluding_triangles().flatten().collect();
         let middle = [0, 1, 2].map(|k| median(corners.iter().map(|p| p[k]).collect()));
         let far = |p: &Point3| (0..3).map(|k| (p[k] - middle[k]).abs()).fold(0.0, f64::max);

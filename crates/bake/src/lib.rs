@@ -4,7 +4,7 @@
 //!
 //! # Scope
 //!
-//! - **Owns**: the whole way for any input ([`bake`](fn@bake)), from a file of any format ([`Bakeable`]), and the steps for each kind of it ([`bake_plan`], [`bake_scene`],
+//! - **Owns**: the whole way for any input ([`bake`](fn@bake)): what to bake ([`BakeRequest`]), all decisions before the work ([`Prepared`]), the work; from a file of any format ([`Bakeable`]), and the steps for each kind of it ([`bake_plan`], [`bake_scene`],
 //!   [`bake_regions`], [`bake_prt`], [`bake_map`]), all of which return the graph, the table and a report ([`Baked`]); stab
 //!   trees ([`with_stab_trees`]) and proofs ([`certify_table`]) from a graph, and the graph of a stored table ([`from_table`]);
 //!   from-region methods and backends by name ([`methods`]), and the choice of methods from the properties of an input
@@ -39,10 +39,12 @@ mod objects;
 mod options;
 pub mod places;
 mod plan;
+mod prepared;
 pub mod quake;
 pub mod region;
 pub mod reject;
 mod reports;
+mod request;
 mod run;
 pub mod scene;
 mod sectors;
@@ -57,7 +59,7 @@ pub use bakeable::{Bakeable, BakeableError};
 pub use baked::{Baked, BakedMap, BakedPlan, BakedPrt, BakedRegions, BakedScene};
 pub use certify::{Certified, CertifyError, Proofs, certify_table};
 pub use doors::DoorPortals;
-pub use error::BakeError;
+pub use error::{BakeError, Meaningless};
 pub use floor::{FloorCut, FloorCutError, floor_cut};
 pub use framed::{Along, Framed, growth_of_cells};
 pub use gap::Gap;
@@ -65,8 +67,9 @@ pub use graph::{GraphRef, OtherGraph, TableGraph};
 pub use input::BakeInput;
 pub use limit::LimitReport;
 pub use live::{LiveScene, LiveUpdate};
-pub use options::{BakeOptions, ParseSceneMethodError, SceneMethod};
+pub use options::{ParseSceneMethodError, Recipe, SceneMethod};
 pub use plan::{PlanBakeOptions, bake_plan};
+pub use prepared::{Decisions, Prepared, StatedViewers};
 pub use quake::{PrtBakeError, PrtOptions, VisMap, bake_map, bake_prt, vis_map};
 pub use region::{CellsFrom, MakeMethod, RegionBakeOptions, bake_regions};
 pub use reject::{
@@ -74,7 +77,8 @@ pub use reject::{
     RejectWadsError, reject_table, reject_wad, reject_wads,
 };
 pub use reports::{ClusterVisibility, MapReport, PlanReport, RegionReport, Report, SceneReport, WorldSummary};
-pub use run::{bake, bake_packed};
+pub use request::{BakeRequest, BufferRequest, Runtime};
+pub use run::bake;
 pub use scene::{PortalMode, SceneBakeOptions, bake_scene};
 pub use sectors::see_groups;
 pub use stab::{BakedStab, StabBakeError, StabOptions, StabReport, with_stab_trees};

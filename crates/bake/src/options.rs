@@ -1,25 +1,21 @@
-//! How to bake any input: options with the names that the program has for them.
+//! Methods by name, and what was decided of a bake.
 
-use crate::gap::Gap;
 use crate::methods::{BufferOptions, OcclusionMethod};
 use crate::region::CellsFrom;
 use crate::scene::PortalMode;
 use crate::subdivide::Subdivide;
 use sightlines_kdtree::SceneOptions;
 use sightlines_multifocal::Split;
-use sightlines_progress::{Budget, Observer, Units};
 use sightlines_pvs::{Frame, GeometryDigest};
-use sightlines_stabtree::SearchOptions;
 use std::fmt;
 use std::str::FromStr;
 
 /// What decides which cells and objects of a scene are visible.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum SceneMethod {
     /// Chosen by the properties of the scene: see [`auto`](crate::auto).
     Auto,
     /// Sightlines alone.
-    #[default]
     Sightlines,
     /// Sightlines and [`OcclusionMethod::Multifocal`]: hidden is what either proves hidden.
     Both,
@@ -63,6 +59,11 @@ impl SceneMethod {
         }
     }
 
+    /// Whether it draws buffers.
+    pub(crate) const fn has_buffers(self) -> bool {
+        matches!(self, Self::Both | Self::FromRegion(OcclusionMethod::Multifocal))
+    }
+
     /// Whether sightlines decide too.
     pub(crate) const fn by_sightlines(self) -> bool {
         !matches!(self, Self::FromRegion(_))
@@ -89,26 +90,21 @@ impl FromStr for SceneMethod {
     }
 }
 
-/// How to bake, whatever the input is. What means nothing for an input is ignored.
-#[derive(Clone)]
-pub struct BakeOptions<'a> {
+/// What was decided of a bake: nothing is left to choose. Made by [`BakeRequest::prepare`](crate::BakeRequest::prepare).
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct Recipe {
     /// Plans: how to cut.
     pub subdivide: Subdivide,
     /// Plans cut by a k-d tree, and scenes: `tau`. Scenes: all the rest.
     pub cut: SceneOptions,
-    /// Plans: chords shot through each exit before the search. Changes nothing but the time.
-    pub chords: u32,
-    /// Scenes: how precise their coordinates are, which decides whether walls that are nearly across an axis, of the file or of the
-    /// building, are taken to be so.
-    pub gap: Gap,
-    /// Scenes: the frame that the scene is in already, with its cells and view region; the table states it. [`Framed`](crate::Framed)
-    /// sets it.
+    /// Scenes: the frame that the scene is in, with its cells and view region; the table states it.
     pub frame: Option<Frame>,
     /// Scenes in a frame: the digests of the scene as its file has it; the table states them in place of those of the scene that was moved.
     pub digest: Option<GeometryDigest>,
     /// Scenes: which portals sightlines go through.
     pub portals: PortalMode,
-    /// Scenes: what decides.
+    /// Scenes: what decides; never [`SceneMethod::Auto`].
     pub method: SceneMethod,
     /// Scenes: the cells.
     pub cells: CellsFrom,
@@ -116,69 +112,27 @@ pub struct BakeOptions<'a> {
     pub buffers: BufferOptions,
     /// Scenes by a from-region method: when cells are cut into smaller volumes.
     pub split: Split,
-    /// Portal files and Quake maps: only the first, coarse bound; quick, and shows much that is hidden.
+    /// Portal files and Quake maps: only the first, coarse bound.
     pub fast: bool,
-    /// Number of threads; 0 for one for each core. Changes nothing but the time.
-    pub threads: usize,
-    /// Receives reports, and may cancel.
-    pub progress: Option<&'a dyn Observer>,
-    /// Scenes: what may be spent, such as time. What is not decided then counts as visible, and the table depends on when that was; see
-    /// [`LimitReport`](crate::LimitReport). Without a budget the table is always the same.
-    pub budget: Option<&'a dyn Budget>,
-    /// Where results of units of work are kept, to go on after a stop or to share a bake among processes. Changes nothing but who computes what.
-    pub units: Units<'a>,
 }
 
-impl Default for BakeOptions<'_> {
-    fn default() -> Self {
-        Self {
-            subdivide: Subdivide::Auto,
-            cut: SceneOptions::default(),
-            chords: SearchOptions::default().chords,
-            gap: Gap::default(),
-            frame: None,
-            digest: None,
-            portals: PortalMode::default(),
-            method: SceneMethod::default(),
-            cells: CellsFrom::default(),
-            buffers: BufferOptions::default(),
-            split: Split::default(),
-            fast: false,
-            threads: 0,
-            progress: None,
-            budget: None,
-            units: Units::default(),
-        }
-    }
-}
-
-impl fmt::Debug for BakeOptions<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("BakeOptions")
-            .field("subdivide", &self.subdivide)
-            .field("cut", &self.cut)
-            .field("gap", &self.gap)
-            .field("frame", &self.frame)
-            .field("digest", &self.digest)
-            .field("portals", &self.portals)
-            .field("method", &self.method)
-            .field("cells", &self.cells)
-            .field("buffers", &self.buffers)
-            .field("split", &self.split)
-            .field("fast", &self.fast)
-            .field("threads", &self.threads)
-            .finish_non_exhaustive()
-    }
-}
-
-impl BakeOptions<'_> {
-    /// Whether the cells of a scene are given boxes, and not those of a k-d tree.
+impl Recipe {
+    /// Whether the cells of a scene are boxes without portals, and not those of a k-d tree.
     pub fn has_given_cells(&self) -> bool {
         self.cells != CellsFrom::KdTree
     }
 
-    /// Whether a scene takes from-region queries: for any method but sightlines alone, and for given cells.
+    /// Whether a scene takes from-region queries: for any method but sightlines alone, and for cells without portals.
     pub fn takes_regions(&self) -> bool {
         self.method.region_method().is_some() || self.has_given_cells()
+    }
+
+    /// All that decides the table but the input, in words: two recipes with the same key make the same table of the same input.
+    pub fn key(&self) -> String {
+        // A new option does not compile until it is decided whether it is part of the key. `warn` is an address.
+        let Self { subdivide, cut, frame, digest, portals, method, cells, buffers, split, fast } = self;
+        let BufferOptions { measure, planes, texels, occluders, carry, sheets, line_space, backend, warn: _ } = buffers;
+        let buffers = (measure, planes, texels, occluders, carry, sheets, line_space, backend);
+        format!("{:?}", (subdivide, cut, frame, digest, (portals, method, cells, buffers, split, fast)))
     }
 }

@@ -1,18 +1,16 @@
 //! Any input to its table, in one call.
 
-use crate::auto::choose_for;
 use crate::baked::Baked;
 use crate::error::BakeError;
-use crate::framed::Framed;
 use crate::input::BakeInput;
-use crate::methods::{MethodError, OcclusionMethodFactory};
-use crate::options::{BakeOptions, SceneMethod};
+use crate::methods::{BufferOptions, MethodError, OcclusionMethodFactory};
+use crate::options::Recipe;
 use crate::plan::{PlanBakeOptions, bake_plan};
 use crate::quake::{PrtOptions, bake_map, bake_prt};
 use crate::region::{PackRegionsError, RegionBakeOptions, bake_regions, pack_regions};
 use crate::reports::RegionReport;
+use crate::request::{BakeRequest, Runtime};
 use crate::scene::{SceneBakeOptions, bake_scene};
-use crate::threads;
 use sightlines_cells::Scene;
 use sightlines_formats::SceneInfo;
 use sightlines_packed::PackReport;
@@ -21,53 +19,46 @@ use sightlines_pvs::TableParts;
 use sightlines_stabtree::ConvexOptions;
 use std::io::Write;
 
-/// Bakes an input: cuts it into cells where it has none, decides what they see, and makes the table.
+/// Bakes an input as a request says: cuts it into cells where it has none, decides what they see, and makes the table.
 ///
-/// Errs towards visible, and gives the same table, byte for byte, with any number of threads. The functions for one kind
+/// Errs towards visible, and gives the same table, byte for byte, with any number of threads. [`BakeRequest::prepare`] and
+/// [`Prepared::run`](crate::Prepared::run) are its two halves, for those who want to see what was decided, to name the number of threads, to
+/// hear of the progress, or to go on after a stop. The functions for one kind
 /// of input ([`bake_plan`], [`bake_scene`], [`bake_regions`], [`bake_prt`], [`bake_map`]) document what each decides, and take
 /// further arguments: the state of a search to resume, or any from-region method.
 ///
 /// A scene whose walls lie at right angles to each other, but not along the axes of its file, is baked along axes of its own, which the
-/// table states ([`Framed`], [`BakeOptions::gap`]).
-///
-/// [`SceneMethod::Auto`] measures the input first; [`choose_for`] returns what was chosen and why.
+/// table states ([`Framed`](crate::Framed), [`BakeRequest::gap`]).
 ///
 /// # Errors
 /// [`BakeError`]
-pub fn bake<'i>(input: impl Into<BakeInput<'i>>, options: &BakeOptions<'_>) -> Result<Baked, BakeError> {
-    let input = input.into();
-    threads::on(options.threads, || bake_here(input, options))
+pub fn bake<'i>(input: impl Into<BakeInput<'i>>, request: &BakeRequest) -> Result<Baked, BakeError> {
+    Runtime::default().bake(input, request)
 }
 
-/// The same, on the threads that call it.
-fn bake_here(input: BakeInput<'_>, options: &BakeOptions<'_>) -> Result<Baked, BakeError> {
-    if let BakeInput::Scene(scene, file) = input
-        && let Some(framed) = Framed::of(scene, file, options)?
-    {
-        return bake_here(framed.input(file), &framed.options(options));
-    }
-    if options.method == SceneMethod::Auto {
-        return bake_here(input, &choose_for(&input, options).1);
-    }
-    let BakeOptions { threads, progress, units, .. } = *options;
-    let search = ConvexOptions { fast: options.fast, threads };
+/// Makes the table of an input that is along its axes, on the threads that call it.
+pub(crate) fn bake_here(input: BakeInput<'_>, recipe: &Recipe, runtime: &Runtime<'_>) -> Result<Baked, BakeError> {
+    let Runtime { threads, progress, units, budget, .. } = *runtime;
+    let search = ConvexOptions { fast: recipe.fast, threads };
     match input {
         BakeInput::Plan(plan) => {
-            let BakeOptions { subdivide, chords, .. } = *options;
-            let options = PlanBakeOptions { subdivide, tau: options.cut.tau, chords, threads, progress };
+            let (subdivide, tau) = (recipe.subdivide, recipe.cut.tau);
+            let options = PlanBakeOptions { subdivide, tau, threads, progress, ..PlanBakeOptions::default() };
             Ok(bake_plan(plan, &options)?.into_any())
         }
         BakeInput::Scene(scene, file) => {
-            let mut baked = if options.takes_regions() {
-                by_regions(scene, options, file)?
+            let mut baked = if recipe.takes_regions() {
+                with_regions(scene, recipe, runtime, file, |regions| {
+                    Ok::<_, BakeError>(bake_regions(scene, regions)?.into_any())
+                })?
             } else {
-                let BakeOptions { cut, portals, budget, .. } = *options;
+                let Recipe { cut, portals, .. } = *recipe;
                 let budget = Allowance::all(budget);
                 bake_scene(scene, &SceneBakeOptions { cut, portals, threads, file, progress, budget, units })?
                     .into_any()
             };
-            let digest = options.digest.or(baked.table.digest());
-            baked.table = baked.table.with_frame(options.frame)?.with_digest(digest);
+            let digest = recipe.digest.or(baked.table.digest());
+            baked.table = baked.table.with_frame(recipe.frame)?.with_digest(digest);
             Ok(baked)
         }
         BakeInput::Portals(prt) => {
@@ -79,19 +70,17 @@ fn bake_here(input: BakeInput<'_>, options: &BakeOptions<'_>) -> Result<Baked, B
     }
 }
 
-fn by_regions(scene: &Scene, options: &BakeOptions<'_>, file: Option<&SceneInfo>) -> Result<Baked, BakeError> {
-    with_regions(scene, options, file, |regions| Ok(bake_regions(scene, regions)?.into_any()))
-}
-
 /// Calls `then` with the options of a bake by regions.
 pub(crate) fn with_regions<T, E: From<BakeError>>(
     scene: &Scene,
-    options: &BakeOptions<'_>,
+    recipe: &Recipe,
+    runtime: &Runtime<'_>,
     file: Option<&SceneInfo>,
     then: impl FnOnce(&RegionBakeOptions<'_>) -> Result<T, E>,
 ) -> Result<T, E> {
-    let BakeOptions { method, buffers, split, cut, portals, threads, progress, budget, units, ref cells, .. } =
-        *options;
+    let Runtime { threads, progress, budget, units, warn } = *runtime;
+    let Recipe { method, split, cut, portals, ref cells, .. } = *recipe;
+    let buffers = BufferOptions { warn, ..recipe.buffers };
     buffers.check().map_err(|error| BakeError::from(MethodError::from(error)))?;
     let prepare = |method| OcclusionMethodFactory::new(method, scene, &buffers);
     let factory = method.region_method().map(prepare).transpose().map_err(BakeError::from)?;
@@ -111,20 +100,17 @@ pub(crate) fn with_regions<T, E: From<BakeError>>(
     })
 }
 
-/// Bakes a scene that is along its axes already, and writes a packed table of the large class row by row: for more cells than a table in memory
-/// has room for. See [`pack_regions`] for what can be written so.
-///
-/// # Errors
-/// [`PackRegionsError`]
-pub fn bake_packed<W: Write + Send>(
+/// Bakes a scene that is along its axes, and writes a packed table row by row.
+pub(crate) fn bake_packed<W: Write + Send>(
     scene: &Scene,
     file: Option<&SceneInfo>,
-    options: &BakeOptions<'_>,
+    recipe: &Recipe,
+    runtime: &Runtime<'_>,
     out: W,
 ) -> Result<(W, RegionReport, PackReport), PackRegionsError> {
     let stated = |parts: &mut TableParts| {
-        parts.frame = options.frame;
-        parts.digest = options.digest.or(parts.digest);
+        parts.frame = recipe.frame;
+        parts.digest = recipe.digest.or(parts.digest);
     };
-    with_regions(scene, options, file, |regions| pack_regions(scene, regions, &stated, out))
+    with_regions(scene, recipe, runtime, file, |regions| pack_regions(scene, regions, &stated, out))
 }

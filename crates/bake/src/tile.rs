@@ -5,17 +5,18 @@
 //! farther away hides nothing. So a tile depends on those nearby, and on the boxes around the others, and is
 //! baked without reading the rest of the world. Far tiles that it does not know of count as visible.
 
-use crate::auto::choose_for;
+use crate::auto::own_cells;
 use crate::error::BakeError;
 use crate::graph::TableGraph;
-use crate::options::{BakeOptions, SceneMethod};
+use crate::grid;
 use crate::places::{PlacesError, observed_places};
+use crate::prepared::recipe_of_tile;
 use crate::region::{CellsFrom, Decided, Wanted, decide, upright};
 use crate::reports::RegionReport;
+use crate::request::{BakeRequest, Runtime};
 use crate::run::with_regions;
 use crate::scene::extents;
 use crate::threads;
-use crate::{BakeInput, grid};
 use sightlines_cells::{MovingObject, Scene, SceneError, SceneObject};
 use sightlines_formats::{SceneInfo, ViewCell, ViewCells};
 use sightlines_geometry::Aabb;
@@ -64,20 +65,32 @@ pub struct BakedTile {
     pub report: RegionReport,
 }
 
-/// The cells of a tile, cut as the options say in the box where viewers can be: of what it contains alone, so that they are the same whatever
-/// lies around it. Given boxes are taken as they are.
+/// The cells of a tile, cut as the request says in the box where viewers can be: of what it contains alone, so that they are the same whatever
+/// lies around it. Cells that are not named are [those that suit the scene](own_cells); given boxes are taken as they are.
 ///
 /// # Errors
-/// [`BakeError`]: a box without room, more cells than the limit.
-pub fn tile_cells(scene: &Scene, viewers: &Aabb<3>, options: &BakeOptions<'_>) -> Result<Vec<ViewCell>, BakeError> {
-    threads::on(options.threads, || cells_here(scene, viewers, options))
+/// [`BakeError`]: a box without room, more cells than the limit, an option that means nothing for a scene.
+pub fn tile_cells(
+    scene: &Scene,
+    viewers: &Aabb<3>,
+    request: &BakeRequest,
+    runtime: &Runtime<'_>,
+) -> Result<Vec<ViewCell>, BakeError> {
+    request.check(&scene.into())?;
+    threads::on(runtime.threads, || cells_here(scene, viewers, request, runtime))
 }
 
 /// The same, on the threads that call it.
-fn cells_here(scene: &Scene, viewers: &Aabb<3>, options: &BakeOptions<'_>) -> Result<Vec<ViewCell>, BakeError> {
+fn cells_here(
+    scene: &Scene,
+    viewers: &Aabb<3>,
+    request: &BakeRequest,
+    runtime: &Runtime<'_>,
+) -> Result<Vec<ViewCell>, BakeError> {
     let nameless = |bounds: Aabb<3>| ViewCell { id: String::new(), bounds };
-    let cut = SceneOptions { view_region: Some(*viewers), ..options.cut };
-    Ok(match &options.cells {
+    let cut = SceneOptions { view_region: Some(*viewers), ..request.recipe().cut };
+    let cells = request.cells.clone().unwrap_or_else(|| own_cells(scene));
+    Ok(match &cells {
         CellsFrom::KdTree => {
             let cut = subdivide_scene(scene, &cut)?;
             // Its cells may reach out of the box.
@@ -91,7 +104,7 @@ fn cells_here(scene: &Scene, viewers: &Aabb<3>, options: &BakeOptions<'_>) -> Re
         }
         CellsFrom::Grid(n) => grid::grid(viewers, *n)?.cells.into_iter().map(|cell| nameless(cell.bounds)).collect(),
         CellsFrom::Places(how) => {
-            let found = observed_places(scene, &cut, how, options.progress).map_err(|error| match error {
+            let found = observed_places(scene, &cut, how, runtime.progress).map_err(|error| match error {
                 PlacesError::Cancelled(cancelled) => cancelled.into(),
                 error => BakeError::from(error),
             })?;
@@ -114,7 +127,7 @@ pub fn tile_extent(scene: &Scene, cells: &[ViewCell]) -> Aabb<3> {
 
 /// Bakes a tile. Errs towards visible only, as far as the method does.
 ///
-/// Cells are boxes without portals, whatever they were cut from. [`BakeOptions::cells`] is not used; see [`tile_cells`]. A scene that stands along
+/// Cells are boxes without portals, whatever they were cut from. [`BakeRequest::cells`] is not used; see [`tile_cells`]. A scene that stands along
 /// other axes than its file is not turned.
 ///
 /// Cost: that of its cells in a scene of the tile and those nearby, each asked of its own cells, those nearby, and the boxes of the others.
@@ -122,8 +135,8 @@ pub fn tile_extent(scene: &Scene, cells: &[ViewCell]) -> Aabb<3> {
 ///
 /// # Errors
 /// [`BakeError`]: cells that are not volumes, and methods that fail.
-pub fn bake_tile(tile: &Tile<'_>, options: &BakeOptions<'_>) -> Result<BakedTile, BakeError> {
-    let Decided { graph, mut parts, objects, mut report } = decided(tile, Wanted::All, options)?;
+pub fn bake_tile(tile: &Tile<'_>, request: &BakeRequest, runtime: &Runtime<'_>) -> Result<BakedTile, BakeError> {
+    let Decided { graph, mut parts, objects, mut report } = decided(tile, Wanted::All, request, runtime)?;
     debug_assert!(matches!(graph, TableGraph::Boxes(_)), "tiles have boxes as cells");
     let (near, far) = (near_columns(tile, &objects), far_columns(tile, &objects));
     let n_objects = tile.scene.objects().len();
@@ -151,24 +164,32 @@ pub fn bake_tile(tile: &Tile<'_>, options: &BakeOptions<'_>) -> Result<BakedTile
 ///
 /// # Errors
 /// As [`bake_tile`].
-pub fn bake_far(tile: &Tile<'_>, options: &BakeOptions<'_>) -> Result<Columns, BakeError> {
-    Ok(far_columns(tile, &decided(tile, Wanted::LastRegions, options)?.objects))
+pub fn bake_far(tile: &Tile<'_>, request: &BakeRequest, runtime: &Runtime<'_>) -> Result<Columns, BakeError> {
+    Ok(far_columns(tile, &decided(tile, Wanted::LastRegions, request, runtime)?.objects))
 }
 
-fn decided(tile: &Tile<'_>, wanted: Wanted, options: &BakeOptions<'_>) -> Result<Decided, BakeError> {
-    threads::on(options.threads, || decided_here(tile, wanted, options))
+fn decided(
+    tile: &Tile<'_>,
+    wanted: Wanted,
+    request: &BakeRequest,
+    runtime: &Runtime<'_>,
+) -> Result<Decided, BakeError> {
+    request.check(&tile.scene.into())?;
+    threads::on(runtime.threads, || decided_here(tile, wanted, request, runtime))
 }
 
 /// The same, on the threads that call it.
-fn decided_here(tile: &Tile<'_>, wanted: Wanted, options: &BakeOptions<'_>) -> Result<Decided, BakeError> {
+fn decided_here(
+    tile: &Tile<'_>,
+    wanted: Wanted,
+    request: &BakeRequest,
+    runtime: &Runtime<'_>,
+) -> Result<Decided, BakeError> {
     let scene = merged(tile);
     let cells = CellsFrom::Boxes(ViewCells { cells: tile.cells.to_vec(), axes: None });
-    let mut options = BakeOptions { cells, ..options.clone() };
-    if options.method == SceneMethod::Auto {
-        options = choose_for(&BakeInput::Scene(&scene, None), &options).1;
-    }
+    let recipe = recipe_of_tile(request, &scene, cells, runtime);
     let near: Vec<Aabb<3>> = tile.near.iter().flat_map(|near| near.cells.iter().map(|cell| cell.bounds)).collect();
-    with_regions(&scene, &options, tile.file, |how| decide(&scene, &[&near, tile.far], wanted, how))
+    with_regions(&scene, &recipe, runtime, tile.file, |how| decide(&scene, &[&near, tile.far], wanted, how))
 }
 
 /// The scene of a tile and those nearby: its objects come first, those of each other follow in their order, without names.

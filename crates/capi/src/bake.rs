@@ -7,8 +7,8 @@ use crate::status::{Failure, SL_ERROR_BAKE, SL_ERROR_CANCELLED, SL_ERROR_GEOMETR
 use crate::table::{SlTable, new_table};
 use sightlines_bake::places::PlaceOptions;
 use sightlines_bake::region::CellsFrom;
-use sightlines_bake::{BakeError, BakeInput, BakeOptions, Baked, Gap, Report, SceneMethod, auto::own_cells};
-use sightlines_cells::{Plan, Scene};
+use sightlines_bake::{BakeError, BakeInput, BakeRequest, Baked, Gap, Report, Runtime, SceneMethod};
+use sightlines_cells::Plan;
 use sightlines_formats::ViewCells;
 use sightlines_formats::view_cells::ViewCell;
 use sightlines_geometry::{Aabb, Point2, check_coordinate};
@@ -63,7 +63,7 @@ pub struct SlBakeOptions {
     /// The size of this structure, in bytes.
     pub struct_size: usize,
     /// What decides, by the name that the program has for it: "sightlines", "auto", "both", "multifocal", "line-space", "shafts",
-    /// "voxels". Null: sight lines, and for cells that were chosen to be boxes what "auto" chooses.
+    /// "voxels". Null: "auto", which measures the scene.
     pub method: *const c_char,
     /// Where the cells come from: `SL_CELLS_…`.
     pub cells: u32,
@@ -80,8 +80,9 @@ pub struct SlBakeOptions {
     /// Where viewers can be; null for everywhere within the scene.
     pub view_region: *const SlBox,
     /// How precise coordinates are, in scene units: walls within half of this of a plane across an axis of the building, which may be
-    /// turned by any angle, are taken to lie in it, and openings narrower than this may count as closed. 0 takes every coordinate as
-    /// it is. For buildings in single precision that stand at an angle, about a millionth of their size.
+    /// turned by any angle, are taken to lie in it, and openings narrower than this may count as closed. 0: what single precision explains,
+    /// about a millionth of the building's size, where that puts many walls into planes and all objects were added in single precision;
+    /// else nothing. Anything below 0 takes every coordinate as it is.
     pub gap: f64,
     /// Objects smaller than this in every direction hide nothing; 0 for what suits the scene, anything below 0 for none.
     pub detail_below: f64,
@@ -223,36 +224,27 @@ fn aabb(b: &SlBox, what: &str) -> Result<Aabb<3>, Failure> {
 }
 
 impl Given<'_> {
-    /// As the crate `bake` takes them, for a plan, or with the choices for a scene.
-    fn bake_options(&self, scene: Option<&Scene>) -> Result<BakeOptions<'_>, Failure> {
-        let SlBakeOptions { cells, place_count, grid, max_cells, gap, detail_below, threads, .. } = *self.options;
+    /// As the crate `bake` takes them.
+    ///
+    /// * `is_scene`: for a plan only what it has in common with scenes is checked, and nothing of scenes asked for
+    fn request(&self, is_scene: bool, is_single: bool) -> Result<BakeRequest, Failure> {
+        let SlBakeOptions { cells, place_count, grid, max_cells, gap, detail_below, keep_solid, threads, .. } =
+            *self.options;
         if threads > 1024 {
             return Err(Failure::argument(format!("{threads} threads: there can be 1024 at most")));
         }
-        let not_from_0 = |x: f64| !(x.is_finite() && x >= 0.0);
-        if not_from_0(gap) || not_from_0(self.options.time_limit) || detail_below.is_nan() {
-            return Err(Failure::argument("gap, time limit or size of detail is no finite number from 0 on"));
-        }
-        let mut options = BakeOptions { threads: threads as usize, gap: Gap::Width(gap), ..BakeOptions::default() };
-        options.progress = self.callback.as_ref().map(|callback| callback as &dyn Observer);
-        options.cut.view_region = self.view_region.as_ref().map(|b| aabb(b, "the view region")).transpose()?;
-        options.cut.keep_solid = self.options.keep_solid != 0;
-        options.cut.detail_below = if detail_below == 0.0 { None } else { Some(detail_below.max(0.0)) };
-        if max_cells != 0 {
-            options.cut.max_cells = max_cells;
+        let limit = self.options.time_limit;
+        if !gap.is_finite() || !(limit.is_finite() && limit >= 0.0) || detail_below.is_nan() {
+            return Err(Failure::argument(
+                "gap, time limit or size of detail is no finite number, or the limit is below 0",
+            ));
         }
         let n_cells = if place_count == 0 { None } else { Some(place_count) };
-        let places = CellsFrom::Places(PlaceOptions { n_cells, cell_size: None });
-        options.cells = match cells {
-            SL_CELLS_CHOSEN => match scene {
-                Some(scene) if self.method != Some(SceneMethod::Sightlines) && scene.mirrors().is_empty() => {
-                    own_cells(scene)
-                }
-                _ => CellsFrom::KdTree,
-            },
-            SL_CELLS_KD_TREE => CellsFrom::KdTree,
-            SL_CELLS_PLACES => places,
-            SL_CELLS_GRID => CellsFrom::Grid(grid),
+        let cells = match cells {
+            SL_CELLS_CHOSEN => None,
+            SL_CELLS_KD_TREE => Some(CellsFrom::KdTree),
+            SL_CELLS_PLACES => Some(CellsFrom::Places(PlaceOptions { n_cells, cell_size: None })),
+            SL_CELLS_GRID => Some(CellsFrom::Grid(grid)),
             SL_CELLS_BOXES => {
                 let cell = |(i, b): (usize, &SlBox)| {
                     let bounds = aabb(b, &format!("box {i}"))?;
@@ -262,25 +254,45 @@ impl Given<'_> {
                 if cells.is_empty() {
                     return Err(Failure::argument("no boxes were given"));
                 }
-                CellsFrom::Boxes(ViewCells { cells, axes: None })
+                Some(CellsFrom::Boxes(ViewCells { cells, axes: None }))
             }
             _ => return Err(Failure::argument(format!("{cells} is no kind of cells"))),
         };
-        let places = cells == SL_CELLS_CHOSEN && matches!(options.cells, CellsFrom::Places(_));
-        options.method = self.method.unwrap_or(if places { SceneMethod::Auto } else { SceneMethod::Sightlines });
-        Ok(options)
+        let view_region = self.view_region.as_ref().map(|b| aabb(b, "the view region")).transpose()?;
+        if !is_scene {
+            return Ok(BakeRequest::default());
+        }
+        Ok(BakeRequest {
+            cells,
+            method: self.method,
+            gap: match gap {
+                0.0 if is_single => Gap::OfSingle,
+                0.0 => Gap::OfFile,
+                gap => Gap::Width(gap.max(0.0)),
+            },
+            view_region,
+            detail_below: if detail_below == 0.0 { None } else { Some(detail_below.max(0.0)) },
+            max_cells: if max_cells == 0 { None } else { Some(max_cells) },
+            keep_solid: keep_solid != 0,
+            ..BakeRequest::default()
+        })
     }
 
     /// Makes a table, and tells what was done.
-    fn bake(&self, input: BakeInput<'_>) -> Result<(Table, SlBakeReport), Failure> {
+    ///
+    /// * `is_single`: whether all coordinates of a scene are in single precision
+    fn bake(&self, input: BakeInput<'_>, is_single: bool) -> Result<(Table, SlBakeReport), Failure> {
         let (start, limit) = (Instant::now(), self.options.time_limit);
         let spent = move || start.elapsed().as_secs_f64() / limit;
-        let scene = if let BakeInput::Scene(scene, _) = input { Some(scene) } else { None };
-        let mut options = self.bake_options(scene)?;
-        if limit > 0.0 {
-            options.budget = Some(&spent);
-        }
-        let Baked { table, report, .. } = sightlines_bake::bake(input, &options).map_err(|error| {
+        let request = self.request(matches!(input, BakeInput::Scene(..)), is_single)?;
+        let runtime = Runtime {
+            threads: self.options.threads as usize,
+            progress: self.callback.as_ref().map(|callback| callback as &dyn Observer),
+            budget: if limit > 0.0 { Some(&spent) } else { None },
+            ..Runtime::default()
+        };
+        let done = request.prepare(input, &runtime).and_then(|prepared| prepared.run(&runtime));
+        let Baked { table, report, .. } = done.map_err(|error| {
             let status = if matches!(error, BakeError::Cancelled(_)) { SL_ERROR_CANCELLED } else { SL_ERROR_BAKE };
             Failure::new(status, error.to_string())
         })?;
@@ -323,7 +335,7 @@ pub unsafe extern "C" fn sl_bake(
             let parts = self::scene(scene)?;
             let given = given(options)?;
             let scene = parts.scene()?;
-            bake_and_report(&given, BakeInput::Scene(&scene, None), report)
+            bake_and_report(&given, (BakeInput::Scene(&scene, None), parts.is_single()), report)
         })
     })
 }
@@ -353,7 +365,7 @@ pub unsafe extern "C" fn sl_bake_plan(
             let given = given(options)?;
             let plan = Plan::from_walls(walls.iter().map(|w| (Point2::new(w[0], w[1]), Point2::new(w[2], w[3]))))
                 .map_err(|error| Failure::new(SL_ERROR_GEOMETRY, error.to_string()))?;
-            bake_and_report(&given, BakeInput::Plan(&plan), report)
+            bake_and_report(&given, (BakeInput::Plan(&plan), false), report)
         })
     })
 }
@@ -364,7 +376,7 @@ pub unsafe extern "C" fn sl_bake_plan(
 /// As for the module `border`.
 unsafe fn bake_and_report(
     given: &Given<'_>,
-    input: BakeInput<'_>,
+    (input, is_single): (BakeInput<'_>, bool),
     report: *mut SlBakeReport,
 ) -> Result<Table, Failure> {
     // SAFETY: as for this function.
@@ -372,7 +384,7 @@ unsafe fn bake_and_report(
         if !report.is_null() {
             border::check_sized(report, "the report")?;
         }
-        let (table, did) = given.bake(input)?;
+        let (table, did) = given.bake(input, is_single)?;
         if !report.is_null() {
             border::put_sized(report, did, "the report")?;
         }

@@ -38,9 +38,16 @@ pub struct Parts {
     objects: Vec<SceneObject>,
     flags: Vec<u32>,
     within: Vec<Option<Aabb<3>>>,
+    /// Whether an object has coordinates in double precision.
+    has_doubles: bool,
 }
 
 impl Parts {
+    /// Whether all coordinates are in single precision.
+    pub(crate) fn is_single(&self) -> bool {
+        !self.has_doubles
+    }
+
     /// The objects with any of these flags.
     fn with(&self, flag: u32) -> Vec<u32> {
         (0u32..).zip(&self.flags).filter(|(_, flags)| **flags & flag != 0).map(|(object, _)| object).collect()
@@ -141,7 +148,7 @@ pub unsafe extern "C" fn sl_scene_add_object(
         // SAFETY: pointers are as the header demands; an array has the alignment of what is in it.
         unsafe {
             let vertices = border::slice(vertices.cast::<[f64; 3]>(), vertex_count, "the place of the vertices")?;
-            add(scene, name, vertices.to_vec(), (indices, index_count), flags, object)
+            add(scene, name, (vertices.to_vec(), false), (indices, index_count), flags, object)
         }
     })
 }
@@ -172,19 +179,19 @@ pub unsafe extern "C" fn sl_scene_add_object_f32(
         unsafe {
             let vertices = border::slice(vertices.cast::<[f32; 3]>(), vertex_count, "the place of the vertices")?;
             let vertices = vertices.iter().map(|p| p.map(f64::from)).collect();
-            add(scene, name, vertices, (indices, index_count), flags, object)
+            add(scene, name, (vertices, true), (indices, index_count), flags, object)
         }
     })
 }
 
-/// Adds an object.
+/// Adds an object; the flag beside the corners says whether they are in single precision.
 ///
 /// # Safety
 /// As for the module `border`.
 unsafe fn add(
     scene: *mut SlScene,
     name: *const c_char,
-    vertices: Vec<[f64; 3]>,
+    (vertices, is_single): (Vec<[f64; 3]>, bool),
     (indices, n): (*const u32, usize),
     flags: u32,
     object: *mut u32,
@@ -198,6 +205,7 @@ unsafe fn add(
             border::place(object, "the place of the object")?;
         }
         let added = scene.add(name, vertices, indices, flags)?;
+        scene.has_doubles |= !is_single;
         if object.is_null() { Ok(()) } else { border::put(object, added, "the place of the object") }
     }
 }

@@ -1,6 +1,7 @@
 //! Multifocal buffers and sheets as arguments.
 
 use crate::named::{measure, one_of};
+use sightlines::bake::BufferRequest;
 use sightlines::bake::methods::{Backend, BufferOptions, MethodError};
 use sightlines::multifocal::Measure;
 use std::path::PathBuf;
@@ -27,35 +28,77 @@ fn remedy(error: &MethodError) -> &'static str {
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "Multifocal buffers")]
 pub(crate) struct BufferArgs {
-    /// Multifocal: the measure that buffers store
-    #[arg(long, value_name = "WHAT", default_value = Measure::default().name(), value_parser = measure())]
-    measure: Measure,
-    /// Multifocal: planes on each side of a cell; 0 for none
-    #[arg(long, value_name = "N", default_value_t = BufferOptions::default().planes, value_parser = clap::value_parser!(u32).range(0..=256))]
-    planes: u32,
-    /// Multifocal: texels along the longer side of a plane
-    #[arg(long, value_name = "N", default_value_t = BufferOptions::default().texels, value_parser = clap::value_parser!(u32).range(1..=8192))]
-    texels: u32,
-    /// Multifocal: maximum number of occluders drawn on each side of a cell, the most effective first
-    #[arg(long, value_name = "N", default_value_t = BufferOptions::default().occluders)]
-    occluders: u32,
+    /// Multifocal: the measure that buffers store [default: height]
+    #[arg(long, value_name = "WHAT", value_parser = measure())]
+    measure: Option<Measure>,
+    /// Multifocal: planes on each side of a cell; 0 for none [default: 9]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=256))]
+    planes: Option<u32>,
+    /// Multifocal: texels along the longer side of a plane [default: 128]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=8192))]
+    texels: Option<u32>,
+    /// Multifocal: maximum number of occluders drawn on each side of a cell, the most effective first [default: 500]
+    #[arg(long, value_name = "N")]
+    occluders: Option<u32>,
     /// Multifocal: do not carry blocked texels over from one plane to the next
     #[arg(long)]
     no_carry: bool,
     /// Multifocal: maximum number of triangle sides examined to find a sheet between a cell and an object; 0 turns
-    /// sheets off
-    #[arg(long, value_name = "N", default_value_t = BufferOptions::default().sheets)]
-    sheets: u32,
-    /// Multifocal: the backend that draws the buffers
-    #[arg(long, value_name = "WHO", default_value = Backend::Cpu.name(), value_parser = one_of(&Backend::ALL, Backend::name, Backend::about))]
-    backend: Backend,
+    /// sheets off [default: 1024]
+    #[arg(long, value_name = "N")]
+    sheets: Option<u32>,
+    /// Multifocal: the backend that draws the buffers [default: cpu]
+    #[arg(long, value_name = "WHO", value_parser = one_of(&Backend::ALL, Backend::name, Backend::about))]
+    backend: Option<Backend>,
 }
 
 impl BufferArgs {
-    /// The options. A backend that takes over is a warning.
-    pub(crate) fn options(&self) -> BufferOptions {
+    /// As a request has them.
+    pub(crate) fn request(&self) -> BufferRequest {
         let Self { measure, planes, texels, occluders, no_carry, sheets, backend } = *self;
-        let warn = |text: &str| tracing::warn!("{text}");
-        BufferOptions { measure, planes, texels, occluders, carry: !no_carry, sheets, line_space: false, backend, warn }
+        let carry = no_carry.then_some(false);
+        BufferRequest { measure, planes, texels, occluders, carry, sheets, backend }
+    }
+
+    /// As a method takes them. A backend that takes over is a warning.
+    pub(crate) fn options(&self) -> BufferOptions {
+        BufferOptions { warn, ..self.request().options() }
+    }
+}
+
+/// What a bake says of itself to people.
+pub(crate) fn warn(text: &str) {
+    tracing::warn!("{text}");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[derive(clap::Parser)]
+    struct Program {
+        #[command(flatten)]
+        buffers: BufferArgs,
+    }
+
+    #[test]
+    fn the_help_names_the_defaults() {
+        let help = Program::command().render_long_help().to_string().split_whitespace().collect::<Vec<_>>().join(" ");
+        let BufferOptions { measure, planes, texels, occluders, sheets, backend, .. } = BufferOptions::default();
+        let defaults = [
+            measure.name().to_owned(),
+            planes.to_string(),
+            texels.to_string(),
+            occluders.to_string(),
+            sheets.to_string(),
+            backend.name().to_owned(),
+        ];
+        let mut rest = &*help;
+        for default in defaults {
+            let text = format!("[default: {default}]");
+            let at = rest.find(&text).unwrap_or_else(|| panic!("{text} in {rest}"));
+            rest = &rest[at + text.len()..];
+        }
     }
 }

@@ -3,7 +3,7 @@
 //!
 //! Run as `cargo run --release -p sightlines --example any_file`.
 
-use sightlines::bake::{BakeOptions, Bakeable, bake};
+use sightlines::bake::{BakeRequest, Bakeable, bake};
 use sightlines::formats::doom::{DoomMapSource, SourceLine, write_doom_map};
 use sightlines::formats::{LumpName, Source, geojson, scene::write_glb};
 use sightlines::pvs::{CellId, Table};
@@ -15,7 +15,7 @@ use std::path::Path;
 fn table_of(name: &str, bytes: &[u8]) -> Result<Table, Box<dyn Error>> {
     let source = Source::Memory { name: Path::new(name), bytes, beside: None };
     let input = Bakeable::read(&source, None)?;
-    Ok(bake(&input, &BakeOptions::default())?.table)
+    Ok(bake(&input, &BakeRequest::default())?.table)
 }
 
 /// A square room with walls all round.

@@ -2,7 +2,7 @@
 
 use sightlines_bake::methods::OcclusionMethod;
 use sightlines_bake::tile::{NearTile, Tile, bake_tile, tile_extent};
-use sightlines_bake::{BakeOptions, SceneMethod};
+use sightlines_bake::{BakeRequest, Runtime, SceneMethod};
 use sightlines_cells::Scene;
 use sightlines_formats::ViewCell;
 use sightlines_geometry::Aabb;
@@ -37,7 +37,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     let bounds: Vec<TileBounds> = tiles.iter().map(|tile| tile.3).collect();
     let near_of = near_tiles(&bounds, 20.0);
-    let options = BakeOptions { method: SceneMethod::FromRegion(OcclusionMethod::LineSpace), ..BakeOptions::default() };
+    let options =
+        BakeRequest { method: Some(SceneMethod::FromRegion(OcclusionMethod::LineSpace)), ..BakeRequest::default() };
     let mut index = WorldIndex { border: 20.0, reach: None, tiles: Vec::new() };
     for (k, (name, scene, cells, bounds)) in (0u32..).zip(&tiles) {
         let near: Vec<usize> = near_of[k as usize].iter().map(|&near| near as usize).collect();
@@ -45,7 +46,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let scenes: Vec<NearTile<'_>> =
             near.iter().map(|&near| NearTile { scene: &tiles[near].1, cells: &tiles[near].2 }).collect();
         let boxes: Vec<Aabb<3>> = far.iter().map(|&far| tiles[far].3.extent).collect();
-        let baked = bake_tile(&Tile { scene, file: None, cells, near: &scenes, far: &boxes }, &options)?;
+        let baked =
+            bake_tile(&Tile { scene, file: None, cells, near: &scenes, far: &boxes }, &options, &Runtime::default())?;
         // Who bakes again when something changes takes hashes of all that decides the content.
         let entry = TileEntry {
             name: name.clone(),

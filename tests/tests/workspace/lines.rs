@@ -3,7 +3,7 @@
 
 use sightlines::bake::from_table;
 use sightlines::bake::lines::{LineOptions, Lines, Obstacle, lines};
-use sightlines::bake::{BakeOptions, TableGraph, bake};
+use sightlines::bake::{BakeRequest, TableGraph, bake};
 use sightlines::cells::PortalId;
 use sightlines::certificates::space::{BoxLine, BoxNetwork, BoxPortal};
 use sightlines::formats::quake::{Bsp, BspFormat};
@@ -19,19 +19,19 @@ const ALL: LineOptions = LineOptions { max_lines: usize::MAX, max_hidden: 300 };
 
 fn plan() -> Table {
     let plan = office(OfficeOptions { seed: 4, ..OfficeOptions::default() }).expect("an office");
-    bake(&plan, &BakeOptions::default()).expect("a table").table
+    bake(&plan, &BakeRequest::default()).expect("a table").table
 }
 
 static BUILDING: LazyLock<Table> = LazyLock::new(|| {
     let options = TowerOptions { floors: 2, rooms_x: 3, rooms_y: 2, furniture: 1, ..TowerOptions::default() };
-    bake(&tower(options).expect("a tower"), &BakeOptions::default()).expect("a table").table
+    bake(&tower(options).expect("a tower"), &BakeRequest::default()).expect("a table").table
 });
 
 fn map() -> Table {
     let world = quake_like(QuakeLikeOptions { seed: 7, rooms_x: 3, rooms_y: 2, floors: 2 }).expect("few rooms");
     let bsp = Bsp::parse(bsp_bytes(&world, BspFormat::Bsp29)).expect("a map");
     let prt = prt_of_world(&world);
-    bake((&bsp, &prt), &BakeOptions::default()).expect("a table").table
+    bake((&bsp, &prt), &BakeRequest::default()).expect("a table").table
 }
 
 fn lines_of(table: &Table, options: LineOptions) -> Lines {

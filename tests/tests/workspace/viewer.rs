@@ -2,7 +2,7 @@
 //! and names of a scene stay names. Without Chromium these tests do not run, and say so.
 
 use serde_json::{Value, json};
-use sightlines::bake::{BakeOptions, Bakeable, bake};
+use sightlines::bake::{BakeRequest, Bakeable, bake};
 use sightlines::cells::{Plan, Scene, SceneObject};
 use sightlines::formats::Source;
 use sightlines::formats::quake::{Bsp, BspFormat};
@@ -98,7 +98,7 @@ fn check(browser: &Path, table: &Table, figure: Option<&Figure>) {
 #[test]
 fn tables_that_do_not_fit_are_refused() {
     let plan: Plan = office(OfficeOptions { seed: 3, ..OfficeOptions::default() }).expect("an office");
-    let table = bake(&plan, &BakeOptions::default()).expect("a table").table;
+    let table = bake(&plan, &BakeRequest::default()).expect("a table").table;
     let line = Line { cells: vec![0, 1], portals: vec![0], ends: Some([[0.0; 3], [1.0; 3]]) };
     let reasons = Reasons { lines: vec![line; 10], hidden: vec![], n_pairs: 10, n_joined: 10 };
     let page = |max_bytes: usize| Page { max_bytes, reasons: Some(&reasons), ..Page::new("t", "t.pvs", &table) }.html();
@@ -114,7 +114,7 @@ fn tables_that_do_not_fit_are_refused() {
 fn the_page_of_a_plan_finds_what_the_table_says() {
     let Some(browser) = chromium() else { return };
     let plan: Plan = office(OfficeOptions { seed: 3, ..OfficeOptions::default() }).expect("an office");
-    let table = bake(&plan, &BakeOptions::default()).expect("a table").table;
+    let table = bake(&plan, &BakeRequest::default()).expect("a table").table;
     check(&browser, &table, Some(&Figure::of_plan(&plan)));
 }
 
@@ -122,7 +122,7 @@ fn the_page_of_a_plan_finds_what_the_table_says() {
 fn the_page_of_a_building_finds_what_the_table_says() {
     let Some(browser) = chromium() else { return };
     let scene = tower(TowerOptions { floors: 2, ..TowerOptions::default() }).expect("a tower");
-    let table = bake(&scene, &BakeOptions::default()).expect("a table").table;
+    let table = bake(&scene, &BakeRequest::default()).expect("a table").table;
     check(&browser, &table, Some(&Figure::of_scene(&scene)));
     check(&browser, &table, None);
 }
@@ -133,7 +133,7 @@ fn the_page_of_a_quake_map_finds_what_the_table_says() {
     let world = quake_like(QuakeLikeOptions { seed: 5, rooms_x: 3, rooms_y: 2, floors: 2 }).expect("few rooms");
     let bsp = Bsp::parse(bsp_bytes(&world, BspFormat::Bsp29)).expect("a map");
     let prt = prt_of_world(&world);
-    let table = bake((&bsp, &prt), &BakeOptions::default()).expect("a table").table;
+    let table = bake((&bsp, &prt), &BakeRequest::default()).expect("a table").table;
     check(&browser, &table, None);
 }
 
@@ -150,7 +150,7 @@ fn hostile_names_run_nothing() {
         .map(|(k, object)| SceneObject { name: format!("{k} {hostile}"), ..object.clone() })
         .collect();
     let scene = Scene::new(objects).expect("a scene");
-    let table = bake(&scene, &BakeOptions::default()).expect("a table").table;
+    let table = bake(&scene, &BakeRequest::default()).expect("a table").table;
     let page = Page::new(hostile, hostile, &table).html().expect("a page");
     assert!(!page.html.contains(hostile) && page.html.contains("default-src 'none'"));
     let result = open(&browser, &page.html, &eyes(&table, 50), 1000);
@@ -167,7 +167,7 @@ fn pages_of_real_scenes_find_what_the_tables_say() {
     {
         let path = data.join(name);
         let read = Bakeable::read(&Source::File(&path), None).expect("real input is read");
-        let table = bake(&read, &BakeOptions::default()).expect("a table").table;
+        let table = bake(&read, &BakeRequest::default()).expect("a table").table;
         let figure = match &read {
             Bakeable::Plan { plan, .. } => Some(Figure::of_plan(plan)),
             Bakeable::Scene(file) => Some(Figure::of_scene(&file.scene)),

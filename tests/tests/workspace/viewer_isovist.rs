@@ -1,7 +1,7 @@
 //! Isovists that pages draw under the pointer, against those of the crate. Without Chromium these tests do not run, and say so.
 
 use serde_json::{Value, json};
-use sightlines::bake::{BakeOptions, bake};
+use sightlines::bake::{BakeRequest, bake};
 use sightlines::cells::Plan;
 use sightlines::formats::geojson::read_plan;
 use sightlines::geometry::{Point2, Random};
@@ -33,7 +33,7 @@ fn eyes(plan: &Plan, table: &Table) -> Vec<([f64; 3], f64)> {
 
 fn check(plan: &Plan) {
     let Some(browser) = chromium() else { return };
-    let table = bake(plan, &BakeOptions::default()).expect("a table").table;
+    let table = bake(plan, &BakeRequest::default()).expect("a table").table;
     let eyes = eyes(plan, &table);
     assert!(eyes.len() > 50, "{} eyes", eyes.len());
     let open = |table: &Table| -> Value {

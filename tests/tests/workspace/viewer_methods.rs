@@ -1,7 +1,7 @@
 //! The eye-to-cell methods of pages against those of `eye-to-cell`, in a browser.
 
 use serde_json::{Value, json};
-use sightlines::bake::{BakeOptions, Bakeable, bake};
+use sightlines::bake::{BakeRequest, Bakeable, bake};
 use sightlines::cells::Plan;
 use sightlines::eye_to_cell::{Doors, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph};
 use sightlines::formats::Source;
@@ -121,9 +121,9 @@ fn compare(browser: &Path, name: &str, table: &Table, n: usize) {
 fn methods_of_pages_are_those_of_the_crate() {
     let Some(browser) = chromium() else { return };
     let plan: Plan = office(OfficeOptions { seed: 3, ..OfficeOptions::default() }).expect("an office");
-    compare(&browser, "plan", &bake(&plan, &BakeOptions::default()).expect("a table").table, 300);
+    compare(&browser, "plan", &bake(&plan, &BakeRequest::default()).expect("a table").table, 300);
     let scene = tower(TowerOptions { floors: 2, ..TowerOptions::default() }).expect("a tower");
-    compare(&browser, "tower", &bake(&scene, &BakeOptions::default()).expect("a table").table, 200);
+    compare(&browser, "tower", &bake(&scene, &BakeRequest::default()).expect("a table").table, 200);
 }
 
 #[test]
@@ -132,6 +132,6 @@ fn methods_of_pages_of_real_scenes_are_those_of_the_crate() {
     let Some(browser) = chromium() else { return };
     for name in ["doom/freedoom1_E1M1.wad", "scenes/whale_large/whale_large.glb"] {
         let read = Bakeable::read(&Source::File(&data.join(name)), None).expect("real input is read");
-        compare(&browser, name, &bake(&read, &BakeOptions::default()).expect("a table").table, 150);
+        compare(&browser, name, &bake(&read, &BakeRequest::default()).expect("a table").table, 150);
     }
 }

@@ -1,9 +1,9 @@
 //! One call for any input: the tables of the functions for one kind of input, byte for byte, with the graph beside them.
 
-use sightlines_bake::methods::{Backend, BufferOptions, OcclusionMethod};
+use sightlines_bake::methods::{Backend, OcclusionMethod};
 use sightlines_bake::{
-    BakeError, BakeInput, BakeOptions, Baked, CellsFrom, CertifyError, PlanBakeOptions, PrtOptions, Report,
-    SceneBakeOptions, SceneMethod, TableGraph, bake, bake_plan, bake_prt, bake_scene, from_table,
+    BakeError, BakeInput, BakeRequest, Baked, BufferRequest, CellsFrom, CertifyError, PlanBakeOptions, PrtOptions,
+    Report, Runtime, SceneBakeOptions, SceneMethod, TableGraph, bake, bake_plan, bake_prt, bake_scene, from_table,
 };
 use sightlines_formats::quake::prt::parse_prt;
 use sightlines_progress::Progress;
@@ -42,8 +42,9 @@ fn one_call_bakes_what_each_function_bakes() {
     let inputs: [BakeInput<'_>; 3] = [(&floor).into(), (&scene).into(), (&rooms).into()];
     for (input, expected) in inputs.into_iter().zip(expected) {
         // What suits the input is chosen, and is the default for all of these.
-        for method in [SceneMethod::Sightlines, SceneMethod::Auto] {
-            let baked = bake(input, &BakeOptions { method, threads: 2, ..BakeOptions::default() }).unwrap();
+        for method in [None, Some(SceneMethod::Auto)] {
+            let runtime = Runtime { threads: 2, ..Runtime::default() };
+            let baked = runtime.bake(input, &BakeRequest { method, ..BakeRequest::default() }).unwrap();
             assert_eq!(baked.table.to_bytes(), expected.to_bytes());
             check_graph(&baked);
         }
@@ -54,16 +55,24 @@ fn one_call_bakes_what_each_function_bakes() {
 fn scenes_take_every_method_and_all_cells() {
     let walls = TowerOptions { floors: 1, rooms_x: 2, rooms_y: 1, furniture: 0, ..TowerOptions::default() };
     let scene = tower(TowerOptions { windows: false, ..walls }).unwrap();
-    let buffers = BufferOptions { planes: 1, texels: 16, ..BufferOptions::default() };
+    let buffers = BufferRequest { planes: Some(1), texels: Some(16), ..BufferRequest::default() };
     let mut n_regions = 0;
     for method in SceneMethod::all() {
         assert_eq!(method.to_string().parse(), Ok(method));
         for cells in [CellsFrom::KdTree, CellsFrom::Grid([2, 1, 2])] {
-            let options = BakeOptions { method, cells, buffers, ..BakeOptions::default() };
-            if method == SceneMethod::FromRegion(OcclusionMethod::Multifocal) && !options.has_given_cells() {
+            let has_buffers =
+                [SceneMethod::Both, SceneMethod::FromRegion(OcclusionMethod::Multifocal)].contains(&method);
+            if method == SceneMethod::FromRegion(OcclusionMethod::Multifocal) && cells == CellsFrom::KdTree {
                 continue; // takes long
             }
-            let baked = bake(&scene, &options).unwrap();
+            let request = BakeRequest { method: Some(method), cells: Some(cells), ..BakeRequest::default() };
+            let with_buffers = BakeRequest { buffers, ..request.clone() };
+            // Buffers mean nothing for the others.
+            assert_eq!(with_buffers.prepare(&scene, &Runtime::default()).is_ok(), has_buffers, "{method}");
+            let request = if has_buffers { with_buffers } else { request };
+            let prepared = request.prepare(&scene, &Runtime::default()).unwrap();
+            let options = prepared.recipe();
+            let baked = prepared.run(&Runtime::default()).unwrap();
             check_graph(&baked);
             let takes_regions = matches!(baked.report, Report::Regions(_));
             assert_eq!(
@@ -81,17 +90,18 @@ fn scenes_take_every_method_and_all_cells() {
 #[test]
 fn what_cannot_be_prepared_is_refused() {
     let scene = tower(TowerOptions { floors: 1, rooms_x: 1, rooms_y: 1, ..TowerOptions::default() }).unwrap();
-    let error = |options: BakeOptions<'_>| bake(&scene, &options).unwrap_err();
-    let cells = CellsFrom::Grid([0, 1, 1]);
-    assert!(matches!(error(BakeOptions { cells, ..BakeOptions::default() }), BakeError::Grid(_)));
-    let cells = CellsFrom::Grid([1, 1, 1]);
-    let buffers = BufferOptions { planes: 256, texels: 8192, ..BufferOptions::default() };
+    let error = |options: BakeRequest| bake(&scene, &options).unwrap_err();
+    let cells = Some(CellsFrom::Grid([0, 1, 1]));
+    assert!(matches!(error(BakeRequest { cells, ..BakeRequest::default() }), BakeError::Grid(_)));
+    let cells = Some(CellsFrom::Grid([1, 1, 1]));
+    let method = Some(SceneMethod::Both);
+    let buffers = BufferRequest { planes: Some(256), texels: Some(8192), ..BufferRequest::default() };
     assert!(matches!(
-        error(BakeOptions { cells: cells.clone(), buffers, ..BakeOptions::default() }),
+        error(BakeRequest { cells: cells.clone(), method, buffers, ..BakeRequest::default() }),
         BakeError::Method(_)
     ));
-    let buffers = BufferOptions { backend: Backend::Gpu, ..BufferOptions::default() };
-    let gpu = bake(&scene, &BakeOptions { method: SceneMethod::Both, cells, buffers, ..BakeOptions::default() });
+    let buffers = BufferRequest { backend: Some(Backend::Gpu), ..BufferRequest::default() };
+    let gpu = bake(&scene, &BakeRequest { method, cells, buffers, ..BakeRequest::default() });
     assert_eq!(gpu.is_ok(), cfg!(feature = "multifocal-gpu"));
     match gpu {
         Ok(_) => {}
@@ -110,7 +120,7 @@ fn proofs_are_observed() {
     let rooms = parse_prt(ROOMS).unwrap();
     let inputs: [BakeInput<'_>; 3] = [(&floor).into(), (&scene).into(), (&rooms).into()];
     for input in inputs {
-        let baked = bake(input, &BakeOptions::default()).unwrap();
+        let baked = bake(input, &BakeRequest::default()).unwrap();
         let reports = Mutex::new(Vec::new());
         let watch = |progress: Progress| {
             reports.lock().unwrap().push((progress.done, progress.total, progress.share));

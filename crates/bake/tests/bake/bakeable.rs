@@ -1,6 +1,6 @@
 //! From the bytes of a file and its name to a table.
 
-use sightlines_bake::{BakeOptions, Bakeable, BakeableError, bake};
+use sightlines_bake::{BakeRequest, Bakeable, BakeableError, bake};
 use sightlines_formats::doom::{DoomMapSource, MapChoiceError, SourceLine};
 use sightlines_formats::input::Neighbours;
 use sightlines_formats::scene::{Simplified, write_glb, write_simplified_glb};
@@ -15,19 +15,19 @@ fn read(name: &str, bytes: &[u8], map: Option<&str>) -> Result<Bakeable, Bakeabl
 }
 
 fn table(bakeable: &Bakeable) -> Vec<u8> {
-    bake(bakeable, &BakeOptions::default()).expect("it can be baked").table.to_bytes()
+    bake(bakeable, &BakeRequest::default()).expect("it can be baked").table.to_bytes()
 }
 
 #[test]
 fn plans_and_scenes_are_those_of_the_file() {
     let plan = office(OfficeOptions { rooms_x: 3, rooms_y: 2, ..OfficeOptions::default() }).unwrap();
     let read_plan = read("plan.geojson", geojson::write_plan(&plan).as_bytes(), None).unwrap();
-    assert_eq!(table(&read_plan), bake(&plan, &BakeOptions::default()).unwrap().table.to_bytes());
+    assert_eq!(table(&read_plan), bake(&plan, &BakeRequest::default()).unwrap().table.to_bytes());
 
     let scene = tower(TowerOptions { floors: 1, rooms_x: 1, rooms_y: 1, ..TowerOptions::default() }).unwrap();
     let read_scene = read("tower.glb", &write_glb(&scene).unwrap(), None).unwrap();
     let Bakeable::Scene(file) = &read_scene else { panic!("{read_scene:?}") };
-    assert_eq!(table(&read_scene), bake(file, &BakeOptions::default()).unwrap().table.to_bytes());
+    assert_eq!(table(&read_scene), bake(file, &BakeRequest::default()).unwrap().table.to_bytes());
 }
 
 /// A scene whose triangles were moved hides what can be seen.

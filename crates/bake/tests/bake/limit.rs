@@ -1,9 +1,9 @@
 //! Bakes with a budget: whenever it is spent, the table hides nothing that it shows without one, and nothing that a ray reaches.
 
 use sightlines_bake::auto::own_cells;
-use sightlines_bake::methods::{BufferOptions, OcclusionMethod};
+use sightlines_bake::methods::OcclusionMethod;
 use sightlines_bake::places::PlaceOptions;
-use sightlines_bake::{BakeOptions, CellsFrom, LimitReport, Report, SceneMethod, bake};
+use sightlines_bake::{BakeRequest, BufferRequest, CellsFrom, LimitReport, Report, Runtime, SceneMethod};
 use sightlines_cells::{Scene, SceneObject};
 use sightlines_geometry::{Aabb, Point3, Random};
 use sightlines_multifocal::{RaySampler, Split};
@@ -27,12 +27,17 @@ pub(crate) fn building(turned: bool) -> Scene {
     Scene::new(upright.expect("a tower").objects().iter().map(object).collect()).expect("a scene")
 }
 
-fn baked(scene: &Scene, options: &BakeOptions<'_>, budget: Option<&dyn Budget>) -> (Table, Option<LimitReport>) {
+fn baked(scene: &Scene, options: &BakeRequest, budget: Option<&dyn Budget>) -> (Table, Option<LimitReport>) {
     // Small buffers and few rays: how long one cell takes does not matter here.
-    let buffers = BufferOptions { planes: 1, texels: 32, ..BufferOptions::default() };
-    let split = Split { n_rays: 1024, ..Split::default() };
-    let options = BakeOptions { budget, buffers, split, threads: 1, ..options.clone() };
-    let baked = bake(scene, &options).expect("a table");
+    let mut options = options.clone();
+    if options.method != Some(SceneMethod::Sightlines) {
+        options.split = Some(Split { n_rays: 1024, ..Split::default() });
+    }
+    if ![Some(SceneMethod::Sightlines), Some(SceneMethod::Auto)].contains(&options.method) {
+        options.buffers = BufferRequest { planes: Some(1), texels: Some(32), ..BufferRequest::default() };
+    }
+    let runtime = Runtime { budget, threads: 1, ..Runtime::default() };
+    let baked = runtime.bake(scene, &options).expect("a table");
     let limit = match &baked.report {
         Report::Scene(report) => report.limit,
         Report::Regions(report) => report.limit,
@@ -87,7 +92,7 @@ fn impostor(full: &Table, zero: &Table) -> Table {
     Table::new(parts).expect("the parts fit together")
 }
 
-fn check(name: &str, scene: &Scene, options: &BakeOptions<'_>) {
+fn check(name: &str, scene: &Scene, options: &BakeRequest) {
     let (full, none) = baked(scene, options, None);
     assert!(none.is_none() && full.info_value("time-limit").is_none(), "{name}");
     let (wrong, n_hits) = hidden_wrongly(scene, &full);
@@ -121,22 +126,26 @@ fn check(name: &str, scene: &Scene, options: &BakeOptions<'_>) {
     assert_eq!(whole.to_bytes(), full.to_bytes(), "{name}: nothing was limited");
 }
 
+fn by(method: SceneMethod) -> BakeRequest {
+    BakeRequest { method: Some(method), ..BakeRequest::default() }
+}
+
 #[test]
 fn rooms_along_walls_by_sightlines() {
-    check("rooms", &building(false), &BakeOptions::default());
+    check("rooms", &building(false), &by(SceneMethod::Sightlines));
 }
 
 #[test]
 fn rooms_along_walls_by_both_methods() {
-    check("rooms, both", &building(false), &BakeOptions { method: SceneMethod::Both, ..BakeOptions::default() });
+    check("rooms, both", &building(false), &by(SceneMethod::Both));
 }
 
 #[test]
 fn boxes_by_sightlines_and_from_regions() {
     for method in [SceneMethod::Sightlines, SceneMethod::Auto] {
         let turned = method == SceneMethod::Auto;
-        let cells = CellsFrom::Grid(if turned { [4, 3, 1] } else { [5, 4, 1] });
-        check("boxes", &building(turned), &BakeOptions { cells, method, ..BakeOptions::default() });
+        let cells = Some(CellsFrom::Grid(if turned { [4, 3, 1] } else { [5, 4, 1] }));
+        check("boxes", &building(turned), &BakeRequest { cells, ..by(method) });
     }
 }
 
@@ -145,8 +154,8 @@ fn boxes_by_sightlines_and_from_regions() {
 fn places_by_both_methods() {
     let scene = building(true);
     assert_ne!(own_cells(&scene), CellsFrom::KdTree);
-    let cells = CellsFrom::Places(PlaceOptions { n_cells: Some(30), cell_size: None });
+    let cells = Some(CellsFrom::Places(PlaceOptions { n_cells: Some(30), cell_size: None }));
     let method = SceneMethod::FromRegion(OcclusionMethod::Multifocal);
-    check("places by one method", &scene, &BakeOptions { cells: cells.clone(), method, ..BakeOptions::default() });
-    check("places", &scene, &BakeOptions { cells, method: SceneMethod::Auto, ..BakeOptions::default() });
+    check("places by one method", &scene, &BakeRequest { cells: cells.clone(), ..by(method) });
+    check("places", &scene, &BakeRequest { cells, ..by(SceneMethod::Auto) });
 }

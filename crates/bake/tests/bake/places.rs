@@ -1,9 +1,8 @@
 //! Places: they tile what is not solid, and what viewers in them see is in the table.
 
 use proptest::prelude::*;
-use sightlines_bake::auto::choose_for;
 use sightlines_bake::places::{PlaceOptions, Places, PlacesError, observed_places, places};
-use sightlines_bake::{BakeError, BakeOptions, CellsFrom, Report, SceneMethod, TableGraph, bake};
+use sightlines_bake::{BakeError, BakeRequest, CellsFrom, Report, Runtime, SceneMethod, TableGraph, bake};
 use sightlines_cells::{Scene, SceneObject};
 use sightlines_geometry::{Aabb, Point3, Random};
 use sightlines_kdtree::{Matter, SceneOptions};
@@ -233,9 +232,12 @@ fn hidden_wrongly(scene: &Scene, cells: &[Aabb<3>], seen: &BitMatrix) -> (usize,
 #[test]
 fn scenes_without_walls_along_axes_have_sound_tables_of_places() {
     let scene = rooms();
-    let split = Split { n_rays: 1024, ..Split::default() };
-    let options = |method, threads| BakeOptions { method, split, threads, ..BakeOptions::default() };
-    let baked = bake(&scene, &options(SceneMethod::Auto, 1)).expect("a table");
+    let split = Some(Split { n_rays: 1024, ..Split::default() });
+    let with = |threads| {
+        let runtime = Runtime { threads, ..Runtime::default() };
+        runtime.bake(&scene, &BakeRequest { split, ..BakeRequest::default() }).expect("a table")
+    };
+    let baked = with(1);
     let (TableGraph::Boxes(cells), Report::Regions(report)) = (&baked.graph, &baked.report) else {
         panic!("places are boxes")
     };
@@ -252,7 +254,7 @@ fn scenes_without_walls_along_axes_have_sound_tables_of_places() {
     let mut forgotten = seen;
     (0..scene.objects().len()).for_each(|o| forgotten.set(cells.len() / 2, o, false));
     assert!(hidden_wrongly(&scene, cells, &forgotten).0 > 0);
-    let again = bake(&scene, &options(SceneMethod::Auto, 3)).expect("a table");
+    let again = with(3);
     assert_eq!(again.table.to_bytes(), baked.table.to_bytes(), "threads change nothing");
 }
 
@@ -261,10 +263,11 @@ fn scenes_without_walls_along_axes_have_sound_tables_of_places() {
 fn axial_buildings_keep_their_cells() {
     let tower =
         tower(TowerOptions { floors: 1, rooms_x: 2, rooms_y: 1, furniture: 1, ..TowerOptions::default() }).unwrap();
-    let auto = bake(&tower, &BakeOptions { method: SceneMethod::Auto, ..BakeOptions::default() }).unwrap();
-    assert_eq!(auto.table.to_bytes(), bake(&tower, &BakeOptions::default()).unwrap().table.to_bytes());
-    let cells = CellsFrom::Places(PlaceOptions { n_cells: Some(12), cell_size: None });
-    let named = bake(&tower, &BakeOptions { cells, ..BakeOptions::default() }).unwrap();
+    let by = |method| bake(&tower, &BakeRequest { method, ..BakeRequest::default() }).unwrap().table.to_bytes();
+    let ways = [None, Some(SceneMethod::Auto), Some(SceneMethod::Sightlines)].map(by);
+    assert!(ways[0] == ways[1] && ways[1] == ways[2]);
+    let cells = Some(CellsFrom::Places(PlaceOptions { n_cells: Some(12), cell_size: None }));
+    let named = bake(&tower, &BakeRequest { cells, ..BakeRequest::default() }).unwrap();
     let Report::Regions(report) = &named.report else { panic!("places are boxes") };
     let summary = report.places.expect("places were cut");
     assert!(summary.n_along_walls > summary.n_by_views, "{summary:?}");
@@ -337,13 +340,9 @@ fn cutting_is_observed() {
     assert_eq!(cut(), Err(PlacesError::Cancelled(Cancelled)));
     assert!(seen.lock().expect("no panic").iter().all(|p| p.done <= 7), "not a cut more");
     // The bake ends as it does when any other stage is cancelled.
-    let options = BakeOptions {
-        cells: CellsFrom::Places(how),
-        method: SceneMethod::Auto,
-        progress: Some(&observer),
-        ..BakeOptions::default()
-    };
-    assert_eq!(bake(&city, &options).map(|_| ()), Err(BakeError::Cancelled(Cancelled)));
+    let request = BakeRequest { cells: Some(CellsFrom::Places(how)), ..BakeRequest::default() };
+    let observed = Runtime { progress: Some(&observer), ..Runtime::default() };
+    assert_eq!(observed.bake(&city, &request).map(|_| ()), Err(BakeError::Cancelled(Cancelled)));
 }
 
 /// What is reported of cutting: the reports of its phase, and the places.
@@ -418,8 +417,10 @@ fn choices_are_observed() {
         triangles: vec![[0, 1, 2], [1, 3, 2]],
     };
     let screens = scene((0..4).map(|i| screen(f64::from(i))).collect());
-    let options = BakeOptions { progress: Some(&observer), ..BakeOptions::default() };
-    let (choice, _) = choose_for(&(&screens).into(), &options);
-    assert_eq!(choice, choose_for(&(&screens).into(), &BakeOptions::default()).0, "it cannot be cancelled");
+    let choice = |runtime: &Runtime<'_>| {
+        BakeRequest::default().prepare(&screens, runtime).expect("a choice").decisions().choice.clone()
+    };
+    let observed = choice(&Runtime { progress: Some(&observer), ..Runtime::default() });
+    assert!(observed.is_some() && observed == choice(&Runtime::default()), "it cannot be cancelled");
     assert_eq!(*seen.lock().expect("no panic"), ["loose surfaces", "openness"]);
 }

@@ -1,9 +1,9 @@
 //! Tiles of a world: together they say what a bake of the whole world says, as far as they look.
 
 use crate::places::city_of_boxes;
-use sightlines_bake::methods::{BufferOptions, OcclusionMethod};
+use sightlines_bake::methods::OcclusionMethod;
 use sightlines_bake::tile::{BakedTile, Columns, NearTile, Tile, bake_far, bake_tile, tile_cells, tile_extent};
-use sightlines_bake::{BakeOptions, CellsFrom, SceneMethod, bake};
+use sightlines_bake::{BakeRequest, BufferRequest, CellsFrom, Runtime, SceneMethod};
 use sightlines_cells::{MovingObject, Scene, SceneObject};
 use sightlines_formats::{ViewCell, ViewCells};
 use sightlines_geometry::{Aabb, Random};
@@ -56,13 +56,14 @@ struct Baked {
     baked: BakedTile,
 }
 
-fn bake_one(blocks: &[Block], tile: usize, reach: usize, options: &BakeOptions<'_>) -> Baked {
+fn bake_one(blocks: &[Block], tile: usize, reach: usize, options: &BakeRequest) -> Baked {
     let (near, far) = around(tile, reach);
     let of_near: Vec<NearTile<'_>> =
         near.iter().map(|&k| NearTile { scene: &blocks[k].scene, cells: &blocks[k].cells }).collect();
     let of_far: Vec<Aabb<3>> = far.iter().map(|&k| blocks[k].extent).collect();
     let Block { scene, cells, .. } = &blocks[tile];
-    let baked = bake_tile(&Tile { scene, file: None, cells, near: &of_near, far: &of_far }, options).unwrap();
+    let baked =
+        bake_tile(&Tile { scene, file: None, cells, near: &of_near, far: &of_far }, options, &on_two()).unwrap();
     Baked { tile, near, far, baked }
 }
 
@@ -104,17 +105,24 @@ fn objects_of(table: &Table, cell: usize) -> Vec<u32> {
 }
 
 /// The table of the whole city, with the objects block by block, and the cells of some of the blocks, in this order.
-fn whole(blocks: &[Block], of: &[usize], options: &BakeOptions<'_>) -> Table {
+fn whole(blocks: &[Block], of: &[usize], options: &BakeRequest) -> Table {
     let objects = blocks.iter().flat_map(|b| b.scene.objects().to_vec()).collect();
     let cells = of.iter().flat_map(|&k| blocks[k].cells.clone()).enumerate();
     let cells = cells.map(|(k, cell)| ViewCell { id: k.to_string(), ..cell }).collect();
-    let options = BakeOptions { cells: CellsFrom::Boxes(ViewCells { cells, axes: None }), ..options.clone() };
-    bake(&Scene::new(objects).unwrap(), &options).unwrap().table
+    let options = BakeRequest { cells: Some(CellsFrom::Boxes(ViewCells { cells, axes: None })), ..options.clone() };
+    on_two().bake(&Scene::new(objects).unwrap(), &options).unwrap().table
 }
 
-fn by(method: SceneMethod) -> BakeOptions<'static> {
-    let buffers = BufferOptions { planes: 2, texels: 64, ..BufferOptions::default() };
-    BakeOptions { method, buffers, threads: 2, ..BakeOptions::default() }
+fn by(method: SceneMethod) -> BakeRequest {
+    let mut request = BakeRequest { method: Some(method), ..BakeRequest::default() };
+    if [SceneMethod::Both, SceneMethod::FromRegion(OcclusionMethod::Multifocal)].contains(&method) {
+        request.buffers = BufferRequest { planes: Some(2), texels: Some(64), ..BufferRequest::default() };
+    }
+    request
+}
+
+fn on_two() -> Runtime<'static> {
+    Runtime { threads: 2, ..Runtime::default() }
 }
 
 /// Looked at to the end of the world, tiles say what one table says: sightlines are exact, however cells are grouped.
@@ -210,10 +218,10 @@ fn far_tiles_alone_are_as_in_a_whole_bake() {
             let of_far: Vec<Aabb<3>> = far.iter().map(|&k| blocks[k].extent).collect();
             let Block { scene, cells, .. } = &blocks[tile];
             let tile = Tile { scene, file: None, cells, near: &of_near, far: &of_far };
-            let whole = bake_tile(&tile, &options).unwrap();
-            assert_eq!(bake_far(&tile, &options).unwrap(), whole.far, "{method}");
+            let whole = bake_tile(&tile, &options, &on_two()).unwrap();
+            assert_eq!(bake_far(&tile, &options, &on_two()).unwrap(), whole.far, "{method}");
             // Those nearby are the same without any far away.
-            let alone = bake_tile(&Tile { far: &[], ..tile }, &options).unwrap();
+            let alone = bake_tile(&Tile { far: &[], ..tile }, &options, &on_two()).unwrap();
             assert_eq!((&alone.near, alone.table.to_bytes()), (&whole.near, whole.table.to_bytes()), "{method}");
             let count = |rows: &Columns| rows.iter().flatten().map(|run| run.len()).sum::<usize>();
             n_seen = [n_seen[0] + count(&whole.near), n_seen[1] + count(&whole.far)];
@@ -281,7 +289,7 @@ fn surfaces_keep_their_meaning_in_other_tiles() {
         let near = [NearTile { scene: screen, cells: &[] }, NearTile { scene: &behind, cells: &[] }];
         let far = [bounds, tile_extent(&behind, &[])];
         let tile = Tile { scene: &own, file: None, cells: std::slice::from_ref(&eye), near: &near, far: &far };
-        let baked = bake_tile(&tile, &options).unwrap();
+        let baked = bake_tile(&tile, &options, &on_two()).unwrap();
         assert_eq!(objects_of(&baked.table, 0), [0]);
         [baked.near, baked.far].map(|rows| rows[0].iter().cloned().flatten().collect::<Vec<_>>())
     };
@@ -296,7 +304,8 @@ fn cells_are_cut_in_the_box_of_viewers() {
     let block = &blocks()[0];
     let viewers = Aabb { min: [0.0, 0.0, 0.0], max: [52.0, 6.0, 52.0] };
     let cut = |cells: CellsFrom| {
-        tile_cells(&block.scene, &viewers, &BakeOptions { cells, ..BakeOptions::default() }).unwrap()
+        let request = BakeRequest { cells: Some(cells), ..BakeRequest::default() };
+        tile_cells(&block.scene, &viewers, &request, &on_two()).unwrap()
     };
     let n_cells = Some(20);
     let places = sightlines_bake::places::PlaceOptions { n_cells, cell_size: None };

@@ -5,8 +5,8 @@ use crate::places::city_of_boxes;
 use sightlines_bake::methods::{BufferOptions, OcclusionMethod, OcclusionMethodFactory};
 use sightlines_bake::region::{PackRegionsError, pack_regions};
 use sightlines_bake::{
-    BakeError, BakeInput, BakeOptions, Baked, CellsFrom, CertifyError, RegionBakeOptions, Report, SceneMethod,
-    StabBakeError, StabOptions, TableGraph, bake, bake_regions, with_stab_trees,
+    BakeError, BakeInput, BakeRequest, Baked, BufferRequest, CellsFrom, CertifyError, RegionBakeOptions, Report,
+    Runtime, SceneMethod, StabBakeError, StabOptions, TableGraph, bake, bake_regions, with_stab_trees,
 };
 use sightlines_certificates::convex::ConvexProofs;
 use sightlines_certificates::plan::PlanProofs;
@@ -25,9 +25,9 @@ use std::collections::BTreeSet;
 /// A bake by units.
 fn baked<'a>(
     input: BakeInput<'a>,
-    options: &'a BakeOptions<'a>,
+    options: &'a BakeRequest,
 ) -> impl Fn(Units<'_>, usize) -> Result<Vec<u8>, BakeError> + 'a {
-    move |units, threads| Ok(bake(input, &BakeOptions { units, threads, ..options.clone() })?.table.to_bytes())
+    move |units, threads| Ok(Runtime { units, threads, ..Runtime::default() }.bake(input, options)?.table.to_bytes())
 }
 
 fn scene() -> sightlines_cells::Scene {
@@ -36,7 +36,7 @@ fn scene() -> sightlines_cells::Scene {
 
 #[test]
 fn sightlines_of_a_scene() {
-    let (scene, options) = (scene(), BakeOptions::default());
+    let (scene, options) = (scene(), BakeRequest::default());
     let phases = check_units(baked((&scene).into(), &options));
     assert_eq!(phases.iter().map(|(name, _)| *name).collect::<Vec<_>>(), ["pairs", "objects"]);
     assert!(phases.iter().all(|(_, n)| *n > 20), "{phases:?}");
@@ -62,13 +62,13 @@ fn cells_by_from_region_methods() {
     // Few triangles: a scene is prepared anew for each way.
     let blocks = [3, 3];
     let scene = city_of_boxes(blocks);
-    let buffers = BufferOptions { planes: 2, texels: 32, ..BufferOptions::default() };
+    let small = BufferRequest { planes: Some(2), texels: Some(32), ..BufferRequest::default() };
     for method in [OcclusionMethod::Multifocal, OcclusionMethod::Voxels] {
-        let options = BakeOptions {
-            method: SceneMethod::FromRegion(method),
-            cells: streets(blocks, &[0.0, 8.0, 16.0]),
-            buffers,
-            ..BakeOptions::default()
+        let options = BakeRequest {
+            method: Some(SceneMethod::FromRegion(method)),
+            cells: Some(streets(blocks, &[0.0, 8.0, 16.0])),
+            buffers: if method == OcclusionMethod::Multifocal { small } else { BufferRequest::default() },
+            ..BakeRequest::default()
         };
         assert_eq!(check_units(baked((&scene).into(), &options)), [("cells", 12)]);
         check_impostor(baked((&scene).into(), &options), "cells");
@@ -77,16 +77,16 @@ fn cells_by_from_region_methods() {
 
 #[test]
 fn both_methods_one_after_the_other() {
-    let buffers = BufferOptions { planes: 1, texels: 16, ..BufferOptions::default() };
-    let method = SceneMethod::Both;
+    let buffers = BufferRequest { planes: Some(1), texels: Some(16), ..BufferRequest::default() };
+    let method = Some(SceneMethod::Both);
     let scene = building(false);
-    let options = BakeOptions { method, cells: CellsFrom::Grid([3, 2, 1]), buffers, ..BakeOptions::default() };
+    let options = BakeRequest { method, cells: Some(CellsFrom::Grid([3, 2, 1])), buffers, ..BakeRequest::default() };
     let phases = check_units(baked((&scene).into(), &options));
     assert_eq!(phases, [("cells", 6), ("boxes", 6)]);
     check_impostor(baked((&scene).into(), &options), "boxes");
     let walls = TowerOptions { floors: 1, rooms_x: 2, rooms_y: 1, furniture: 0, ..TowerOptions::default() };
     let scene = tower(TowerOptions { windows: false, ..walls }).unwrap();
-    let options = BakeOptions { cells: CellsFrom::KdTree, ..options };
+    let options = BakeRequest { cells: Some(CellsFrom::KdTree), ..options };
     let phases: Vec<_> = check_units(baked((&scene).into(), &options)).into_iter().map(|(name, _)| name).collect();
     assert_eq!(phases, ["pairs", "objects", "cells"]);
 }
@@ -117,10 +117,10 @@ fn rooms(columns: u32, rows: u32) -> Prt {
 #[test]
 fn clusters_of_a_portal_file() {
     let prt = rooms(14, 9);
-    let phases = check_units(baked((&prt).into(), &BakeOptions::default()));
+    let phases = check_units(baked((&prt).into(), &BakeRequest::default()));
     assert_eq!((phases.len(), phases[0], phases[1].0), (8, ("first", 1), "beams"));
-    check_impostor(baked((&prt).into(), &BakeOptions::default()), "beams");
-    let fast = BakeOptions { fast: true, ..BakeOptions::default() };
+    check_impostor(baked((&prt).into(), &BakeRequest::default()), "beams");
+    let fast = BakeRequest { fast: true, ..BakeRequest::default() };
     let whole = Memory::default();
     let with = |units: Units<'_>| baked((&prt).into(), &fast)(units, 1);
     assert_eq!(with(Units(Some(&whole))), with(Units::default()));
@@ -143,7 +143,7 @@ fn stab_trees_of_cells() {
     let options = OfficeOptions { rooms_x: 6, rooms_y: 3, block: 3, ..OfficeOptions::default() };
     let (plan, scene, prt) = (office(options).unwrap(), scene(), rooms(6, 4));
     for input in [BakeInput::from(&plan), (&scene).into(), (&prt).into()] {
-        let baked = bake(input, &BakeOptions::default()).unwrap();
+        let baked = bake(input, &BakeRequest::default()).unwrap();
         assert_eq!(check_units(trees(&baked)), [("stab-trees", baked.table.n_cells())]);
         check_impostor(trees(&baked), "stab-trees");
     }
@@ -169,7 +169,7 @@ fn proofs_of_tables() {
         ((&scene).into(), &["proofs", "object-proofs", "line-proofs"], 40),
         ((&prt).into(), &["proofs"], 60),
     ] {
-        let baked = bake(input, &BakeOptions::default()).unwrap();
+        let baked = bake(input, &BakeRequest::default()).unwrap();
         let found = check_units(proofs(&baked));
         assert_eq!(found.iter().map(|(name, _)| *name).collect::<Vec<_>>(), phases);
         assert!(found.iter().all(|(_, n)| *n > least), "{found:?}");
@@ -186,7 +186,7 @@ fn kept_proofs_are_not_trusted() {
         let tower_options = TowerOptions { furniture: 1, ..tower_options };
         let (plan, scene, prt) = (office(options).unwrap(), tower(tower_options).unwrap(), rooms(rooms_x, 2));
         [BakeInput::from(&plan), (&scene).into(), (&prt).into()]
-            .map(|input| bake(input, &BakeOptions::default()).unwrap())
+            .map(|input| bake(input, &BakeRequest::default()).unwrap())
     };
     let kept = |baked: &Baked<TableGraph, Report>| {
         let store = Memory::default();

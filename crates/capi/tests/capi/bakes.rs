@@ -5,13 +5,12 @@ use crate::same::compare_content;
 use sightlines_bake::methods::OcclusionMethod;
 use sightlines_bake::places::PlaceOptions;
 use sightlines_bake::region::CellsFrom;
-use sightlines_bake::{BakeOptions, Gap, PlanBakeOptions, SceneMethod, bake, bake_plan};
+use sightlines_bake::{BakeRequest, Gap, PlanBakeOptions, SceneMethod, bake, bake_plan};
 use sightlines_capi::*;
 use sightlines_cells::MovingObject;
 use sightlines_formats::ViewCells;
 use sightlines_formats::view_cells::ViewCell;
 use sightlines_geometry::Aabb;
-use sightlines_kdtree::SceneOptions;
 use std::collections::BTreeSet;
 use std::ffi::CString;
 use std::ptr;
@@ -19,7 +18,7 @@ use std::ptr;
 /// A scene goes through the border object by object, and the table that comes back has the same bytes.
 #[test]
 fn bakes_are_those_of_rust() {
-    let options = BakeOptions { gap: Gap::Width(0.0), ..BakeOptions::default() };
+    let options = BakeRequest { gap: Gap::Width(0.0), ..BakeRequest::default() };
     let mut n = 0;
     for scene in towers() {
         let expected = bake(&scene, &options).expect("a scene").table.to_bytes();
@@ -110,26 +109,25 @@ fn flags_and_options_are_those_of_rust() {
     // SAFETY: all zeros are a value of every field.
     let mut zero = unsafe { std::mem::zeroed::<SlBakeOptions>() };
     (zero.struct_size, zero.gap) = (size_of::<SlBakeOptions>(), 0.0);
-    let exact = BakeOptions { gap: Gap::Width(0.0), ..BakeOptions::default() };
-    let cut = exact.cut;
+    let exact = BakeRequest { gap: Gap::Width(0.0), ..BakeRequest::default() };
     let places = PlaceOptions { n_cells: Some(6), cell_size: None };
-    let cases: [(SlBakeOptions, BakeOptions<'_>); 6] = [
+    let cases: [(SlBakeOptions, BakeRequest); 6] = [
         (zero, exact.clone()),
         (
             SlBakeOptions { cells: SL_CELLS_GRID, grid: [2, 1, 2], method: c"multifocal".as_ptr(), ..zero },
-            BakeOptions {
-                cells: CellsFrom::Grid([2, 1, 2]),
-                method: SceneMethod::FromRegion(OcclusionMethod::Multifocal),
+            BakeRequest {
+                cells: Some(CellsFrom::Grid([2, 1, 2])),
+                method: Some(SceneMethod::FromRegion(OcclusionMethod::Multifocal)),
                 ..exact.clone()
             },
         ),
         (
             SlBakeOptions { cells: SL_CELLS_BOXES, boxes: boxes.as_ptr(), box_count: 2, ..zero },
-            BakeOptions { cells: CellsFrom::Boxes(given), ..exact.clone() },
+            BakeRequest { cells: Some(CellsFrom::Boxes(given)), ..exact.clone() },
         ),
         (
             SlBakeOptions { cells: SL_CELLS_PLACES, place_count: 6, method: c"both".as_ptr(), ..zero },
-            BakeOptions { cells: CellsFrom::Places(places), method: SceneMethod::Both, ..exact.clone() },
+            BakeRequest { cells: Some(CellsFrom::Places(places)), method: Some(SceneMethod::Both), ..exact.clone() },
         ),
         (
             SlBakeOptions {
@@ -139,17 +137,21 @@ fn flags_and_options_are_those_of_rust() {
                 detail_below: -1.0,
                 ..zero
             },
-            BakeOptions {
-                cut: SceneOptions { view_region: Some(half), keep_solid: true, detail_below: Some(0.0), ..cut },
+            BakeRequest {
+                cells: Some(CellsFrom::KdTree),
+                view_region: Some(half),
+                keep_solid: true,
+                detail_below: Some(0.0),
                 ..exact.clone()
             },
         ),
         (
             SlBakeOptions { gap: 0.01, detail_below: 0.5, method: c"auto".as_ptr(), cells: SL_CELLS_KD_TREE, ..zero },
-            BakeOptions {
+            BakeRequest {
                 gap: Gap::Width(0.01),
-                cut: SceneOptions { detail_below: Some(0.5), ..cut },
-                method: SceneMethod::Auto,
+                cells: Some(CellsFrom::KdTree),
+                detail_below: Some(0.5),
+                method: Some(SceneMethod::Auto),
                 ..exact.clone()
             },
         ),

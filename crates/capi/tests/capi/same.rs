@@ -1,7 +1,7 @@
 //! What C gets is what Rust answers.
 
 use crate::common::{Handle, Random, cell_ids, list, object_ids, plans, text, towers};
-use sightlines_bake::{BakeOptions, PlanBakeOptions, bake, bake_plan};
+use sightlines_bake::{BakeRequest, PlanBakeOptions, bake, bake_plan};
 use sightlines_capi::*;
 use sightlines_eye_to_cell::{
     Doors, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph, follow_reflections,
@@ -302,7 +302,7 @@ unsafe fn images_differ(
 /// Tables of plans, scenes and files of all versions.
 fn tables() -> Vec<Table> {
     let plans = plans().into_iter().map(|plan| bake_plan(&plan, &PlanBakeOptions::default()).expect("a plan").table);
-    let scenes = towers().into_iter().map(|scene| bake(&scene, &BakeOptions::default()).expect("a scene").table);
+    let scenes = towers().into_iter().map(|scene| bake(&scene, &BakeRequest::default()).expect("a scene").table);
     let golden = concat!(env!("CARGO_MANIFEST_DIR"), "/../pvs/tests/golden");
     let mut files: Vec<_> =
         std::fs::read_dir(golden).expect("old files").map(|entry| entry.expect("an entry").path()).collect();
@@ -361,7 +361,7 @@ fn impostor_a_table_with_a_pair_removed_differs() {
 /// By a matrix in either layout one sees what one sees in Rust; the wrong layout is refused.
 #[test]
 fn matrices_are_those_of_rust() {
-    let table = bake(&towers()[1], &BakeOptions::default()).expect("a scene").table;
+    let table = bake(&towers()[1], &BakeRequest::default()).expect("a scene").table;
     let (cells, c) = (TableCells::new(Arc::new(table.clone())), Handle::of(&table.to_bytes()));
     let (mut random, bounds) = (Random(5), bounds_of(&table));
     let (mut viewer, mut n, mut n_objects) = (ptr::null_mut(), 0, BTreeSet::new());

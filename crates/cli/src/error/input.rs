@@ -45,7 +45,7 @@ pub(crate) enum InputError {
     MapOfPlan(PathBuf),
     /// An option that means nothing for what the file holds.
     #[error("{}: {option} is for {meant}, and this is {found}", path.display())]
-    Option { path: PathBuf, option: &'static str, meant: &'static str, found: &'static str },
+    Option { path: PathBuf, option: String, meant: &'static str, found: &'static str },
     /// The lines of a map do not make a plan.
     #[error("{}: {}{source}", path.display(), of_map(map.as_ref()))]
     Plan { path: PathBuf, map: Option<String>, source: PlanError },

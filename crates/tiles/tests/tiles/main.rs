@@ -2,7 +2,7 @@
 
 use sightlines_bake::methods::OcclusionMethod;
 use sightlines_bake::tile::{NearTile, Tile, bake_tile, tile_extent};
-use sightlines_bake::{BakeOptions, SceneMethod};
+use sightlines_bake::{BakeRequest, Runtime, SceneMethod};
 use sightlines_formats::ViewCell;
 use sightlines_geometry::{Aabb, Random};
 use sightlines_pvs::CellId;
@@ -46,7 +46,8 @@ fn bake(folder: &Path) {
         })
         .collect();
     let near_of = near_tiles(&bounds, 20.0);
-    let options = BakeOptions { method: SceneMethod::FromRegion(OcclusionMethod::Shafts), ..BakeOptions::default() };
+    let options =
+        BakeRequest { method: Some(SceneMethod::FromRegion(OcclusionMethod::Shafts)), ..BakeRequest::default() };
     let mut index = WorldIndex { border: 20.0, reach: None, tiles: Vec::new() };
     for (k, tile) in tiles.iter().enumerate() {
         let near: Vec<usize> = near_of[k].iter().map(|&near| near as usize).collect();
@@ -55,7 +56,7 @@ fn bake(folder: &Path) {
             near.iter().map(|&near| NearTile { scene: &tiles[near].scene, cells: &cells[near] }).collect();
         let boxes: Vec<Aabb<3>> = far.iter().map(|&far| bounds[far].extent).collect();
         let parts = Tile { scene: &tile.scene, file: None, cells: &cells[k], near: &scenes, far: &boxes };
-        let baked = bake_tile(&parts, &options).unwrap();
+        let baked = bake_tile(&parts, &options, &Runtime::default()).unwrap();
         let entry = TileEntry {
             name: tile.name.clone(),
             bounds: bounds[k],

@@ -1,7 +1,7 @@
 //! Given cells in frames: turned along with the scene, bringing a frame, or standing across one.
 
 use super::{Rows, SMALL, TURNS, gap_of, hidden_hits, n_violations, rotation, small_tower, turn, turned, with};
-use sightlines::bake::{Along, BakeOptions, CellsFrom, Framed, Gap, SceneMethod, bake, growth_of_cells};
+use sightlines::bake::{Along, BakeRequest, CellsFrom, Framed, Gap, SceneMethod, bake, growth_of_cells};
 use sightlines::cells::{Point3, Scene, SceneObject};
 use sightlines::formats::{ViewCell, ViewCells};
 use sightlines::frame::are_near;
@@ -22,7 +22,7 @@ fn given_cells_are_turned_along() {
     };
     let boxes: Vec<Aabb<3>> = rooms.iter().map(|room| inside(&room.bounds)).collect();
     let baked = |scene: &Scene, cells: CellsFrom, gap: f64| {
-        bake(scene, &BakeOptions { cells, ..with(Gap::Width(gap)) }).unwrap()
+        bake(scene, &BakeRequest { cells: Some(cells), ..with(Gap::Width(gap)) }).unwrap()
     };
     let seen = |table: &Table| -> Vec<Vec<ObjectId>> {
         (0..table.n_cells() as u32).map(|cell| table.visible_objects(sightlines::pvs::CellId(cell))).collect()
@@ -92,7 +92,7 @@ fn given_cells_bring_a_frame() {
     };
     let baked = |scene: &Scene, cells: CellsFrom, gap: Gap| {
         let method = SceneMethod::Auto;
-        bake(scene, &BakeOptions { cells, method, gap, threads: 2, ..BakeOptions::default() }).unwrap()
+        bake(scene, &BakeRequest { cells: Some(cells), method: Some(method), gap, ..BakeRequest::default() }).unwrap()
     };
     let n_seen = |table: &Table| -> usize {
         (0..table.n_cells() as u32).map(|cell| table.visible_objects(sightlines::pvs::CellId(cell)).len()).sum()
@@ -127,8 +127,8 @@ fn given_cells_bring_a_frame() {
         let exact = baked(&scene, given(Some(axes)), Gap::Width(0.0)).table;
         assert!(exact.frame().is_none());
         assert_eq!(hidden_hits(&exact, &scene, &eyes).1, 0, "{y} {x}");
-        let growth = growth_of_cells(&given(Some(axes)), None);
-        assert!((1.3..3.0).contains(&growth) && growth_of_cells(&given(None), None) == 1.0, "{growth}");
+        let growth = growth_of_cells(Some(&given(Some(axes))), None);
+        assert!((1.3..3.0).contains(&growth) && growth_of_cells(Some(&given(None)), None) == 1.0, "{growth}");
     }
     assert!(n_rays > 50, "{n_rays} hits");
 }
@@ -140,15 +140,15 @@ fn walls_come_before_cells() {
     let room = &tower_rooms(SMALL).unwrap()[0].bounds;
     let cells = vec![ViewCell { id: "room".to_owned(), bounds: *room }];
     let rows = rotation(20.0, 0.0);
-    let options = |method| BakeOptions {
-        cells: CellsFrom::Boxes(ViewCells { cells: cells.clone(), axes: Some(rows) }),
-        method,
+    let options = |method| BakeRequest {
+        cells: Some(CellsFrom::Boxes(ViewCells { cells: cells.clone(), axes: Some(rows) })),
+        method: Some(method),
         ..with(Gap::Width(gap_of(&scene)))
     };
     for method in [SceneMethod::Auto, SceneMethod::Sightlines] {
         let framed = Framed::of(&scene, None, &options(method)).unwrap().expect("a frame");
         assert_eq!(framed.along, Along::Walls);
-        assert!(growth_of_cells(&options(method).cells, Some(&framed)) > 1.2);
+        assert!(growth_of_cells(options(method).cells.as_ref(), Some(&framed)) > 1.2);
     }
     // The impostor: for a yard of towers without common axes it is the other way round.
     let yard = turned(&yard(), &rotation(0.0, 45.0));

@@ -4,7 +4,7 @@
 mod cells;
 mod gaps;
 
-use sightlines::bake::{BakeOptions, Baked, CellsFrom, Framed, Gap, bake};
+use sightlines::bake::{BakeRequest, Baked, CellsFrom, Framed, Gap, Runtime, SceneMethod, bake};
 use sightlines::cells::{Point3, Scene, SceneObject};
 use sightlines::eye_to_cell::{Doors, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph};
 use sightlines::formats::scene::read_scene;
@@ -51,10 +51,8 @@ fn gap_of(scene: &Scene) -> f64 {
 }
 
 /// With a size of detail that no object has to within rounding.
-fn with(gap: Gap) -> BakeOptions<'static> {
-    let mut options = BakeOptions { gap, threads: 2, ..BakeOptions::default() };
-    options.cut.detail_below = Some(1.1);
-    options
+fn with(gap: Gap) -> BakeRequest {
+    BakeRequest { gap, method: Some(SceneMethod::Sightlines), detail_below: Some(1.1), ..BakeRequest::default() }
 }
 
 fn n_pairs(table: &Table) -> u64 {
@@ -127,7 +125,8 @@ fn turned_towers_are_as_good_as_upright_ones() {
         assert_eq!(n_hidden, 0, "{y} {x}");
         n_seen += n;
         assert_eq!(n_violations(&baked, &scene), 0, "{y} {x}");
-        let again = bake(&scene, &BakeOptions { threads: 1, ..with(Gap::Width(gap_of(&scene))) }).unwrap();
+        let again =
+            Runtime { threads: 1, ..Runtime::default() }.bake(&scene, &with(Gap::Width(gap_of(&scene)))).unwrap();
         assert_eq!(again.table.to_bytes(), baked.table.to_bytes(), "{y} {x}");
     }
     assert!(n_seen > 100, "{n_seen} hits");
@@ -248,7 +247,8 @@ fn a_real_office_may_stand_at_any_angle() {
         .collect();
     let table = |scene: &Scene, axes: Option<Rows>, gap: f64| {
         let cells = CellsFrom::Boxes(ViewCells { cells: cells.clone(), axes });
-        bake(scene, &BakeOptions { cells, gap: Gap::Width(gap), threads: 2, ..BakeOptions::default() }).unwrap().table
+        let (cells, method) = (Some(cells), Some(SceneMethod::Sightlines));
+        bake(scene, &BakeRequest { cells, method, gap: Gap::Width(gap), ..BakeRequest::default() }).unwrap().table
     };
     let n_shown = |table: &Table| -> usize {
         (0..table.n_cells() as u32).map(|cell| table.visible_objects(sightlines::pvs::CellId(cell)).len()).sum()

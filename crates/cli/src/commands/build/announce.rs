@@ -4,7 +4,7 @@ use super::auto::Chosen;
 use crate::facts::{ALONG_THE_FILE, FrameFacts};
 use crate::output::seconds;
 use crate::progress::{Bar, Pace, rough};
-use sightlines::bake::{BakeOptions, Bakeable, CellsFrom, SceneMethod};
+use sightlines::bake::{Bakeable, CellsFrom, Recipe, SceneMethod};
 use sightlines::progress::{Observer, Progress, Work};
 use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
@@ -17,27 +17,22 @@ pub(super) struct Plan {
 }
 
 impl Plan {
-    pub(super) fn new(
-        content: &Bakeable,
-        options: &BakeOptions<'_>,
-        auto: Option<&Chosen>,
-        limit: Option<Duration>,
-    ) -> Self {
+    pub(super) fn new(content: &Bakeable, recipe: &Recipe, auto: Option<&Chosen>, limit: Option<Duration>) -> Self {
         if !matches!(content, Bakeable::Scene(_)) {
             return Self::default();
         }
-        let cells = match &options.cells {
+        let cells = match &recipe.cells {
             CellsFrom::KdTree => "cells along walls".to_owned(),
             CellsFrom::Places(how) => format!("about {} places", how.n_cells()),
             CellsFrom::Grid(n) => format!("{} boxes of a grid", n.iter().map(|&n| u64::from(n)).product::<u64>()),
             CellsFrom::Boxes(given) => format!("{} given boxes", given.cells.len()),
         };
-        let method = match (auto, options.method) {
+        let method = match (auto, recipe.method) {
             (Some(chosen), _) => chosen.method().to_owned(),
             (None, SceneMethod::Both) => "sightlines and multifocal".to_owned(),
             (None, method) => method.name().to_owned(),
         };
-        let frame = match &options.frame {
+        let frame = match &recipe.frame {
             Some(frame) => FrameFacts::from(frame).to_string(),
             None => ALONG_THE_FILE.to_owned(),
         };

@@ -1,27 +1,10 @@
 //! The frame in which a scene is baked, what it brought, and what became of cells that stand along other axes.
 
-use super::Error;
 use crate::facts::FrameFacts;
 use crate::output::percent;
 use serde::Serialize;
-use sightlines::bake::{Along, BakeError, BakeOptions, Bakeable, Framed, growth_of_cells};
+use sightlines::bake::{Along, Framed, Prepared};
 use std::fmt;
-use std::path::Path;
-
-/// Takes a scene into its frame, with the cells and the view region of `options`, if it has one.
-pub(super) fn take(path: &Path, content: &mut Bakeable, options: &mut BakeOptions<'_>) -> Result<Placed, Error> {
-    let Bakeable::Scene(file) = content else { return Ok(Placed::default()) };
-    let failed = |error| Error::Bake { path: path.to_owned(), map: None, source: Box::new(BakeError::Move(error)) };
-    let framed = Framed::of(&file.scene, Some(&file.info), options).map_err(failed)?;
-    let growth = growth_of_cells(&options.cells, framed.as_ref());
-    let mut placed = Placed { frame: None, cells_growth: (growth > TOLD).then_some(growth) };
-    if let Some(framed) = framed {
-        *options = framed.options(options);
-        placed.frame = Some(Taken::new(&framed));
-        file.scene = framed.moved.scene;
-    }
-    Ok(placed)
-}
 
 /// From when on it is told that boxes around given cells are larger than these.
 const TOLD: f64 = 1.01;
@@ -38,6 +21,12 @@ pub(super) struct Placed {
 }
 
 impl Placed {
+    /// How what was prepared stands.
+    pub(super) fn of(prepared: &Prepared<'_>) -> Self {
+        let growth = prepared.decisions().cells_growth;
+        Self { frame: prepared.framed().map(Taken::new), cells_growth: (growth > TOLD).then_some(growth) }
+    }
+
     /// What a report in few words says of cells.
     pub(super) fn brief(&self) -> String {
         let frame = self.frame.map_or(String::new(), |taken| format!(", {}", taken.frame));

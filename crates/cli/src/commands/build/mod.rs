@@ -39,10 +39,8 @@ use crate::surfaces::{SurfaceArgs, Surfaces};
 use crate::tables::Class;
 use options::BakeArgs;
 use serde::Serialize;
-use sightlines::bake::auto::choose_for;
-use sightlines::bake::methods::BufferOptions;
-use sightlines::bake::{BakeOptions, Bakeable, Baked, Report, SceneMethod};
-use sightlines::formats::{Input, InputKind};
+use sightlines::bake::{BakeInput, BakeRequest, Bakeable, Baked, Recipe, Report, Runtime};
+use sightlines::formats::{Input, InputKind, SceneFile};
 use source::{Source, bake_announced};
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -138,39 +136,35 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
     let input = input::read(path, args.map.as_deref(), &args.surfaces.options(), &reading)?;
     args.refuse_meaningless(&input)?;
     let chosen = (args.map.as_deref(), args.prt.as_deref());
-    let mut source = Source::new(path, input, chosen, out, &args.bake)?;
+    let source = Source::new(path, input, chosen, out)?;
     doors::check(path, &source.content, &args.doors)?;
-    let mut options: BakeOptions<'_> = args.bake.options();
-    options.budget = clock.budget();
-    args.region.apply(&mut options)?;
-    let viewers = viewers::take(&source.content, &mut options);
-    let placed = framed::take(path, &mut source.content, &mut options)?;
-    let portals = args.certify.is_given() || args.stab_trees.is_some();
-    if let Bakeable::Scene(file) = &source.content {
-        args.region.choose_for(&file.scene, portals, &mut options);
-    }
-    let mut auto = None;
-    let choosing = Bar::new("choice of methods", show_progress && options.method == SceneMethod::Auto);
-    if options.method == SceneMethod::Auto {
-        let observed = BakeOptions { progress: Some(&choosing), ..options.clone() };
-        let (choice, chosen) = choose_for(&(&source.content).into(), &observed);
-        choosing.finish();
-        let chosen = BakeOptions { progress: None, ..chosen };
-        let cells = if portals { options.cells } else { chosen.cells.clone() };
-        (auto, options) = (Some(auto::Chosen::new(choice)), BakeOptions { cells, ..chosen });
-    }
-    args.refuse_for_regions(&source, &options)?;
-    let class = args.fit(&source, &mut options)?;
+    let request = args.request()?;
+    let runtime = Runtime {
+        threads: args.bake.threads,
+        budget: clock.budget(),
+        warn: crate::buffers::warn,
+        ..Runtime::default()
+    };
+    let choosing = Bar::new("choice of methods", show_progress);
+    let prepared = request.prepare(&source.content, &Runtime { progress: Some(&choosing), ..runtime });
+    choosing.finish();
+    let prepared = prepared.map_err(|error| source.failed(path, error))?;
+    let (recipe, decisions) = (prepared.recipe(), prepared.decisions());
+    let auto = decisions.choice.clone().map(auto::Chosen::new);
+    let viewers = decisions.viewers.map(viewers::Viewers::from);
+    let placed = framed::Placed::of(&prepared);
+    args.refuse_for_regions(&source, recipe)?;
+    let (class, threads) = args.fit(&source, recipe)?;
+    let runtime = Runtime { threads, ..runtime };
 
     let proofs = args.certify.file(out);
     let outputs: Vec<&Path> = std::iter::once(out).chain(&proofs).map(PathBuf::as_path).collect();
-    let kept = Kept::open(keeping, &inputs, &outputs, || args.identity(&inputs, &source, &options))?;
+    let kept = Kept::open(keeping, &inputs, &outputs, || args.identity(&inputs, &source, recipe))?;
     let made = || -> Result<Built, Error> {
-        let units = kept.units();
-        let options = BakeOptions { units, ..options.clone() };
-        let plan = announce::Plan::new(&source.content, &options, auto.as_ref(), args.time_limit);
-        if let Some(file) = packed::of_rows(&source, &options, out, class).filter(|_| args.is_alone()) {
-            let outcome = packed::write_rows(path, file, &options, plan, (out, show_progress), &kept)?;
+        let runtime = Runtime { units: kept.units(), ..runtime };
+        let plan = announce::Plan::new(&source.content, recipe, auto.as_ref(), args.time_limit);
+        if let Some(file) = args.by_rows(&source, recipe, class) {
+            let outcome = packed::write_rows(path, file, (&prepared, &runtime), plan, (out, show_progress), &kept)?;
             return Ok(Built {
                 auto: None,
                 outcome: Outcome::Rows(Box::new(outcome)),
@@ -184,20 +178,22 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
                 verbose,
             });
         }
-        let baked = bake_announced(path, (&source.content).into(), &options, plan, show_progress);
+        let baked = bake_announced(path, &prepared, &runtime, plan, show_progress);
         let baked = baked.map_err(|error| source.failed(path, error))?;
         clock.warn(path, &baked.report);
-        let (baked, stab) = stab::add(path, baked, args.stab_trees, options.threads, &kept, show_progress)?;
+        let (baked, stab) = stab::add(path, baked, args.stab_trees, threads, &kept, show_progress)?;
         let (baked, given_doors) = doors::add(path, baked, &args.doors);
         let baked = plans::state(baked, &reading);
         let bytes = packed::bytes_of(&baked.table, path, out, class)?;
         // Proofs that contradict the table leave an older one untouched.
-        let proofs = args.certify.write(path, out, &baked, options.threads, &kept, show_progress)?;
+        let proofs = args.certify.write(path, out, &baked, threads, &kept, show_progress)?;
         kept.before_writing()?;
         output::save(out, &bytes)?;
-        let outcome = Outcome::new(out, &source, &options, &baked, bytes.len(), verbose);
-        let surfaces = match &source.content {
-            Bakeable::Scene(file) => Some(Surfaces::new(file).with_backs(&baked.table, &file.scene)),
+        let outcome = Outcome::new(out, &source, recipe, &baked, bytes.len(), verbose);
+        let surfaces = match (&source.content, prepared.input()) {
+            (Bakeable::Scene(file), BakeInput::Scene(scene, _)) => {
+                Some(Surfaces::new(file).with_backs(&baked.table, scene))
+            }
             _ => None,
         };
         let peak_bytes = memory::peak_bytes();
@@ -215,10 +211,21 @@ const FEWER_CELLS: &str = "allow more, or take fewer cells";
 const BY_ROWS: &str = "allow more, take fewer cells, or, by a method that looks from whole cells, name the output .pvz, which is written row by row";
 
 impl BuildArgs {
-    /// What decides the results of units: the files, how they are read, and how they are baked; not the number of threads. A new argument or option does not
+    /// What to bake.
+    ///
+    /// # Errors
+    /// Those of the file of view cells.
+    fn request(&self) -> Result<BakeRequest, Error> {
+        let mut request = self.bake.request();
+        self.region.put_into(&mut request)?;
+        request.for_lines = self.certify.is_given() || self.stab_trees.is_some();
+        Ok(request)
+    }
+
+    /// What decides the results of units: the files, how they are read, and how they are baked; not the number of threads. A new argument does not
     /// compile until it is decided whether it is part of that.
-    fn identity(&self, inputs: &Inputs, source: &Source, options: &BakeOptions<'_>) -> Identity {
-        // What `bake` and `region` say is in the options, and doors are shut after the bake.
+    fn identity(&self, inputs: &Inputs, source: &Source, recipe: &Recipe) -> Identity {
+        // What `bake` and `region` say is in the recipe, and doors are shut after the bake.
         #[rustfmt::skip]
         let Self {
             input: _, map, prt: _, surfaces, plans, bake: _, region: _, time_limit: _, doors: _, memory: _, resume: _, output: _,
@@ -227,16 +234,7 @@ impl BuildArgs {
         let mut identity = Identity::new("build", inputs);
         source.identify(&mut identity);
         identity.debug("reading", &(map, surfaces, plans));
-        // What changes nothing but the time is left out, and the address of a function with `buffers.warn`.
-        #[rustfmt::skip]
-        let BakeOptions {
-            subdivide, cut, chords, gap, frame, digest, portals, method, cells, buffers, split, fast,
-            threads: _, progress: _, budget: _, units: _,
-        } = options;
-        identity.debug("cells", &(subdivide, cut, gap, frame, digest, cells));
-        identity.debug("method", &(chords, portals, method, split, fast));
-        let BufferOptions { measure, planes, texels, occluders, carry, sheets, line_space, backend, warn: _ } = buffers;
-        identity.debug("buffers", &(measure, planes, texels, occluders, carry, sheets, line_space, backend));
+        identity.debug("recipe", &recipe.key());
         identity.debug("more", &(stab_trees, certify.is_given()));
         identity
     }
@@ -246,21 +244,27 @@ impl BuildArgs {
         self.doors.is_empty() && !self.certify.is_given()
     }
 
-    /// Chooses what fits into the memory that may be used: the number of threads, and for a packed table the layout that is written row by row.
-    fn fit(&self, source: &Source, options: &mut BakeOptions<'_>) -> Result<Option<Class>, Error> {
-        let by_rows = |class| self.is_alone() && packed::of_rows(source, options, &self.output, class).is_some();
+    /// The scene, if its table is written row by row.
+    fn by_rows<'s>(&self, source: &'s Source, recipe: &Recipe, class: Option<Class>) -> Option<&'s SceneFile> {
+        let out = (&*self.output, class);
+        packed::of_rows(source, recipe, self.time_limit.is_some(), out).filter(|_| self.is_alone())
+    }
+
+    /// Chooses what fits into the memory that may be used: for a packed table the layout that is written row by row, and the number of threads.
+    fn fit(&self, source: &Source, recipe: &Recipe) -> Result<(Option<Class>, usize), Error> {
+        let by_rows = |class| self.by_rows(source, recipe, class).is_some();
         let mut class = self.class;
-        let all = needs::of(source, options, by_rows(class));
+        let all = needs::of(source, recipe, by_rows(class));
         if class.is_none() && !self.memory.has_room(all) && by_rows(Some(Class::Large)) {
             class = Some(Class::Large);
             tracing::warn!("{}: written row by row, as --class large does, for --memory", self.output.display());
         }
-        let needs = needs::of(source, options, by_rows(class));
-        options.threads = self.memory.threads(options.threads, needs).map_err(|source| {
+        let needs = needs::of(source, recipe, by_rows(class));
+        let threads = self.memory.threads(self.bake.threads, needs).map_err(|source| {
             let advice = if packed::is_packed(&self.output) { FEWER_CELLS } else { BY_ROWS };
             Error::Memory { path: self.input.clone(), source, advice }
         })?;
-        Ok(class)
+        Ok((class, threads))
     }
 
     /// Refuses options that mean nothing for an input.
@@ -269,7 +273,6 @@ impl BuildArgs {
             refuse(&self.input, &[("--prt", self.prt.is_some())], "Quake maps", "none")?;
         }
         if !matches!(input, Input::Scene(_)) {
-            refuse(&self.input, &self.region.of_space(), "scenes in space", "none")?;
             refuse(&self.input, &self.surfaces.given(), "scenes in space", "none")?;
             refuse(&self.input, &[("--time-limit", self.time_limit.is_some())], "scenes in space", "none")?;
         }
@@ -277,11 +280,11 @@ impl BuildArgs {
     }
 
     /// Refuses what tables by from-region queries cannot have.
-    fn refuse_for_regions(&self, source: &Source, options: &BakeOptions<'_>) -> Result<(), Error> {
-        if !matches!(source.content, Bakeable::Scene(_)) || !options.takes_regions() {
+    fn refuse_for_regions(&self, source: &Source, recipe: &Recipe) -> Result<(), Error> {
+        if !matches!(source.content, Bakeable::Scene(_)) || !recipe.takes_regions() {
             return Ok(());
         }
-        if options.has_given_cells() {
+        if recipe.has_given_cells() {
             let of_trees = [("--stab-trees", self.stab_trees.is_some())];
             refuse(&self.input, &of_trees, "cells with portals", "to have boxes as cells")?;
         }
@@ -302,24 +305,17 @@ enum Outcome {
 }
 
 impl Outcome {
-    fn new(
-        out: &Path,
-        source: &Source,
-        options: &BakeOptions<'_>,
-        baked: &Baked,
-        n_bytes: usize,
-        verbose: bool,
-    ) -> Self {
-        let (table, fast) = (&baked.table, options.fast);
+    fn new(out: &Path, source: &Source, recipe: &Recipe, baked: &Baked, n_bytes: usize, verbose: bool) -> Self {
+        let (table, fast) = (&baked.table, recipe.fast);
         match (&source.content, &baked.report) {
             (Bakeable::Plan { map, .. }, Report::Plan(did)) => {
                 Self::Plan(plan::Outcome::new(out, map.map(|name| name.to_string()), table, did))
             }
             (Bakeable::Scene(file), Report::Scene(did)) => {
-                Self::Scene(Box::new(space::Outcome::new(out, file, options.portals, table, did)))
+                Self::Scene(Box::new(space::Outcome::new(out, file, recipe.portals, table, did)))
             }
             (Bakeable::Scene(file), Report::Regions(did)) => {
-                Self::Regions(Box::new(region::Outcome::new(out, file, options.has_given_cells(), table, did)))
+                Self::Regions(Box::new(region::Outcome::new(out, file, recipe.has_given_cells(), table, did)))
             }
             (Bakeable::Portals(prt), Report::Clusters(did)) => {
                 Self::Portals(portals::Outcome::new(out, prt, fast, did, n_bytes).verbose(verbose))

@@ -3,7 +3,7 @@
 use super::source::Source;
 use crate::memory::Needs;
 use sightlines::bake::methods::OcclusionMethod;
-use sightlines::bake::{BakeOptions, Bakeable, SceneMethod};
+use sightlines::bake::{Bakeable, Recipe, SceneMethod};
 use sightlines::formats::quake::Prt;
 
 /// Stacks, and what an allocator keeps for a thread.
@@ -18,14 +18,14 @@ const SQUARES: u64 = 5;
 /// What decides about scenes by from-region queries, or about a Quake map, needs. Of other inputs nothing is known before they are cut.
 ///
 /// * `by_rows`: for a table that is written row by row
-pub(super) fn of(source: &Source, options: &BakeOptions<'_>, by_rows: bool) -> Needs {
+pub(super) fn of(source: &Source, recipe: &Recipe, by_rows: bool) -> Needs {
     match &source.content {
         Bakeable::Scene(file) => {
-            let Some(n) = options.cells.most() else { return Needs::default() };
+            let Some(n) = recipe.cells.most() else { return Needs::default() };
             let n_objects = file.scene.objects().len() as u64;
             let has_buffers =
-                matches!(options.method, SceneMethod::Both | SceneMethod::FromRegion(OcclusionMethod::Multifocal));
-            let buffers = if has_buffers { options.buffers.bytes_per_thread() } else { 0 };
+                matches!(recipe.method, SceneMethod::Both | SceneMethod::FromRegion(OcclusionMethod::Multifocal));
+            let buffers = if has_buffers { recipe.buffers.bytes_per_thread() } else { 0 };
             let of_triangles = OF_A_TRIANGLE * file.scene.n_triangles() as u64;
             // Four flags for each cell and object.
             let per_thread = OF_A_THREAD + buffers + of_triangles + 4 * (n + n_objects);

@@ -1,13 +1,9 @@
 //! How to bake, as arguments. Options that mean nothing for what is baked are refused, not ignored.
 
-use crate::error::InputError;
-use crate::input::refuse;
 use crate::named::one_of;
 use crate::numbers::{share, size};
 use crate::region::Region;
-use sightlines::bake::{BakeOptions, Gap, PortalMode, Subdivide};
-use sightlines::kdtree::SceneOptions;
-use std::path::Path;
+use sightlines::bake::{BakeRequest, Gap, PortalMode, Subdivide};
 
 /// How to bake.
 #[derive(Debug, Clone, Default, clap::Args)]
@@ -51,62 +47,32 @@ pub(crate) struct BakeArgs {
 }
 
 impl BakeArgs {
-    /// These arguments as the options of a bake; all others are the default.
-    pub(super) fn options(&self) -> BakeOptions<'static> {
-        let standard = BakeOptions::default();
-        let cut = SceneOptions {
-            view_region: self.view_region.map(|region| region.0),
-            tau: self.tau.unwrap_or(standard.cut.tau),
-            detail_below: self.detail_below,
-            max_cells: self.max_cells.unwrap_or(standard.cut.max_cells),
-            keep_solid: self.keep_solid,
-        };
-        let subdivide = self.subdivide.unwrap_or_default();
-        let portals = self.portals.unwrap_or_default();
-        let gap = self.gap.map_or(Gap::OfFile, Gap::Width);
-        BakeOptions { subdivide, cut, gap, portals, fast: self.fast, threads: self.threads, ..standard }
-    }
-
-    /// Options that mean something for scenes in space only.
-    fn of_space(&self) -> [(&'static str, bool); 6] {
-        [
-            ("--gap", self.gap.is_some()),
-            ("--view-region", self.view_region.is_some()),
-            ("--detail-below", self.detail_below.is_some()),
-            ("--portals", self.portals.is_some()),
-            ("--max-cells", self.max_cells.is_some()),
-            ("--keep-solid", self.keep_solid),
-        ]
-    }
-
-    /// Refuses what means nothing for a plan.
-    pub(super) fn check_for_plan(&self, path: &Path) -> Result<(), InputError> {
-        refuse(path, &self.of_space(), "scenes in space", "a plan")?;
-        refuse(path, &[("--fast", self.fast)], "portal files", "a plan")
-    }
-
-    /// Refuses what means nothing for a scene in space.
-    pub(super) fn check_for_space(&self, path: &Path) -> Result<(), InputError> {
-        refuse(path, &[("--subdivide", self.subdivide.is_some())], "plans", "a scene in space")?;
-        refuse(path, &[("--fast", self.fast)], "portal files", "a scene in space")
-    }
-
-    /// Refuses what means nothing for a portal file, whose cells are cut already.
-    pub(super) fn check_for_portals(&self, path: &Path) -> Result<(), InputError> {
-        let found = "a portal file";
-        refuse(path, &[("--subdivide", self.subdivide.is_some())], "plans", found)?;
-        refuse(path, &[("--tau", self.tau.is_some())], "plans and scenes in space", found)?;
-        refuse(path, &self.of_space(), "scenes in space", found)
+    /// These arguments as a request; all others are not named.
+    pub(super) fn request(&self) -> BakeRequest {
+        let Self { subdivide, tau, view_region, detail_below, portals, gap, max_cells, keep_solid, fast, threads: _ } =
+            *self;
+        BakeRequest {
+            subdivide,
+            tau,
+            view_region: view_region.map(|region| region.0),
+            detail_below,
+            portals,
+            gap: gap.map_or(Gap::OfFile, Gap::Width),
+            max_cells,
+            keep_solid,
+            fast,
+            ..BakeRequest::default()
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use sightlines::kdtree::SceneOptions;
 
     /// The help names this number.
     #[test]
     fn the_limit_of_cells_is_the_one_in_the_help() {
-        assert_eq!(BakeArgs::default().options().cut.max_cells, 65_536);
+        assert_eq!(SceneOptions::default().max_cells, 65_536);
     }
 }

@@ -11,7 +11,7 @@ use crate::progress::Bar;
 use crate::tables::Class;
 use serde::Serialize;
 use sightlines::bake::region::PackRegionsError;
-use sightlines::bake::{BakeError, BakeOptions, Bakeable, RegionReport, SceneMethod, bake_packed};
+use sightlines::bake::{BakeError, Bakeable, Prepared, Recipe, RegionReport, Runtime, SceneMethod};
 use sightlines::formats::SceneFile;
 use sightlines::packed::format::MAX_SMALL_CELLS;
 use sightlines::packed::{PackOptions, PackReport, pack};
@@ -36,14 +36,14 @@ pub(super) fn bytes_of(table: &Table, path: &Path, out: &Path, class: Option<Cla
 /// The scene, if its table is large and can be written row by row.
 pub(super) fn of_rows<'s>(
     source: &'s Source,
-    options: &BakeOptions<'_>,
-    out: &Path,
-    class: Option<Class>,
+    recipe: &Recipe,
+    has_budget: bool,
+    (out, class): (&Path, Option<Class>),
 ) -> Option<&'s SceneFile> {
     let Bakeable::Scene(file) = &source.content else { return None };
-    let n = options.cells.most()?;
+    let n = recipe.cells.most()?;
     let is_large = class.map_or(n > MAX_SMALL_CELLS as u64, |class| class == Class::Large);
-    let is_by_cell = matches!(options.method, SceneMethod::FromRegion(_)) && options.budget.is_none();
+    let is_by_cell = matches!(recipe.method, SceneMethod::FromRegion(_)) && !has_budget;
     (is_large && is_by_cell && is_packed(out)).then_some(file)
 }
 
@@ -51,16 +51,16 @@ pub(super) fn of_rows<'s>(
 pub(super) fn write_rows(
     path: &Path,
     file: &SceneFile,
-    options: &BakeOptions<'_>,
+    (prepared, runtime): (&Prepared<'_>, &Runtime<'_>),
     plan: announce::Plan,
     (out, show_progress): (&Path, bool),
     kept: &Kept<'_>,
 ) -> Result<Outcome, Error> {
     let bar = Bar::new("visibility", show_progress);
     let announcer = announce::Announcer::new(&bar, &plan, show_progress);
-    let options = BakeOptions { progress: Some(&announcer), ..options.clone() };
+    let runtime = Runtime { progress: Some(&announcer), ..*runtime };
     // Rows are small in comparison with what it takes to find them.
-    let made = bake_packed(&file.scene, Some(&file.info), &options, Vec::new());
+    let made = prepared.run_packed(Vec::new(), &runtime);
     drop(bar);
     let (bytes, report, packed) = made.map_err(|error| match error {
         PackRegionsError::Bake(BakeError::Method(source)) => MethodFailed { path: path.to_owned(), source }.into(),

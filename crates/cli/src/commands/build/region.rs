@@ -9,10 +9,8 @@ use crate::facts::{Facts, Stated};
 use crate::named::one_of;
 use crate::output::{bytes, count, percent, seconds};
 use serde::Serialize;
-use sightlines::bake::auto::own_cells;
 use sightlines::bake::places::{PlaceOptions, PlaceSummary};
-use sightlines::bake::{BakeOptions, CellsFrom, RegionReport, SceneMethod};
-use sightlines::cells::Scene;
+use sightlines::bake::{BakeRequest, CellsFrom, RegionReport, SceneMethod};
 use sightlines::formats::{ReadError, SceneFile};
 use sightlines::multifocal::Split;
 use sightlines::pvs::Table;
@@ -27,7 +25,7 @@ pub(crate) struct RegionArgs {
     /// shows more, and hides nothing wrongly. sightlines look through portals, and axis-aligned walls hide; all others look from whole cells, and any
     /// surface may hide; both hides what either hides. auto, for any input, measures it and chooses; -v prints the reasons. Cells
     /// that are not named are those of a k-d tree, or, but for sightlines, boxes where few walls are axis-aligned
-    /// [default: sightlines, or auto where cells are such boxes]
+    /// [default: auto; sightlines with --certify and --stab-trees]
     #[arg(long, value_name = "HOW", value_parser = one_of(&SceneMethod::all(), SceneMethod::name, SceneMethod::about))]
     method: Option<SceneMethod>,
     #[command(flatten)]
@@ -45,9 +43,9 @@ pub(crate) struct RegionArgs {
     cell_size: Option<f64>,
     #[command(flatten)]
     buffers: BufferArgs,
-    /// Multifocal: how often a cell may be halved where much is in doubt
-    #[arg(long, value_name = "N", default_value_t = Split::default().depth, value_parser = clap::value_parser!(u32).range(0..=12))]
-    split: u32,
+    /// Methods that look from whole cells: how often a cell may be halved where much is in doubt [default: 0]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=12))]
+    split: Option<u32>,
 }
 
 fn counts(text: &str) -> Result<[u32; 3], String> {
@@ -66,67 +64,26 @@ fn length(text: &str) -> Result<f64, String> {
 }
 
 impl RegionArgs {
-    /// Puts these arguments into the options of a bake. Reads the file of view cells.
+    /// Puts these arguments into a request. Reads the file of view cells.
     ///
     /// # Errors
     /// [`ReadError`] with the file's name and the place in it.
-    pub(crate) fn apply(&self, options: &mut BakeOptions<'_>) -> Result<(), ReadError> {
-        options.method = self.method.unwrap_or_default();
-        options.cells = match (self.cells.read()?, self.grid) {
-            (Some(cells), _) => CellsFrom::Boxes(cells),
-            (None, Some(n)) => CellsFrom::Grid(n),
-            (None, None) if self.n_cells.is_some() || self.cell_size.is_some() => {
-                CellsFrom::Places(PlaceOptions { n_cells: self.n_cells, cell_size: self.cell_size })
-            }
-            (None, None) => CellsFrom::KdTree,
+    pub(crate) fn put_into(&self, request: &mut BakeRequest) -> Result<(), ReadError> {
+        let Self { method, cells, grid, n_cells, cell_size, buffers, split } = self;
+        let places = || CellsFrom::Places(PlaceOptions { n_cells: *n_cells, cell_size: *cell_size });
+        request.cells = match (cells.read()?, grid) {
+            (Some(cells), _) => Some(CellsFrom::Boxes(cells)),
+            (None, Some(n)) => Some(CellsFrom::Grid(*n)),
+            (None, None) => (n_cells.is_some() || cell_size.is_some()).then(places),
         };
-        options.buffers = self.buffers.options();
-        options.split.depth = self.split;
+        (request.method, request.buffers, request.split) =
+            (*method, buffers.request(), split.map(|depth| Split { depth, ..Split::default() }));
         Ok(())
     }
 
     /// Whether a file of view cells was given.
     pub(crate) fn names_a_file(&self) -> bool {
         self.cells.is_given()
-    }
-
-    /// Whether a method was named.
-    pub(crate) fn names_a_method(&self) -> bool {
-        self.method.is_some()
-    }
-
-    /// Whether it was said how cells are cut.
-    pub(crate) fn names_cells(&self) -> bool {
-        self.grid.is_some() || self.n_cells.is_some() || self.cell_size.is_some()
-    }
-
-    /// Chooses the cells of a scene for which none are named, and without a method also that: scenes with few axis-aligned
-    /// walls have places as cells, and the method that fits them.
-    ///
-    /// * `portals`: whether the table is to have portals; then its cells are those of a k-d tree
-    pub(super) fn choose_for(&self, scene: &Scene, portals: bool, options: &mut BakeOptions<'_>) {
-        // Mirrors reflect the cells of a k-d tree.
-        let unnamed = options.cells == CellsFrom::KdTree
-            && self.method != Some(SceneMethod::Sightlines)
-            && scene.mirrors().is_empty();
-        if unnamed && !portals {
-            options.cells = own_cells(scene);
-        }
-        let places = matches!(options.cells, CellsFrom::Places(_));
-        if self.method.is_none() && places && own_cells(scene) != CellsFrom::KdTree {
-            options.method = SceneMethod::Auto;
-        }
-    }
-
-    /// Options that mean something for scenes in space only.
-    pub(super) fn of_space(&self) -> [(&'static str, bool); 5] {
-        [
-            ("--method", self.method.is_some_and(|method| method != SceneMethod::Auto)),
-            ("--cells", self.cells.is_given()),
-            ("--grid", self.grid.is_some()),
-            ("--n-cells", self.n_cells.is_some()),
-            ("--cell-size", self.cell_size.is_some()),
-        ]
     }
 }
 

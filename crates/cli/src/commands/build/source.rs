@@ -1,7 +1,7 @@
 //! What is built: an input with all files that belong to it.
 
 use super::announce::{Announcer, Plan};
-use super::{BakeArgs, Error, plan, quake, space};
+use super::{Error, plan, quake, space};
 use crate::buffers::MethodFailed;
 use crate::clusters::warn_of_repeats;
 use crate::input;
@@ -9,7 +9,8 @@ use crate::kept::Identity;
 use crate::map_portals::{portal_file, portals_for};
 use crate::output;
 use crate::progress::Bar;
-use sightlines::bake::{BakeError, BakeInput, BakeOptions, Bakeable, Baked, Report, bake};
+use crate::refuse::meaningless;
+use sightlines::bake::{BakeError, BakeInput, BakeRequest, Bakeable, Baked, Prepared, Report, Runtime};
 use sightlines::formats::{Input, SceneFile};
 use std::path::{Path, PathBuf};
 
@@ -25,13 +26,12 @@ pub(super) struct Source {
 
 impl Source {
     /// Completes an input that came from `path`: chooses the map of a WAD, and reads the portal file of a Quake map, which is `prt` or
-    /// beside it, or makes the portals. Refuses options that mean nothing for the input.
+    /// beside it, or makes the portals.
     pub(super) fn new(
         path: &Path,
         input: Input,
         (map, prt): (Option<&str>, Option<&Path>),
         out: &Path,
-        args: &BakeArgs,
     ) -> Result<Self, Error> {
         let read = match &input {
             Input::Bsp(bsp) => {
@@ -45,11 +45,6 @@ impl Source {
         let content = input::bakeable(path, input, map, prt)?;
         if let Bakeable::Portals(prt) | Bakeable::Map(_, prt) = &content {
             warn_of_repeats(portals.as_deref().unwrap_or(path), prt);
-        }
-        match content {
-            Bakeable::Plan { .. } => args.check_for_plan(path)?,
-            Bakeable::Scene(_) => args.check_for_space(path)?,
-            Bakeable::Portals(_) | Bakeable::Map(..) => args.check_for_portals(path)?,
         }
         Ok(Self { content, portals, is_made })
     }
@@ -71,6 +66,7 @@ impl Source {
         match (source, &self.portals) {
             (BakeError::Prt(source), Some(portals)) => quake::failed(path, portals, source),
             (BakeError::Prt(source), None) => Error::BakePrt { path: path.to_owned(), source },
+            (BakeError::Meaningless(option), _) => meaningless(path, option).into(),
             (BakeError::Method(source), _) => MethodFailed { path: path.to_owned(), source }.into(),
             (source, _) => Error::Bake { path: path.to_owned(), map, source: Box::new(source) },
         }
@@ -78,30 +74,31 @@ impl Source {
 }
 
 /// Bakes with a progress bar, and warns of what is only approximate in the answer.
-pub(crate) fn bake_visibly(
+pub(crate) fn bake_visibly<'i>(
     path: &Path,
-    input: BakeInput<'_>,
-    options: &BakeOptions<'_>,
+    input: impl Into<BakeInput<'i>>,
+    request: &BakeRequest,
     show_progress: bool,
 ) -> Result<Baked, BakeError> {
-    bake_announced(path, input, options, Plan::default(), show_progress)
+    let runtime = Runtime::default();
+    bake_announced(path, &request.prepare(input, &runtime)?, &runtime, Plan::default(), show_progress)
 }
 
-/// The same; says before what is going to be done.
+/// The same of what was prepared; says before what is going to be done.
 pub(super) fn bake_announced(
     path: &Path,
-    input: BakeInput<'_>,
-    options: &BakeOptions<'_>,
+    prepared: &Prepared<'_>,
+    runtime: &Runtime<'_>,
     plan: Plan,
     show_progress: bool,
 ) -> Result<Baked, BakeError> {
-    let what = match input {
+    let what = match prepared.input() {
         BakeInput::Portals(_) | BakeInput::Map(..) => "visibility of clusters",
         BakeInput::Plan(_) | BakeInput::Scene(..) => "visibility",
     };
     let bar = Bar::new(what, show_progress);
     let announcer = Announcer::new(&bar, &plan, show_progress);
-    let baked = bake(input, &BakeOptions { progress: Some(&announcer), ..options.clone() })?;
+    let baked = prepared.run(&Runtime { progress: Some(&announcer), ..*runtime })?;
     drop(bar);
     match &baked.report {
         Report::Plan(report) => plan::warn(path, report),

@@ -1,7 +1,7 @@
 //! Where viewers can be, as the file of a scene states it.
 
 use serde::Serialize;
-use sightlines::bake::{BakeOptions, Bakeable, CellsFrom};
+use sightlines::bake::StatedViewers;
 use std::fmt;
 
 /// The region of viewers that a file states.
@@ -12,15 +12,10 @@ pub(super) struct Viewers {
     max: [f64; 3],
 }
 
-/// Takes the box around the view volumes of a scene as the region of viewers, unless the options name one or the cells themselves.
-pub(super) fn take(content: &Bakeable, options: &mut BakeOptions<'_>) -> Option<Viewers> {
-    let Bakeable::Scene(file) = content else { return None };
-    let region = file.info.view_region()?;
-    if options.cut.view_region.is_some() || matches!(options.cells, CellsFrom::Boxes(_)) {
-        return None;
+impl From<StatedViewers> for Viewers {
+    fn from(StatedViewers { n_volumes, region }: StatedViewers) -> Self {
+        Self { n_volumes, min: region.min, max: region.max }
     }
-    options.cut.view_region = Some(region);
-    Some(Viewers { n_volumes: file.info.view_volumes.len(), min: region.min, max: region.max })
 }
 
 impl Viewers {

@@ -7,7 +7,7 @@ use crate::commands::build::{bake_visibly, plan};
 use crate::output::{self, bytes, percent};
 use crate::picture::{PictureKind, draw_plan, save_picture};
 use serde::Serialize;
-use sightlines::bake::{BakeOptions, Report};
+use sightlines::bake::{BakeRequest, Report};
 use sightlines::formats::geojson;
 use sightlines::pvs::{CellId, Table};
 use sightlines::report::{DrawOptions, View};
@@ -25,7 +25,7 @@ pub(super) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer, Error>
     output::save(&plan_path, geojson::write_plan(&office).as_bytes())?;
     // The plan is read back from the file, as `build` would do.
     let floor = geojson::read_plan(&plan_path)?;
-    let baked = bake_visibly(&plan_path, (&floor).into(), &BakeOptions::default(), show_progress);
+    let baked = bake_visibly(&plan_path, &floor, &BakeRequest::default(), show_progress);
     let baked = baked.map_err(|source| Error::Bake { path: plan_path, source: Box::new(source) })?;
     output::save(&table_path, &baked.table.to_bytes())?;
     let figure = Figure::of_plan(&floor);

@@ -8,7 +8,7 @@ use crate::glb::save_glb;
 use crate::output::{self, bytes, percent};
 use crate::picture::{self, PictureError, PictureKind, save_picture};
 use serde::Serialize;
-use sightlines::bake::{BakeOptions, Report};
+use sightlines::bake::{BakeRequest, PortalMode, Report};
 use sightlines::formats::scene::read_scene;
 use sightlines::pvs::{CellId, Table};
 use sightlines::report::{IsometricOptions, SliceOptions, View, isometric_svg, slice_svg};
@@ -25,8 +25,7 @@ pub(super) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer, Error>
     save_glb(&scene_path, &tower(options)?)?;
     // The scene is read back from the file, as `build` would do.
     let file = read_scene(&scene_path)?;
-    let standard = BakeOptions::default();
-    let baked = bake_visibly(&scene_path, (&file).into(), &standard, show_progress);
+    let baked = bake_visibly(&scene_path, &file, &BakeRequest::default(), show_progress);
     let baked = baked.map_err(|source| Error::Bake { path: scene_path, source: Box::new(source) })?;
     output::save(&table_path, &baked.table.to_bytes())?;
     let figure = Figure::of_scene(&file.scene);
@@ -42,7 +41,7 @@ pub(super) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer, Error>
     let Report::Scene(report) = &baked.report else { unreachable!("a scene was baked by sightlines") };
     let demo = Demo {
         n_floors: options.floors,
-        built: space::Outcome::new(&table_path, &file, standard.portals, &baked.table, report),
+        built: space::Outcome::new(&table_path, &file, PortalMode::default(), &baked.table, report),
         done: Done::new(args, start, files),
     };
     output::print(args.json, &demo)?;

@@ -3,11 +3,10 @@
 use super::report::Reason;
 use crate::output::count;
 use serde::Serialize;
-use sightlines::bake::{BakeOptions, CellsFrom, Gap, SceneMethod, bake};
+use sightlines::bake::{BakeRequest, CellsFrom, Gap, SceneMethod, bake};
 use sightlines::cells::Scene;
 use sightlines::formats::{ViewCell, ViewCells};
 use sightlines::geometry::Aabb;
-use sightlines::kdtree::SceneOptions;
 use sightlines::pvs::{CellId, SceneMethods, Table, TableKind};
 use sightlines::verify::{VerifyError, along_frame, sight_between};
 use std::fmt;
@@ -93,19 +92,19 @@ fn is_hidden_by_sightlines(table: &Table, scene: &Scene, pair: [CellId; 2]) -> O
     if table.info_value("time-limit").is_some() {
         return None;
     }
-    let mut options = SceneOptions::default();
-    if let Some(size) = table.info_value("detail-below") {
-        options.detail_below = Some(size.parse().ok()?);
-    }
     let cells = CellsFrom::Boxes(ViewCells { cells: pair.map(cell).to_vec(), axes: None });
-    let options = BakeOptions {
-        cells,
-        method: SceneMethod::Sightlines,
-        gap: Gap::Width(0.0),
-        cut: options,
-        ..BakeOptions::default()
+    let detail_below = match table.info_value("detail-below") {
+        Some(size) => Some(size.parse().ok()?),
+        None => None,
     };
-    let two = bake(scene, &options).ok()?.table;
+    let request = BakeRequest {
+        cells: Some(cells),
+        method: Some(SceneMethod::Sightlines),
+        gap: Gap::Width(0.0),
+        detail_below,
+        ..BakeRequest::default()
+    };
+    let two = bake(scene, &request).ok()?.table;
     Some(!two.sees(CellId(0), CellId(1)))
 }
 

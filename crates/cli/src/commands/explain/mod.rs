@@ -109,7 +109,7 @@ impl ExplainArgs {
         ];
         match given.into_iter().find(|&(is_given, _, meant, _)| is_given && meant != of) {
             Some((_, option, _, meant)) => {
-                Err(InputError::Option { path: self.table.clone(), option, meant, found }.into())
+                Err(InputError::Option { path: self.table.clone(), option: option.to_owned(), meant, found }.into())
             }
             None => Ok(()),
         }

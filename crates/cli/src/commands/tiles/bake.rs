@@ -4,9 +4,8 @@ use super::Error;
 use super::input::TileInput;
 use super::scenes::{Ready, Scenes};
 use crate::buffers::MethodFailed;
-use sightlines::bake::methods::BufferOptions;
 use sightlines::bake::tile::{NearTile, Tile, bake_far, bake_tile};
-use sightlines::bake::{BakeError, BakeOptions};
+use sightlines::bake::{BakeError, BakeRequest, Runtime};
 use sightlines::checkpoint::KeyHasher;
 use sightlines::geometry::Aabb;
 use sightlines::tiles::{TileFileError, TilePart, far_bytes, near_bytes, table_bytes};
@@ -20,33 +19,6 @@ pub(super) struct TileKeys {
     pub(super) far: Vec<u32>,
     pub(super) key: [u8; 16],
     pub(super) far_key: [u8; 16],
-}
-
-/// Adds all that decides what is baked, but for tiles.
-pub(super) fn hash_options(hasher: &mut KeyHasher, options: &BakeOptions<'_>, are_cells_named: bool) {
-    // What changes nothing but the time is left out, and the address of a function with `buffers.warn`.
-    let BakeOptions {
-        cut,
-        portals,
-        method,
-        cells,
-        buffers,
-        split,
-        subdivide: _,
-        chords: _,
-        gap: _,
-        frame: _,
-        digest: _,
-        fast: _,
-        threads: _,
-        progress: _,
-        budget: _,
-        units: _,
-    } = options;
-    let BufferOptions { measure, planes, texels, occluders, carry, sheets, line_space, backend, warn: _ } = buffers;
-    hasher.debug("cells", &(cut, cells, are_cells_named));
-    hasher.debug("method", &(portals, method, split));
-    hasher.debug("buffers", &(measure, planes, texels, occluders, carry, sheets, line_space, backend));
 }
 
 /// The keys of all tiles.
@@ -119,7 +91,7 @@ pub(super) fn bake(
     tile: usize,
     (inputs, keys): (&[TileInput], &TileKeys),
     scenes: &Scenes<'_>,
-    options: &BakeOptions<'_>,
+    (request, runtime): (&BakeRequest, &Runtime<'_>),
     only_far: bool,
 ) -> Result<Files, Error> {
     let input = &inputs[tile];
@@ -138,10 +110,10 @@ pub(super) fn bake(
     let names = || keys.far.iter().map(|&k| inputs[k as usize].plan.name.clone()).collect();
     let write = |source: TileFileError| Error::Write { tile: input.plan.name.clone(), source };
     if only_far {
-        let rows = bake_far(&parts, options).map_err(failed)?;
+        let rows = bake_far(&parts, request, runtime).map_err(failed)?;
         return Ok(Files(vec![(TilePart::Far, far_bytes(keys.far_key, names(), &rows).map_err(write)?)]));
     }
-    let baked = bake_tile(&parts, options).map_err(failed)?;
+    let baked = bake_tile(&parts, request, runtime).map_err(failed)?;
     let sizes = keys.near.iter().zip(&near).map(|(&k, near)| {
         let n_objects = near.loaded.scene.objects().len();
         (inputs[k as usize].plan.name.clone(), [near.cells.len() as u32, n_objects as u32])

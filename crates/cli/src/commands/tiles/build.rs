@@ -1,7 +1,7 @@
 //! `tiles build`: bakes the tiles of a world that are not baked yet.
 
 use super::Error;
-use super::bake::{Files, TileKeys, bake, hash_options, keys};
+use super::bake::{Files, TileKeys, bake, keys};
 use super::input::{self, TileInput};
 use super::outcome::Outcome;
 use super::scenes::Scenes;
@@ -13,7 +13,7 @@ use crate::output;
 use crate::progress::Bar;
 use crate::surfaces::SurfaceArgs;
 use crate::{Answer, interrupt};
-use sightlines::bake::{BakeOptions, SceneMethod};
+use sightlines::bake::{BakeRequest, Runtime};
 use sightlines::checkpoint::KeyHasher;
 use sightlines::formats::scene::SceneReadOptions;
 use sightlines::geometry::{Aabb, BoxTree};
@@ -89,13 +89,9 @@ pub(crate) fn make(args: &TilesBuildArgs, keeping: Keeping<'_>, show_progress: b
     if args.region.names_a_file() {
         return Err(Error::Cells(args.world.clone()));
     }
-    let mut options = BakeOptions { progress: Some(&Quiet), ..BakeOptions::default() };
-    options.cut.detail_below = args.detail_below;
-    args.region.apply(&mut options)?;
-    if !args.region.names_a_method() {
-        options.method = SceneMethod::Auto;
-    }
-    let are_cells_named = args.region.names_cells();
+    let mut request = BakeRequest { detail_below: args.detail_below, ..BakeRequest::default() };
+    args.region.put_into(&mut request)?;
+    let runtime = Runtime { progress: Some(&Quiet), warn: crate::buffers::warn, ..Runtime::default() };
     let reading = args.surfaces.options();
     let files = input::files(&args.world, &input::plan(&args.world)?);
     let looked_at = Inputs::look(keeping, files.iter().map(PathBuf::as_path))?;
@@ -116,14 +112,14 @@ pub(crate) fn make(args: &TilesBuildArgs, keeping: Keeping<'_>, show_progress: b
     let bounds: Vec<_> = inputs.iter().map(|tile| tile.bounds).collect();
     let mut hasher = KeyHasher::new(PROGRAM);
     hasher.value("units", &UNITS.to_le_bytes());
-    hash_options(&mut hasher, &options, are_cells_named);
+    hasher.debug("request", &request);
     let reached = plan.reach.map(|reach| near_tiles(&bounds, reach));
     let keys = keys(&inputs, near_tiles(&bounds, plan.border), reached, &hasher);
     let kept = Kept::open(keeping, &looked_at, &[&args.output], || identity(&looked_at, &keys))?;
     let mut world =
         World { args, distances: (plan.border, plan.reach), inputs: &inputs, keys: &keys, missing: Vec::new() };
     world.find()?;
-    let made = world.bake((&options, are_cells_named), (&reading, threads), &kept, show_progress);
+    let made = world.bake((&request, runtime), (&reading, threads), &kept, show_progress);
     let made = made.and_then(|()| world.finish(start));
     match kept.finish(made.is_ok()) {
         Some(_) => {
@@ -228,7 +224,7 @@ impl World<'_> {
     /// Bakes what is missing, and writes it.
     fn bake(
         &self,
-        (options, are_cells_named): (&BakeOptions<'_>, bool),
+        (request, runtime): (&BakeRequest, Runtime<'_>),
         (reading, threads): (&SceneReadOptions, usize),
         kept: &Kept<'_>,
         show_progress: bool,
@@ -240,9 +236,9 @@ impl World<'_> {
         let n_to_do = self.missing.iter().flatten().count();
         // A few tiles have all threads for each; of many, each has one.
         let (at_once, threads) = if n_to_do >= 2 * threads { (threads, 1) } else { (1, threads) };
-        let options = &BakeOptions { threads, ..options.clone() };
+        let runtime = Runtime { threads, ..runtime };
         let most_near = self.keys.iter().map(|keys| keys.near.len()).max().unwrap_or(0);
-        let scenes = Scenes::new(self.inputs, reading, (options, are_cells_named), 2 * (most_near + 1) * at_once + 32);
+        let scenes = Scenes::new(self.inputs, reading, (request, runtime), 2 * (most_near + 1) * at_once + 32);
         let n_triangles = |tile: usize| self.inputs[tile].n_triangles as f64;
         let cost = |&tile: &usize| match self.missing[tile] {
             None => 0.0,
@@ -265,7 +261,8 @@ impl World<'_> {
                 let Some(missing) = self.missing[tile] else { return Ok(Vec::new()) };
                 is_made = true;
                 let begin = Instant::now();
-                let files = bake(tile, (self.inputs, &self.keys[tile]), &scenes, options, missing == Missing::Far)?;
+                let files =
+                    bake(tile, (self.inputs, &self.keys[tile]), &scenes, (request, &runtime), missing == Missing::Far)?;
                 tracing::info!("tile {}: {:.3} s", self.inputs[tile].plan.name, begin.elapsed().as_secs_f64());
                 if units.are_kept() {
                     return Ok(files.to_bytes());

@@ -4,7 +4,7 @@ use super::Error;
 use crate::error::InputError;
 use crate::surfaces;
 use sightlines::bake::tile::{tile_cells, tile_extent};
-use sightlines::bake::{BakeError, BakeOptions, CellsFrom, auto::own_cells};
+use sightlines::bake::{BakeError, BakeRequest, CellsFrom, Runtime};
 use sightlines::cells::Scene;
 use sightlines::checkpoint::{Key, KeyHasher};
 use sightlines::formats::scene::{SceneReadOptions, read_scene_with};
@@ -84,24 +84,20 @@ impl TileInput {
         if loaded.key() == self.key { Ok(loaded) } else { Err(Error::Changed(self.scene.clone())) }
     }
 
-    /// Its cells, cut as the options say; as fits what it contains, if they do not.
+    /// Its cells: those that its plan gives, or cut as the request says.
     pub(super) fn cut(
         &self,
         loaded: &Loaded,
-        options: &BakeOptions<'_>,
-        are_named: bool,
+        request: &BakeRequest,
+        runtime: &Runtime<'_>,
     ) -> Result<Vec<ViewCell>, Error> {
-        let cells = match &loaded.given {
-            Some(given) => CellsFrom::Boxes(given.clone()),
-            None if are_named => options.cells.clone(),
-            None => own_cells(&loaded.scene),
-        };
+        let cells = loaded.given.clone().map(CellsFrom::Boxes).or_else(|| request.cells.clone());
         let failed = |source: BakeError| match source {
             BakeError::Cancelled(cancelled) => cancelled.into(),
             source => Error::Bake { path: self.scene.clone(), source },
         };
-        let options = BakeOptions { cells, ..options.clone() };
-        let cells = tile_cells(&loaded.scene, &loaded.viewers, &options).map_err(failed)?;
+        let request = BakeRequest { cells, ..request.clone() };
+        let cells = tile_cells(&loaded.scene, &loaded.viewers, &request, runtime).map_err(failed)?;
         if cells.is_empty() {
             return Err(Error::NoCells { path: self.scene.clone(), tile: self.plan.name.clone() });
         }

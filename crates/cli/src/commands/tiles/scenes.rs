@@ -2,7 +2,7 @@
 
 use super::Error;
 use super::input::{Loaded, TileInput};
-use sightlines::bake::BakeOptions;
+use sightlines::bake::{BakeRequest, Runtime};
 use sightlines::formats::ViewCell;
 use sightlines::formats::scene::SceneReadOptions;
 use std::collections::{BTreeMap, VecDeque};
@@ -22,8 +22,8 @@ type Slot = Arc<Mutex<Option<Arc<Ready>>>>;
 pub(super) struct Scenes<'a> {
     inputs: &'a [TileInput],
     reading: &'a SceneReadOptions,
-    options: &'a BakeOptions<'a>,
-    are_cells_named: bool,
+    request: &'a BakeRequest,
+    runtime: Runtime<'a>,
     /// How many are kept.
     room: usize,
     kept: Mutex<(BTreeMap<usize, Slot>, VecDeque<usize>)>,
@@ -38,10 +38,10 @@ impl<'a> Scenes<'a> {
     pub(super) fn new(
         inputs: &'a [TileInput],
         reading: &'a SceneReadOptions,
-        (options, are_cells_named): (&'a BakeOptions<'a>, bool),
+        (request, runtime): (&'a BakeRequest, Runtime<'a>),
         room: usize,
     ) -> Self {
-        Self { inputs, reading, options, are_cells_named, room, kept: Mutex::default() }
+        Self { inputs, reading, request, runtime, room, kept: Mutex::default() }
     }
 
     /// A tile, read if it is not there.
@@ -64,7 +64,7 @@ impl<'a> Scenes<'a> {
         }
         let input = &self.inputs[tile];
         let loaded = input.load(self.reading)?;
-        let cells = input.cut(&loaded, self.options, self.are_cells_named)?;
+        let cells = input.cut(&loaded, self.request, &self.runtime)?;
         Ok(Arc::clone(ready.insert(Arc::new(Ready { loaded, cells }))))
     }
 }

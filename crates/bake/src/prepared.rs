@@ -1,0 +1,161 @@
+//! A bake whose decisions are taken.
+
+use crate::auto::{Choice, choose_for, no_choice, own_cells};
+use crate::baked::Baked;
+use crate::error::BakeError;
+use crate::framed::{Framed, growth_of_cells};
+use crate::input::BakeInput;
+use crate::options::{Recipe, SceneMethod};
+use crate::region::{CellsFrom, PackRegionsError};
+use crate::reports::RegionReport;
+use crate::request::{BakeRequest, Runtime};
+use crate::{run, threads};
+use sightlines_cells::Scene;
+use sightlines_formats::SceneInfo;
+use sightlines_geometry::Aabb;
+use sightlines_packed::PackReport;
+use std::io::Write;
+
+/// What was decided of an input, and why: beside what the request said.
+#[derive(Debug, Clone, Default)]
+#[non_exhaustive]
+pub struct Decisions {
+    /// The box around the view volumes that the file of a scene states, if viewers are there; along the axes of the file.
+    pub viewers: Option<StatedViewers>,
+    /// How many times the surface of given cells the boxes have that are taken in their place; see [`growth_of_cells`].
+    pub cells_growth: f64,
+    /// How the methods were chosen, if that was asked for, or if it was found that more than sightlines pays.
+    pub choice: Option<Choice>,
+}
+
+/// Where viewers are, by the file of a scene.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StatedViewers {
+    /// View volumes that the file states.
+    pub n_volumes: usize,
+    /// The box around them.
+    pub region: Aabb<3>,
+}
+
+/// An input with all decisions about its bake: what [`BakeRequest::prepare`] returns.
+#[derive(Debug)]
+pub struct Prepared<'i> {
+    input: BakeInput<'i>,
+    framed: Option<Framed>,
+    recipe: Recipe,
+    decisions: Decisions,
+}
+
+impl<'i> Prepared<'i> {
+    pub(crate) fn new(request: &BakeRequest, input: BakeInput<'i>, runtime: &Runtime<'_>) -> Result<Self, BakeError> {
+        let is_auto = request.method == Some(SceneMethod::Auto);
+        let mut decisions = Decisions { cells_growth: 1.0, ..Decisions::default() };
+        let mut recipe = request.recipe();
+        let BakeInput::Scene(of_file, file) = input else {
+            decisions.choice = is_auto.then(|| no_choice(&input));
+            return Ok(Self { input, framed: None, recipe, decisions });
+        };
+        if let Some(cells) = &request.cells {
+            recipe.cells = cells.clone();
+        }
+        if request.view_region.is_none() && !matches!(recipe.cells, CellsFrom::Boxes(_)) {
+            decisions.viewers = file.and_then(stated_viewers);
+            recipe.cut.view_region = decisions.viewers.map(|viewers| viewers.region);
+        }
+        let framed = Framed::of(of_file, file, request)?;
+        decisions.cells_growth = growth_of_cells(request.cells.as_ref(), framed.as_ref());
+        if let Some(framed) = &framed {
+            framed.put_into(&mut recipe);
+        }
+        let scene = framed.as_ref().map_or(of_file, |framed| &framed.moved.scene);
+        let sightlines = request.method == Some(SceneMethod::Sightlines);
+        // Mirrors reflect the cells of a k-d tree.
+        if request.cells.is_none() && !sightlines && !request.for_lines && scene.mirrors().is_empty() {
+            recipe.cells = own_cells(scene);
+        }
+        match request.method {
+            Some(method) if !is_auto => recipe.method = method,
+            None if request.for_lines => {}
+            _ => {
+                let choose = || {
+                    let mut recipe = recipe.clone();
+                    let choice = choose_for(scene, &mut recipe, runtime.progress);
+                    (choice, recipe)
+                };
+                let (choice, chosen) = threads::on(runtime.threads, choose);
+                // Of sightlines that nobody asked about there is nothing to tell.
+                let is_told = is_auto || chosen.method != SceneMethod::Sightlines;
+                (recipe, decisions.choice) = (chosen, is_told.then_some(choice));
+            }
+        }
+        Ok(Self { input, framed, recipe, decisions })
+    }
+
+    /// What is baked: of a scene that has a frame, the scene along it.
+    pub fn input(&self) -> BakeInput<'_> {
+        match (self.input, &self.framed) {
+            (BakeInput::Scene(_, file), Some(framed)) => BakeInput::Scene(&framed.moved.scene, file),
+            (input, _) => input,
+        }
+    }
+
+    /// The frame of a scene, if it has one.
+    pub fn framed(&self) -> Option<&Framed> {
+        self.framed.as_ref()
+    }
+
+    /// What was decided, in full.
+    pub fn recipe(&self) -> &Recipe {
+        &self.recipe
+    }
+
+    /// What was decided beside what the request said.
+    pub fn decisions(&self) -> &Decisions {
+        &self.decisions
+    }
+
+    /// Cuts the input into cells where it has none, decides what they see, and makes the table.
+    ///
+    /// Errs towards visible, and gives the same table, byte for byte, with any number of threads.
+    ///
+    /// # Errors
+    /// [`BakeError`]
+    pub fn run(&self, runtime: &Runtime<'_>) -> Result<Baked, BakeError> {
+        threads::on(runtime.threads, || run::bake_here(self.input(), &self.recipe, runtime))
+    }
+
+    /// The same for a scene, and writes a packed table of the large class row by row: for more cells than a table in memory
+    /// has room for. See [`pack_regions`](crate::region::pack_regions) for what can be written so.
+    ///
+    /// # Errors
+    /// [`PackRegionsError`]
+    ///
+    /// # Panics
+    /// If the input is no scene.
+    pub fn run_packed<W: Write + Send>(
+        &self,
+        out: W,
+        runtime: &Runtime<'_>,
+    ) -> Result<(W, RegionReport, PackReport), PackRegionsError> {
+        let BakeInput::Scene(scene, file) = self.input() else { panic!("only scenes are written row by row") };
+        run::bake_packed(scene, file, &self.recipe, runtime, out)
+    }
+}
+
+/// The box around the view volumes of a file, if it states any.
+fn stated_viewers(file: &SceneInfo) -> Option<StatedViewers> {
+    let region = file.view_region()?;
+    Some(StatedViewers { n_volumes: file.view_volumes.len(), region })
+}
+
+/// The cells and the method of a tile's scene: `cells` as they are, the method chosen if none is named.
+pub(crate) fn recipe_of_tile(request: &BakeRequest, scene: &Scene, cells: CellsFrom, runtime: &Runtime<'_>) -> Recipe {
+    let mut recipe = Recipe { cells, ..request.recipe() };
+    match request.method {
+        None | Some(SceneMethod::Auto) => {
+            choose_for(scene, &mut recipe, runtime.progress);
+        }
+        Some(method) => recipe.method = method,
+    }
+    recipe
+}

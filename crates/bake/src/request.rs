@@ -1,0 +1,256 @@
+//! What to bake, by the names that every face of the project has for it.
+
+use crate::baked::Baked;
+use crate::error::{BakeError, Meaningless};
+use crate::gap::Gap;
+use crate::input::BakeInput;
+use crate::methods::{Backend, BufferOptions};
+use crate::options::{Recipe, SceneMethod};
+use crate::prepared::Prepared;
+use crate::region::CellsFrom;
+use crate::scene::PortalMode;
+use crate::subdivide::Subdivide;
+use sightlines_geometry::Aabb;
+use sightlines_kdtree::SceneOptions;
+use sightlines_multifocal::{Measure, Split};
+use sightlines_progress::{Budget, Observer, Units};
+use std::fmt;
+
+/// What to bake: one request for inputs of every kind. Nothing said means the best that is known for the input.
+///
+/// What means nothing for an input, or for a method that was named, is refused by name when the request is
+/// [prepared](Self::prepare); nothing is ignored. Everything but the threads and the observer is here, so a request says which table
+/// is made, byte for byte.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct BakeRequest {
+    /// Scenes: the cells. None: those of a k-d tree where nearly all walls are perpendicular to an axis, where there are mirrors, and for
+    /// sightlines alone; else [`places`](crate::places).
+    pub cells: Option<CellsFrom>,
+    /// Scenes: what decides. None: what the properties of the scene suggest, as for [`SceneMethod::Auto`], or sightlines alone for what has
+    /// [proofs or stab trees](Self::for_lines).
+    pub method: Option<SceneMethod>,
+    /// Scenes: how precise coordinates are, which decides whether walls that are nearly across an axis, of the file or of the building, are
+    /// taken to be so.
+    pub gap: Gap,
+    /// Scenes: where viewers can be, in scene units. None: the box around the view volumes that the file states, unless the cells are
+    /// given boxes; else the box of the scene.
+    pub view_region: Option<Aabb<3>>,
+    /// Scenes: objects smaller than this in every direction, in scene units, are drawn and hide nothing from sightlines; 0 for none.
+    /// None: chosen from the scene.
+    pub detail_below: Option<f64>,
+    /// Scenes: fail if there are more cells. None: 65,536.
+    pub max_cells: Option<u32>,
+    /// Scenes: keep the insides of solids as cells, for eyes that can get into them.
+    pub keep_solid: bool,
+    /// K-d trees: split only along walls that cover at least this share of a cell, from 0 to 1. None: 0, every wall.
+    pub tau: Option<f64>,
+    /// Scenes: which portals sightlines go through. None: the exact ones.
+    pub portals: Option<PortalMode>,
+    /// Plans: how to cut. None: by the directions and groups of its walls.
+    pub subdivide: Option<Subdivide>,
+    /// Scenes by [`OcclusionMethod::Multifocal`](crate::methods::OcclusionMethod::Multifocal): how buffers and sheets are made.
+    pub buffers: BufferRequest,
+    /// Scenes by a from-region method: when a cell is cut into smaller volumes. None: never.
+    pub split: Option<Split>,
+    /// Quake maps and portal files: only the first, coarse bound; quick, and shows much that is hidden.
+    pub fast: bool,
+    /// Whether proofs or stab trees are to be made, which are of sightlines through portals. Cells that are not named are then those of a k-d
+    /// tree, and a method that is not named is sightlines alone.
+    pub for_lines: bool,
+}
+
+/// How multifocal buffers and sheets are made; none of each for the default of [`BufferOptions`].
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct BufferRequest {
+    /// What buffers compare.
+    pub measure: Option<Measure>,
+    /// Planes on each side of a cell; 0 for no buffers.
+    pub planes: Option<u32>,
+    /// Texels along the longer side of a plane.
+    pub texels: Option<u32>,
+    /// The most occluders drawn on each side of a cell.
+    pub occluders: Option<u32>,
+    /// Whether what is known on a plane is carried over to the next one.
+    pub carry: Option<bool>,
+    /// The most edges of triangles visited to find a sheet; 0 for no sheets.
+    pub sheets: Option<u32>,
+    /// What draws the buffers.
+    pub backend: Option<Backend>,
+}
+
+impl BufferRequest {
+    /// The same with every default filled in; nobody is warned.
+    pub fn options(&self) -> BufferOptions {
+        let standard = BufferOptions::default();
+        let Self { measure, planes, texels, occluders, carry, sheets, backend } = *self;
+        BufferOptions {
+            measure: measure.unwrap_or(standard.measure),
+            planes: planes.unwrap_or(standard.planes),
+            texels: texels.unwrap_or(standard.texels),
+            occluders: occluders.unwrap_or(standard.occluders),
+            carry: carry.unwrap_or(standard.carry),
+            sheets: sheets.unwrap_or(standard.sheets),
+            backend: backend.unwrap_or(standard.backend),
+            ..standard
+        }
+    }
+
+    /// The names of all options, and whether each was named.
+    const fn named(&self) -> [(&'static str, bool); 7] {
+        let Self { measure, planes, texels, occluders, carry, sheets, backend } = self;
+        [
+            ("measure", measure.is_some()),
+            ("planes", planes.is_some()),
+            ("texels", texels.is_some()),
+            ("occluders", occluders.is_some()),
+            ("carry", carry.is_some()),
+            ("sheets", sheets.is_some()),
+            ("backend", backend.is_some()),
+        ]
+    }
+}
+
+/// On what a bake runs, and who hears of it. Nothing of it changes the table, but for a budget that is spent.
+#[derive(Clone, Copy)]
+pub struct Runtime<'a> {
+    /// Number of threads; 0 for one for each core.
+    pub threads: usize,
+    /// Receives reports, and may cancel.
+    pub progress: Option<&'a dyn Observer>,
+    /// Scenes: what may be spent, such as time. What is not decided then counts as visible, and the table depends on when that was; see
+    /// [`LimitReport`](crate::LimitReport).
+    pub budget: Option<&'a dyn Budget>,
+    /// Where results of units of work are kept, to go on after a stop or to share a bake among processes.
+    pub units: Units<'a>,
+    /// Called with a line for people, such as when one backend takes over from another.
+    pub warn: fn(&str),
+}
+
+impl Default for Runtime<'_> {
+    fn default() -> Self {
+        Self { threads: 0, progress: None, budget: None, units: Units::default(), warn: |_| {} }
+    }
+}
+
+impl Runtime<'_> {
+    /// Bakes an input as a request says: [`bake`](fn@crate::bake) on this.
+    ///
+    /// # Errors
+    /// [`BakeError`]
+    pub fn bake<'i>(&self, input: impl Into<BakeInput<'i>>, request: &BakeRequest) -> Result<Baked, BakeError> {
+        request.prepare(input, self)?.run(self)
+    }
+}
+
+impl fmt::Debug for Runtime<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Runtime").field("threads", &self.threads).finish_non_exhaustive()
+    }
+}
+
+/// What takes options that others do not.
+const SCENES: &str = "scenes in space";
+
+impl BakeRequest {
+    /// Takes all decisions before the work: what the request means for this input, its frame, its cells and its methods, and why.
+    ///
+    /// Of a scene without a method this measures the scene, which may take seconds for millions of triangles.
+    ///
+    /// # Errors
+    /// [`BakeError::Meaningless`] for an option that means nothing here; [`BakeError::Move`] for a stated gap that cannot be had.
+    pub fn prepare<'i>(
+        &self,
+        input: impl Into<BakeInput<'i>>,
+        runtime: &Runtime<'_>,
+    ) -> Result<Prepared<'i>, BakeError> {
+        let input = input.into();
+        self.check(&input)?;
+        Prepared::new(self, input, runtime)
+    }
+
+    /// What is known without the input.
+    pub(crate) fn recipe(&self) -> Recipe {
+        let standard = SceneOptions::default();
+        Recipe {
+            subdivide: self.subdivide.unwrap_or_default(),
+            cut: SceneOptions {
+                view_region: self.view_region,
+                tau: self.tau.unwrap_or(standard.tau),
+                detail_below: self.detail_below,
+                max_cells: self.max_cells.unwrap_or(standard.max_cells),
+                keep_solid: self.keep_solid,
+            },
+            frame: None,
+            digest: None,
+            portals: self.portals.unwrap_or_default(),
+            method: SceneMethod::Sightlines,
+            cells: CellsFrom::KdTree,
+            buffers: self.buffers.options(),
+            split: self.split.unwrap_or_default(),
+            fast: self.fast,
+        }
+    }
+
+    /// Options that mean something for scenes only, and whether each was named.
+    fn of_scenes(&self) -> [(&'static str, bool); 10] {
+        let cells = |is: fn(&CellsFrom) -> bool| self.cells.as_ref().is_some_and(is);
+        let places = match &self.cells {
+            Some(CellsFrom::Places(how)) => Some(how),
+            _ => None,
+        };
+        let is_auto = matches!(self.method, None | Some(SceneMethod::Auto));
+        [
+            ("gap", self.gap != Gap::OfFile),
+            ("view_region", self.view_region.is_some()),
+            ("detail_below", self.detail_below.is_some()),
+            ("portals", self.portals.is_some()),
+            ("max_cells", self.max_cells.is_some()),
+            ("keep_solid", self.keep_solid),
+            ("method", !is_auto),
+            ("cells", cells(|cells| matches!(cells, CellsFrom::Boxes(_) | CellsFrom::KdTree))),
+            ("grid", cells(|cells| matches!(cells, CellsFrom::Grid(_)))),
+            (
+                places.map_or("n_cells", |how| {
+                    if how.n_cells.is_none() && how.cell_size.is_some() { "cell_size" } else { "n_cells" }
+                }),
+                places.is_some(),
+            ),
+        ]
+    }
+
+    /// Refuses what means nothing for an input.
+    pub(crate) fn check(&self, input: &BakeInput<'_>) -> Result<(), Meaningless> {
+        let refuse = |named: &[(&'static str, bool)], meant, found| match named.iter().find(|(_, is_named)| *is_named) {
+            Some(&(option, _)) => Err(Meaningless { option, meant, found }),
+            None => Ok(()),
+        };
+        let found = match input {
+            BakeInput::Plan(_) => "a plan",
+            BakeInput::Scene(..) => "a scene in space",
+            BakeInput::Portals(_) | BakeInput::Map(..) => "a portal file",
+        };
+        if !matches!(input, BakeInput::Plan(_)) {
+            refuse(&[("subdivide", self.subdivide.is_some())], "plans", found)?;
+        }
+        if matches!(input, BakeInput::Portals(_) | BakeInput::Map(..)) {
+            refuse(&[("tau", self.tau.is_some())], "plans and scenes in space", found)?;
+        } else {
+            refuse(&[("fast", self.fast)], "portal files", found)?;
+        }
+        let by = [("split", self.split.is_some())];
+        if !matches!(input, BakeInput::Scene(..)) {
+            refuse(&self.of_scenes(), SCENES, found)?;
+            refuse(&self.buffers.named(), SCENES, found)?;
+            return refuse(&by, SCENES, found);
+        }
+        let method = self.method.unwrap_or(SceneMethod::Auto);
+        if !method.has_buffers() {
+            let found = if method == SceneMethod::Auto { "the method chosen by the scene" } else { method.name() };
+            refuse(&self.buffers.named(), "the methods multifocal and both", found)?;
+        }
+        if method == SceneMethod::Sightlines {
+            refuse(&by, "methods that look from whole cells", method.name())?;
+        }
+        Ok(())
+    }
+}
