@@ -1,7 +1,10 @@
 """Bakes of scenes in space."""
 
+import os
+import subprocess
 import threading
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -86,6 +89,49 @@ def test_cells_may_be_chosen():
     region = sl.bake(HALLS, view_region=[[1, 1, 1], [3, 3, 2]], progress=False)
     # The other hall cannot be reached from there.
     assert len(region.cells_at(EYE)) and not len(region.cells_at((15, 2, 2)))
+
+
+#: Walls of the two halls that are not at right angles.
+SLANTED = {name: (corners + 0.25 * corners[:, [1, 0, 2]], triangles) for name, (corners, triangles) in HALLS.items()}
+
+
+def program() -> str:
+    """The program, as the environment names it or the project's own tests build it."""
+    built = Path(__file__).parents[2] / "target" / "debug" / "sightlines"
+    found = os.environ.get("SIGHTLINES_PROGRAM", str(built))
+    if not Path(found).is_file():
+        pytest.skip(f"there is no program {found} to compare with")
+    return found
+
+
+@pytest.mark.parametrize(
+    ("options", "arguments"),
+    [
+        ({}, []),
+        ({"cells": 12}, ["--n-cells", "12"]),
+        ({"cells": (3, 2, 1)}, ["--grid", "3,2,1"]),
+        ({"cells": (3, 2, 1), "method": "line-space"}, ["--grid", "3,2,1", "--method", "line-space"]),
+        ({"method": "sightlines"}, ["--method", "sightlines"]),
+        ({"cells": 12, "gap": 0.001}, ["--n-cells", "12", "--gap", "0.001"]),
+        ({"cells": 12, "view_region": [[1, 1, 1], [9, 3, 2]]}, ["--n-cells", "12", "--view-region", "1,1,1,9,3,2"]),
+        ({"method": "sightlines", "detail_below": 0.5}, ["--method", "sightlines", "--detail-below", "0.5"]),
+        ({"method": "sightlines", "keep_solid": True}, ["--method", "sightlines", "--keep-solid"]),
+        ({"cells": 12, "max_cells": 40}, ["--n-cells", "12", "--max-cells", "40"]),
+    ],
+)
+def test_files_are_baked_as_the_program_does(tmp_path, tower_bytes, options, arguments):
+    lines = []
+    first = 1
+    for name, (corners, triangles) in SLANTED.items():
+        lines += [f"o {name}"] + [f"v {x} {y} {z}" for x, y, z in corners.tolist()]
+        lines += ["f " + " ".join(str(first + i) for i in triangle) for triangle in triangles.tolist()]
+        first += len(corners)
+    (tmp_path / "halls.obj").write_text("\n".join(lines) + "\n")
+    (tmp_path / "tower.glb").write_bytes(tower_bytes)
+    for name in ["halls.obj", "tower.glb"]:
+        path, out = tmp_path / name, tmp_path / "out.pvs"
+        subprocess.run([program(), "build", str(path), *arguments, "-o", str(out)], check=True, capture_output=True)
+        assert sl.bake(path, progress=False, **options).to_bytes() == out.read_bytes()
 
 
 def test_the_table_does_not_depend_on_threads(tower_bytes, tower):

@@ -67,7 +67,7 @@ pub struct SlBakeOptions {
     pub method: *const c_char,
     /// Where the cells come from: `SL_CELLS_…`.
     pub cells: u32,
-    /// How many boxes to cut, for `SL_CELLS_PLACES`; 0 for 256.
+    /// How many boxes to cut, for `SL_CELLS_PLACES`; 0 for 256. A number for cells of another kind is refused, as are `grid` and `box_count`.
     pub place_count: u32,
     /// Number of boxes along each axis, for `SL_CELLS_GRID`.
     pub grid: [u32; 3],
@@ -238,6 +238,15 @@ impl Given<'_> {
             return Err(Failure::argument(
                 "gap, time limit or size of detail is no finite number, or the limit is below 0",
             ));
+        }
+        for (field, is_given, kind) in [
+            ("place_count", place_count != 0, SL_CELLS_PLACES),
+            ("grid", grid != [0; 3], SL_CELLS_GRID),
+            ("box_count", self.options.box_count != 0, SL_CELLS_BOXES),
+        ] {
+            if is_given && cells != kind {
+                return Err(Failure::argument(format!("{field} is for cells of kind {kind}, and these are of kind {cells}")));
+            }
         }
         let n_cells = if place_count == 0 { None } else { Some(place_count) };
         let cells = match cells {

@@ -43,8 +43,10 @@ def bake(
         and (m, 3)
     :param cells: where viewers can be. None: chosen by the scene. ``"kd-tree"``: boxes along the walls, with portals. A number: so many
         boxes, cut where views differ. Three numbers: a grid. An array (n, 2, 3): these boxes
-    :param method: what decides: ``"sightlines"``, ``"auto"``, ``"both"``, ``"multifocal"``, ``"line-space"``, ``"shafts"``, ``"voxels"``
-    :param view_region: a box (2, 3) in which viewers are; rooms that cannot be reached from it are no cells. None for everywhere
+    :param method: what decides. None: chosen by the scene, as ``"auto"`` does. Otherwise ``"sightlines"``, ``"auto"``,
+        ``"both"``, ``"multifocal"``, ``"line-space"``, ``"shafts"``, ``"voxels"``
+    :param view_region: a box (2, 3) in which viewers are; rooms that cannot be reached from it are no cells. None: the box around the view
+        volumes of the file, if it states any, else everywhere
     :param gap: how precise coordinates are, in scene units: openings that are narrower may count as closed. None: as precise as
         the file's format
     :param detail_below: objects smaller than this in every direction hide nothing; None for what suits the scene

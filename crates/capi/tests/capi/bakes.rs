@@ -7,10 +7,11 @@ use sightlines_bake::places::PlaceOptions;
 use sightlines_bake::region::CellsFrom;
 use sightlines_bake::{BakeRequest, Gap, PlanBakeOptions, SceneMethod, bake, bake_plan};
 use sightlines_capi::*;
-use sightlines_cells::MovingObject;
+use sightlines_cells::{MovingObject, Point3, Scene, SceneObject};
 use sightlines_formats::ViewCells;
 use sightlines_formats::view_cells::ViewCell;
 use sightlines_geometry::Aabb;
+use sightlines_scenes::{TowerOptions, tower};
 use std::collections::BTreeSet;
 use std::ffi::CString;
 use std::ptr;
@@ -18,7 +19,7 @@ use std::ptr;
 /// A scene goes through the border object by object, and the table that comes back has the same bytes.
 #[test]
 fn bakes_are_those_of_rust() {
-    let options = BakeRequest { gap: Gap::Width(0.0), ..BakeRequest::default() };
+    let options = BakeRequest::default();
     let mut n = 0;
     for scene in towers() {
         let expected = bake(&scene, &options).expect("a scene").table.to_bytes();
@@ -109,7 +110,7 @@ fn flags_and_options_are_those_of_rust() {
     // SAFETY: all zeros are a value of every field.
     let mut zero = unsafe { std::mem::zeroed::<SlBakeOptions>() };
     (zero.struct_size, zero.gap) = (size_of::<SlBakeOptions>(), 0.0);
-    let exact = BakeRequest { gap: Gap::Width(0.0), ..BakeRequest::default() };
+    let exact = BakeRequest::default();
     let places = PlaceOptions { n_cells: Some(6), cell_size: None };
     let cases: [(SlBakeOptions, BakeRequest); 6] = [
         (zero, exact.clone()),
@@ -205,5 +206,61 @@ fn files_are_written_and_read() {
         assert_eq!(sl_table_load(path.as_ptr(), &mut again), SL_ERROR_FORMAT);
         let message = std::ffi::CStr::from_ptr(sl_last_error()).to_str().expect("UTF-8").to_owned();
         assert!(message.contains("a table.pvz: ") && again.is_null(), "{message}");
+    }
+}
+
+/// A floor whose corners were moved, in single precision.
+fn moved(change: impl Fn(Point3) -> Point3) -> Scene {
+    let floor = TowerOptions { floors: 1, rooms_x: 2, rooms_y: 1, furniture: 0, ..TowerOptions::default() };
+    let upright = tower(TowerOptions { windows: false, ..floor }).expect("a floor");
+    let single = |p: &Point3| change(*p).map(|x| f64::from(x as f32));
+    let object = |o: &SceneObject| SceneObject { vertices: o.vertices.iter().map(single).collect(), ..o.clone() };
+    Scene::new(upright.objects().iter().map(object).collect()).expect("a scene")
+}
+
+/// The bytes of the table of a scene that C was given in single precision, or, but for the last object, so.
+fn by_c(scene: &Scene, gap: f64, is_single: bool) -> Vec<u8> {
+    let mut handle = ptr::null_mut();
+    // SAFETY: handles live until they are freed; all pointers are to live memory of the stated sizes.
+    unsafe {
+        assert_eq!(sl_scene_new(&mut handle), SL_OK);
+        for (i, o) in scene.objects().iter().enumerate() {
+            let name = CString::new(o.name.as_str()).expect("no zeros");
+            let (doubles, triangles) = (o.vertices.as_flattened(), o.triangles.as_flattened());
+            let singles: Vec<f32> = doubles.iter().map(|x| *x as f32).collect();
+            let ([v, n], t) = ([doubles.len() / 3, triangles.len()], triangles.as_ptr());
+            let (name, nowhere) = (name.as_ptr(), ptr::null_mut());
+            let status = if is_single || i + 1 < scene.objects().len() {
+                sl_scene_add_object_f32(handle, name, singles.as_ptr(), v, t, n, 0, nowhere)
+            } else {
+                sl_scene_add_object(handle, name, doubles.as_ptr(), v, t, n, 0, nowhere)
+            };
+            assert_eq!(status, SL_OK);
+        }
+        let mut options = std::mem::zeroed::<SlBakeOptions>();
+        (options.struct_size, options.gap) = (size_of::<SlBakeOptions>(), gap);
+        let mut table = ptr::null_mut();
+        assert_eq!(sl_bake(handle, &options, &mut table, ptr::null_mut()), SL_OK);
+        let bytes = list(|to, size, n| sl_table_bytes(table, SL_FORM_PLAIN, to, size, n));
+        sl_table_free(table);
+        sl_scene_free(handle);
+        bytes
+    }
+}
+
+/// With nothing said, walls in single precision that stand at an angle are walls, as those of a file are.
+#[test]
+fn single_precision_is_known_for_what_it_is() {
+    let slanted = moved(|[x, y, z]| [x + 0.25 * z, y, z + 0.125 * x]);
+    let turned = moved(|[x, y, z]| [0.8 * x - 0.6 * z, y, 0.6 * x + 0.8 * z]);
+    for (scene, has_frame) in [(slanted, false), (turned, true)] {
+        let by_rust = |gap| bake(&scene, &BakeRequest { gap, ..BakeRequest::default() }).expect("a table").table;
+        let [single, exact] = [Gap::OfSingle, Gap::OfFile].map(by_rust);
+        assert_eq!((single.frame().is_some(), exact.frame().is_some()), (has_frame, false));
+        assert!(single.mean_visible_share() < 0.999 && exact.mean_visible_share() < 0.999, "something is hidden");
+        let [single, exact] = [single, exact].map(|table| table.to_bytes());
+        assert!(by_c(&scene, 0.0, true) == single);
+        // The impostors: a coordinate in double precision, and a gap that takes all as they are.
+        assert!(by_c(&scene, 0.0, false) == exact && by_c(&scene, -1.0, true) == exact);
     }
 }

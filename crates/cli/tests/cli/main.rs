@@ -11,6 +11,7 @@ mod engine;
 mod errors;
 mod explain_boxes;
 mod explain_portals;
+mod faces;
 mod far;
 mod guides;
 mod help;
