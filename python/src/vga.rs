@@ -89,7 +89,8 @@ fn analyse(
 ) -> Result<(Points, Analysis, u64), Why> {
     let (spacing, seeds) = grid;
     let grid = Grid::over(&plan.plan, spacing).map_err(Why::Grid)?;
-    let points = seeds.map_or_else(|| grid.enclosed(), |seeds| grid.fill(seeds)).map_err(Why::Grid)?;
+    let inside = || grid.interior().map(|interior| interior.points);
+    let points = seeds.map_or_else(inside, |seeds| grid.fill(seeds)).map_err(Why::Grid)?;
     let at = points.coordinates();
     let effort = Effort { threads: options.threads, observer: Some(observer), ..Effort::default() };
     let graph = plan.mesh_around(at.iter().copied(), |mesh| {

@@ -241,3 +241,13 @@ def test_cells_go_to_geopandas(rooms_table):
     assert frame["sees"].tolist() == rooms_table.counts.tolist()
     assert frame.area.sum() == 36.0
     assert rooms_table.__geo_interface__["type"] == "FeatureCollection"
+
+
+def test_pictures_are_no_mirror_images(tower):
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    assert tower.up == "y"
+    ax = tower.plot(height=1.0)
+    # Seen from above, x to the right is z downwards: a turn, and no mirror.
+    assert not ax.xaxis_inverted() and ax.yaxis_inverted()
+    assert tower.plot(height=1.0, ax=ax).yaxis_inverted()
+    pyplot.close("all")

@@ -2,7 +2,6 @@
 
 use crate::methods::{BufferOptions, OcclusionMethod};
 use crate::region::CellsFrom;
-use crate::scene::PortalMode;
 use crate::subdivide::Subdivide;
 use sightlines_kdtree::SceneOptions;
 use sightlines_multifocal::Split;
@@ -102,8 +101,6 @@ pub struct Recipe {
     pub frame: Option<Frame>,
     /// Scenes in a frame: the digests of the scene as its file has it; the table states them in place of those of the scene that was moved.
     pub digest: Option<GeometryDigest>,
-    /// Scenes: which portals sightlines go through.
-    pub portals: PortalMode,
     /// Scenes: what decides; never [`SceneMethod::Auto`].
     pub method: SceneMethod,
     /// Scenes: the cells.
@@ -130,9 +127,9 @@ impl Recipe {
     /// All that decides the table but the input, in words: two recipes with the same key make the same table of the same input.
     pub fn key(&self) -> String {
         // A new option does not compile until it is decided whether it is part of the key. `warn` is an address.
-        let Self { subdivide, cut, frame, digest, portals, method, cells, buffers, split, fast } = self;
+        let Self { subdivide, cut, frame, digest, method, cells, buffers, split, fast } = self;
         let BufferOptions { measure, planes, texels, occluders, carry, sheets, line_space, backend, warn: _ } = buffers;
         let buffers = (measure, planes, texels, occluders, carry, sheets, line_space, backend);
-        format!("{:?}", (subdivide, cut, frame, digest, (portals, method, cells, buffers, split, fast)))
+        format!("{:?}", (subdivide, cut, frame, digest, (method, cells, buffers, split, fast)))
     }
 }

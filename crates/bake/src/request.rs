@@ -8,11 +8,10 @@ use crate::methods::{Backend, BufferOptions};
 use crate::options::{Recipe, SceneMethod};
 use crate::prepared::Prepared;
 use crate::region::CellsFrom;
-use crate::scene::PortalMode;
 use crate::subdivide::Subdivide;
 use sightlines_geometry::Aabb;
 use sightlines_kdtree::SceneOptions;
-use sightlines_multifocal::{Measure, Split};
+use sightlines_multifocal::Split;
 use sightlines_progress::{Budget, Observer, Units};
 use std::fmt;
 
@@ -44,8 +43,6 @@ pub struct BakeRequest {
     pub keep_solid: bool,
     /// K-d trees: split only along walls that cover at least this share of a cell, from 0 to 1. None: 0, every wall.
     pub tau: Option<f64>,
-    /// Scenes: which portals sightlines go through. None: the exact ones.
-    pub portals: Option<PortalMode>,
     /// Plans: how to cut. None: by the directions and groups of its walls.
     pub subdivide: Option<Subdivide>,
     /// Scenes by [`OcclusionMethod::Multifocal`](crate::methods::OcclusionMethod::Multifocal): how buffers and sheets are made.
@@ -62,8 +59,6 @@ pub struct BakeRequest {
 /// How multifocal buffers and sheets are made; none of each for the default of [`BufferOptions`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BufferRequest {
-    /// What buffers compare.
-    pub measure: Option<Measure>,
     /// Planes on each side of a cell; 0 for no buffers.
     pub planes: Option<u32>,
     /// Texels along the longer side of a plane.
@@ -82,9 +77,8 @@ impl BufferRequest {
     /// The same with every default filled in; nobody is warned.
     pub fn options(&self) -> BufferOptions {
         let standard = BufferOptions::default();
-        let Self { measure, planes, texels, occluders, carry, sheets, backend } = *self;
+        let Self { planes, texels, occluders, carry, sheets, backend } = *self;
         BufferOptions {
-            measure: measure.unwrap_or(standard.measure),
             planes: planes.unwrap_or(standard.planes),
             texels: texels.unwrap_or(standard.texels),
             occluders: occluders.unwrap_or(standard.occluders),
@@ -96,10 +90,9 @@ impl BufferRequest {
     }
 
     /// The names of all options, and whether each was named.
-    const fn named(&self) -> [(&'static str, bool); 7] {
-        let Self { measure, planes, texels, occluders, carry, sheets, backend } = self;
+    const fn named(&self) -> [(&'static str, bool); 6] {
+        let Self { planes, texels, occluders, carry, sheets, backend } = self;
         [
-            ("measure", measure.is_some()),
             ("planes", planes.is_some()),
             ("texels", texels.is_some()),
             ("occluders", occluders.is_some()),
@@ -182,7 +175,6 @@ impl BakeRequest {
             },
             frame: None,
             digest: None,
-            portals: self.portals.unwrap_or_default(),
             method: SceneMethod::Sightlines,
             cells: CellsFrom::KdTree,
             buffers: self.buffers.options(),
@@ -192,7 +184,7 @@ impl BakeRequest {
     }
 
     /// Options that mean something for scenes only, and whether each was named.
-    fn of_scenes(&self) -> [(&'static str, bool); 10] {
+    fn of_scenes(&self) -> [(&'static str, bool); 9] {
         let cells = |is: fn(&CellsFrom) -> bool| self.cells.as_ref().is_some_and(is);
         let places = match &self.cells {
             Some(CellsFrom::Places(how)) => Some(how),
@@ -203,7 +195,6 @@ impl BakeRequest {
             ("gap", self.gap != Gap::OfFile),
             ("view_region", self.view_region.is_some()),
             ("detail_below", self.detail_below.is_some()),
-            ("portals", self.portals.is_some()),
             ("max_cells", self.max_cells.is_some()),
             ("keep_solid", self.keep_solid),
             ("method", !is_auto),

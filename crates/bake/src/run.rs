@@ -10,7 +10,7 @@ use crate::quake::{PrtOptions, bake_map, bake_prt};
 use crate::region::{PackRegionsError, RegionBakeOptions, bake_regions, pack_regions};
 use crate::reports::RegionReport;
 use crate::request::{BakeRequest, Runtime};
-use crate::scene::{SceneBakeOptions, bake_scene};
+use crate::scene::{PortalMode, SceneBakeOptions, bake_scene};
 use sightlines_cells::Scene;
 use sightlines_formats::SceneInfo;
 use sightlines_packed::PackReport;
@@ -52,8 +52,7 @@ pub(crate) fn bake_here(input: BakeInput<'_>, recipe: &Recipe, runtime: &Runtime
                     Ok::<_, BakeError>(bake_regions(scene, regions)?.into_any())
                 })?
             } else {
-                let Recipe { cut, portals, .. } = *recipe;
-                let budget = Allowance::all(budget);
+                let (cut, portals, budget) = (recipe.cut, PortalMode::default(), Allowance::all(budget));
                 bake_scene(scene, &SceneBakeOptions { cut, portals, threads, file, progress, budget, units })?
                     .into_any()
             };
@@ -79,7 +78,7 @@ pub(crate) fn with_regions<T, E: From<BakeError>>(
     then: impl FnOnce(&RegionBakeOptions<'_>) -> Result<T, E>,
 ) -> Result<T, E> {
     let Runtime { threads, progress, budget, units, warn } = *runtime;
-    let Recipe { method, split, cut, portals, ref cells, .. } = *recipe;
+    let Recipe { method, split, cut, ref cells, .. } = *recipe;
     let buffers = BufferOptions { warn, ..recipe.buffers };
     buffers.check().map_err(|error| BakeError::from(MethodError::from(error)))?;
     let prepare = |method| OcclusionMethodFactory::new(method, scene, &buffers);
@@ -91,7 +90,7 @@ pub(crate) fn with_regions<T, E: From<BakeError>>(
         sightlines: method.by_sightlines(),
         split,
         cut,
-        portals,
+        portals: PortalMode::default(),
         threads,
         file,
         progress,

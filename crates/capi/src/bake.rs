@@ -62,8 +62,8 @@ pub const SL_CELLS_BOXES: u32 = 4;
 pub struct SlBakeOptions {
     /// The size of this structure, in bytes.
     pub struct_size: usize,
-    /// What decides, by the name that the program has for it: "sightlines", "auto", "both", "multifocal", "line-space", "shafts",
-    /// "voxels". Null: "auto", which measures the scene.
+    /// What decides, by the name that the program has for it: "sightlines", "auto", "both", "multifocal", "line-space", "shafts".
+    /// Null: "auto", which measures the scene.
     pub method: *const c_char,
     /// Where the cells come from: `SL_CELLS_…`.
     pub cells: u32,
@@ -245,7 +245,9 @@ impl Given<'_> {
             ("box_count", self.options.box_count != 0, SL_CELLS_BOXES),
         ] {
             if is_given && cells != kind {
-                return Err(Failure::argument(format!("{field} is for cells of kind {kind}, and these are of kind {cells}")));
+                return Err(Failure::argument(format!(
+                    "{field} is for cells of kind {kind}, and these are of kind {cells}"
+                )));
             }
         }
         let n_cells = if place_count == 0 { None } else { Some(place_count) };

@@ -1,9 +1,8 @@
 //! Multifocal buffers and sheets as arguments.
 
-use crate::named::{measure, one_of};
+use crate::named::one_of;
 use sightlines::bake::BufferRequest;
 use sightlines::bake::methods::{Backend, BufferOptions, MethodError};
-use sightlines::multifocal::Measure;
 use std::path::PathBuf;
 
 /// A from-region method that cannot be prepared for the scene of a file.
@@ -28,9 +27,6 @@ fn remedy(error: &MethodError) -> &'static str {
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "Multifocal buffers")]
 pub(crate) struct BufferArgs {
-    /// Multifocal: the measure that buffers store [default: height]
-    #[arg(long, value_name = "WHAT", value_parser = measure())]
-    measure: Option<Measure>,
     /// Multifocal: planes on each side of a cell; 0 for none [default: 9]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=256))]
     planes: Option<u32>,
@@ -55,9 +51,9 @@ pub(crate) struct BufferArgs {
 impl BufferArgs {
     /// As a request has them.
     pub(crate) fn request(&self) -> BufferRequest {
-        let Self { measure, planes, texels, occluders, no_carry, sheets, backend } = *self;
+        let Self { planes, texels, occluders, no_carry, sheets, backend } = *self;
         let carry = no_carry.then_some(false);
-        BufferRequest { measure, planes, texels, occluders, carry, sheets, backend }
+        BufferRequest { planes, texels, occluders, carry, sheets, backend }
     }
 
     /// As a method takes them. A backend that takes over is a warning.
@@ -85,9 +81,8 @@ mod tests {
     #[test]
     fn the_help_names_the_defaults() {
         let help = Program::command().render_long_help().to_string().split_whitespace().collect::<Vec<_>>().join(" ");
-        let BufferOptions { measure, planes, texels, occluders, sheets, backend, .. } = BufferOptions::default();
+        let BufferOptions { planes, texels, occluders, sheets, backend, .. } = BufferOptions::default();
         let defaults = [
-            measure.name().to_owned(),
             planes.to_string(),
             texels.to_string(),
             occluders.to_string(),

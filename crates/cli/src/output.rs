@@ -10,7 +10,7 @@ use std::path::Path;
 
 /// The version of what all commands print with `--json`. It grows when a field is removed, renamed or redefined; new fields do not
 /// change it. The report types of the commands define the fields.
-pub(crate) const JSON_VERSION: u32 = 2;
+pub(crate) const JSON_VERSION: u32 = 3;
 
 /// A result with the version of its form.
 #[derive(Serialize)]

@@ -1,6 +1,7 @@
 //! SVG and pixels to PNG.
 
-use png::{BitDepth, ColorType, Compression, Encoder, Filter};
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use image::{ExtendedColorType, ImageEncoder};
 #[cfg(feature = "png")]
 use resvg::{tiny_skia, usvg};
 
@@ -47,14 +48,14 @@ pub fn svg_to_png(svg: &str) -> Result<Vec<u8>, PngError> {
 #[cfg(feature = "png")]
 fn embedded(png: &[u8]) -> Option<usvg::ImageKind> {
     use std::fmt::Write;
-    let mut reader = png::Decoder::new(std::io::Cursor::new(png)).read_info().ok()?;
-    let mut bytes = vec![0; reader.output_buffer_size()?];
-    let info = reader.next_frame(&mut bytes).ok()?;
-    if info.color_type != ColorType::Rgb || info.bit_depth != BitDepth::Eight {
+    let image::DynamicImage::ImageRgb8(picture) =
+        image::load_from_memory_with_format(png, image::ImageFormat::Png).ok()?
+    else {
         return None;
-    }
+    };
+    let (width, height) = picture.dimensions();
     let mut paths: std::collections::BTreeMap<[u8; 3], String> = std::collections::BTreeMap::new();
-    for (y, row) in bytes.chunks_exact(3 * info.width as usize).enumerate() {
+    for (y, row) in picture.as_raw().chunks_exact(3 * width as usize).enumerate() {
         let (pixels, _) = row.as_chunks::<3>();
         let mut x = 0;
         for run in pixels.chunk_by(|a, b| a == b) {
@@ -62,7 +63,6 @@ fn embedded(png: &[u8]) -> Option<usvg::ImageKind> {
             x += run.len();
         }
     }
-    let (width, height) = (info.width, info.height);
     let mut svg = format!("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\">");
     for ([r, g, b], path) in paths {
         let _ = write!(svg, "<path shape-rendering=\"crispEdges\" fill=\"#{r:02x}{g:02x}{b:02x}\" d=\"{path}\"/>");
@@ -82,53 +82,41 @@ pub(crate) enum Pixels {
 
 /// Encodes pixels, row by row from the upper left corner.
 pub(crate) fn encode_pixels(size: [u32; 2], pixels: &[u8], kind: Pixels) -> Result<Vec<u8>, PngError> {
-    encode(size, pixels, kind, Compression::Fast)
+    encode(size, pixels, kind, CompressionType::Fast)
 }
 
 /// The same in fewer bytes, and more slowly.
 pub(crate) fn encode_small(size: [u32; 2], pixels: &[u8], kind: Pixels) -> Result<Vec<u8>, PngError> {
-    encode(size, pixels, kind, Compression::Balanced)
+    encode(size, pixels, kind, CompressionType::Default)
 }
 
 fn encode(
     [width, height]: [u32; 2],
     pixels: &[u8],
     kind: Pixels,
-    compression: Compression,
+    compression: CompressionType,
 ) -> Result<Vec<u8>, PngError> {
     if pixels.is_empty() {
         return Err(PngError::Size { width, height });
     }
+    let colour = match kind {
+        Pixels::Rgb => ExtendedColorType::Rgb8,
+        Pixels::Rgba => ExtendedColorType::Rgba8,
+        Pixels::Grey => ExtendedColorType::L8,
+    };
     let mut png = Vec::new();
-    let mut encoder = Encoder::new(&mut png, width, height);
-    encoder.set_color(match kind {
-        Pixels::Rgb => ColorType::Rgb,
-        Pixels::Rgba => ColorType::Rgba,
-        Pixels::Grey => ColorType::Grayscale,
-    });
-    encoder.set_depth(BitDepth::Eight);
-    encoder.set_compression(compression);
-    encoder.set_filter(Filter::Adaptive);
-    let encoded = encoder.write_header().and_then(|mut writer| {
-        writer.write_image_data(pixels)?;
-        writer.finish()
-    });
+    let encoder = PngEncoder::new_with_quality(&mut png, compression, FilterType::Adaptive);
+    let encoded = encoder.write_image(pixels, width, height, colour);
     encoded.map(|()| png).map_err(|error| PngError::Encode(error.into()))
 }
 
 /// Size and pixels of an RGB or grey picture, for tests.
 #[cfg(test)]
 pub(crate) fn decoded(png: &[u8]) -> ([u32; 2], Vec<[u8; 3]>) {
-    let mut reader = png::Decoder::new(std::io::Cursor::new(png)).read_info().unwrap();
-    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
-    let info = reader.next_frame(&mut bytes).unwrap();
-    assert_eq!(info.bit_depth, BitDepth::Eight);
-    let pixels = match info.color_type {
-        ColorType::Rgb => bytes.chunks_exact(3).map(|p| [p[0], p[1], p[2]]).collect(),
-        ColorType::Grayscale => bytes.iter().map(|&grey| [grey; 3]).collect(),
-        other => panic!("{other:?}"),
-    };
-    ([info.width, info.height], pixels)
+    let picture = image::load_from_memory_with_format(png, image::ImageFormat::Png).unwrap();
+    assert!(matches!(picture, image::DynamicImage::ImageRgb8(_) | image::DynamicImage::ImageLuma8(_)), "{picture:?}");
+    let pixels = picture.to_rgb8().pixels().map(|pixel| pixel.0).collect();
+    ([picture.width(), picture.height()], pixels)
 }
 
 #[cfg(all(test, feature = "png"))]

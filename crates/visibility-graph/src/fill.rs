@@ -47,6 +47,94 @@ impl Grid {
     }
 }
 
+/// The points inside a building, found without a seed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Interior {
+    /// The points, up the columns, from left to right.
+    pub points: Points,
+    /// Whether walls enclose them. If not, such as where an outer door stands open, they are those around which walls stand.
+    pub is_enclosed: bool,
+}
+
+impl Grid {
+    /// The points inside, for a plan whose interior nobody points out: all that are [enclosed](Self::enclosed), or, where what the walls
+    /// enclose is not the largest part of what they surround, that part.
+    ///
+    /// A pixel is surrounded if walls lie in at least seven of its eight directions, and a part is what steps between surrounded pixels
+    /// reach. So the rooms of a building with an open outer door are found, and not the insides of its walls. Of parts that are
+    /// equally large the first counts.
+    ///
+    /// # Errors
+    /// [`GridError::NothingEnclosed`] if no pixel is surrounded.
+    ///
+    /// # Cost
+    /// O(pixels · walls that touch a pixel).
+    pub fn interior(&self) -> Result<Interior, GridError> {
+        let (enclosed, surrounded) = (enclosed(self), surrounded(self));
+        let largest = largest_part(self, &surrounded).ok_or(GridError::NothingEnclosed)?;
+        let is_enclosed = largest.iter().zip(&enclosed).all(|(is_inside, is_enclosed)| !is_inside || *is_enclosed);
+        Ok(Interior { points: self.points(if is_enclosed { &enclosed } else { &largest }), is_enclosed })
+    }
+}
+
+/// The pixels that have walls in at least seven of eight directions, and their centre on no wall.
+fn surrounded(grid: &Grid) -> Vec<bool> {
+    let [n_columns, n_rows] = grid.size();
+    let mut n_blocked = vec![0u8; n_columns * n_rows];
+    let along = |n: usize, by: i64| (0..n as i64).map(move |k| if by > 0 { n as i64 - 1 - k } else { k });
+    for [by_column, by_row] in (-1..=1).flat_map(|x| [-1, 0, 1].map(|y| [x, y])).filter(|by| *by != [0, 0]) {
+        // Pixels farther along come first.
+        let mut is_blocked = vec![false; n_blocked.len()];
+        for column in along(n_columns, by_column) {
+            for row in along(n_rows, by_row) {
+                let pixel = Pixel { column: column as u32, row: row as u32 };
+                let (next_column, next_row) = (column + by_column, row + by_row);
+                let is_within = (0..n_columns as i64).contains(&next_column) && (0..n_rows as i64).contains(&next_row);
+                let at = grid.index(pixel);
+                is_blocked[at] = if is_within {
+                    let next = Pixel { column: next_column as u32, row: next_row as u32 };
+                    is_blocked[grid.index(next)] || !is_step(grid, pixel, next)
+                } else {
+                    let step = Segment2::new(grid.centre(pixel), grid.centre_of([next_column as f64, next_row as f64]));
+                    grid.walls_of(pixel).any(|wall| wall.meets(&step))
+                };
+                n_blocked[at] += u8::from(is_blocked[at]);
+            }
+        }
+    }
+    let is_surrounded = |(k, n): (usize, &u8)| {
+        let pixel = grid.pixel(k);
+        *n >= 7 && !grid.walls_of(pixel).any(|wall| wall.contains(grid.centre(pixel)))
+    };
+    n_blocked.iter().enumerate().map(is_surrounded).collect()
+}
+
+/// The largest part of some pixels that steps between them join; `None` of none.
+fn largest_part(grid: &Grid, of: &[bool]) -> Option<Vec<bool>> {
+    let mut part_of = vec![0u32; of.len()];
+    let mut sizes = Vec::new();
+    for first in (0..of.len()).filter(|&k| of[k]) {
+        if part_of[first] != 0 {
+            continue;
+        }
+        let (part, mut size, mut next) = (sizes.len() as u32 + 1, 0usize, vec![grid.pixel(first)]);
+        part_of[first] = part;
+        while let Some(pixel) = next.pop() {
+            size += 1;
+            for neighbour in neighbours(grid, pixel) {
+                let at = grid.index(neighbour);
+                if of[at] && part_of[at] == 0 && is_step(grid, pixel, neighbour) {
+                    part_of[at] = part;
+                    next.push(neighbour);
+                }
+            }
+        }
+        sizes.push(size);
+    }
+    let (largest, _) = sizes.iter().enumerate().max_by_key(|(part, size)| (**size, std::cmp::Reverse(*part)))?;
+    Some(part_of.iter().map(|part| *part as usize == largest + 1).collect())
+}
+
 /// The pixels that are reached from some, as a list for all pixels.
 fn from_seeds(grid: &Grid, seeds: &[Pixel]) -> Vec<bool> {
     let [n_columns, n_rows] = grid.size();

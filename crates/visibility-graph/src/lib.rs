@@ -24,6 +24,7 @@ mod search;
 mod work;
 
 pub use analysis::{Analysis, AnalysisOptions, Group, Measure};
+pub use fill::Interior;
 pub use global::GlobalMeasures;
 pub use graph::{GraphError, VisibilityGraph};
 pub use grid::{Grid, GridError, MOST_PIXELS, Pixel};

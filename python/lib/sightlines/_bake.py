@@ -44,7 +44,7 @@ def bake(
     :param cells: where viewers can be. None: chosen by the scene. ``"kd-tree"``: boxes along the walls, with portals. A number: so many
         boxes, cut where views differ. Three numbers: a grid. An array (n, 2, 3): these boxes
     :param method: what decides. None: chosen by the scene, as ``"auto"`` does. Otherwise ``"sightlines"``, ``"auto"``,
-        ``"both"``, ``"multifocal"``, ``"line-space"``, ``"shafts"``, ``"voxels"``
+        ``"both"``, ``"multifocal"``, ``"line-space"``, ``"shafts"``
     :param view_region: a box (2, 3) in which viewers are; rooms that cannot be reached from it are no cells. None: the box around the view
         volumes of the file, if it states any, else everywhere
     :param gap: how precise coordinates are, in scene units: openings that are narrower may count as closed. None: as precise as

@@ -102,6 +102,9 @@ def plot_table(
     if line is not None and line.line is not None:
         ax.plot(*line.line[:, across].T, "k-", linewidth=1.0)
     ax.autoscale_view()
+    # From above, x to the right and z down are as they stand; with z up the picture would be a mirror image.
+    if axis == 1 and not ax.yaxis_inverted():
+        ax.invert_yaxis()
     return ax
 
 

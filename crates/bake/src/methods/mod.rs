@@ -8,7 +8,6 @@ mod backend;
 mod buffers;
 mod line_space;
 mod shafts;
-mod voxels;
 
 pub use backend::{Backend, NotBuiltIn, OpenBackend, ParseBackendError};
 pub use buffers::{BufferOptions, BuffersTooLarge};
@@ -29,8 +28,6 @@ pub enum OcclusionMethod {
     Shafts,
     /// Line space subdivided, and chains of triangles in any direction.
     LineSpace,
-    /// Voxels inside closed surfaces, extended to blockers.
-    Voxels,
 }
 
 /// Prepares a method for a scene.
@@ -51,14 +48,13 @@ trait Prepared: Send + Sync {
 
 impl OcclusionMethod {
     /// All methods.
-    pub const ALL: [Self; 4] = [Self::Multifocal, Self::LineSpace, Self::Shafts, Self::Voxels];
+    pub const ALL: [Self; 3] = [Self::Multifocal, Self::LineSpace, Self::Shafts];
 
     const fn entry(self) -> Entry {
         match self {
             Self::Multifocal => buffers::ENTRY,
             Self::LineSpace => line_space::ENTRY,
             Self::Shafts => shafts::ENTRY,
-            Self::Voxels => voxels::ENTRY,
         }
     }
 
@@ -107,7 +103,7 @@ pub enum MethodError {
 
 /// A method prepared for a scene; it makes one instance for each thread.
 ///
-/// What instances share (occluders, sheets, voxels, an open device) is computed once, here.
+/// What instances share (occluders, sheets, an open device) is computed once, here.
 pub struct OcclusionMethodFactory {
     method: OcclusionMethod,
     prepared: Box<dyn Prepared>,

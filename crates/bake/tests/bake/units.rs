@@ -63,7 +63,7 @@ fn cells_by_from_region_methods() {
     let blocks = [3, 3];
     let scene = city_of_boxes(blocks);
     let small = BufferRequest { planes: Some(2), texels: Some(32), ..BufferRequest::default() };
-    for method in [OcclusionMethod::Multifocal, OcclusionMethod::Voxels] {
+    for method in [OcclusionMethod::Multifocal, OcclusionMethod::Shafts] {
         let options = BakeRequest {
             method: Some(SceneMethod::FromRegion(method)),
             cells: Some(streets(blocks, &[0.0, 8.0, 16.0])),
@@ -262,7 +262,7 @@ fn check_proofs(baked: &Baked<TableGraph, Report>, bytes: &[u8]) {
 #[test]
 fn rows_one_by_one_make_the_same_packed_table() {
     let (scene, cells) = (city_of_boxes([3, 3]), streets([3, 3], &[0.0, 8.0, 16.0, 24.0]));
-    let factory = OcclusionMethodFactory::new(OcclusionMethod::Voxels, &scene, &BufferOptions::default()).unwrap();
+    let factory = OcclusionMethodFactory::new(OcclusionMethod::Shafts, &scene, &BufferOptions::default()).unwrap();
     let make = || factory.instance();
     let options = RegionBakeOptions { method: Some(&make), sightlines: false, ..RegionBakeOptions::new(&cells) };
     let table = bake_regions(&scene, &options).unwrap().table;

@@ -7,7 +7,7 @@ use crate::common::{Folder, levels, one_floor};
 use serde_json::json;
 use sightlines::bake::places::PlaceOptions;
 use sightlines::bake::{
-    BakeInput, BakeRequest, Bakeable, BufferRequest, CellsFrom, Gap, PortalMode, Runtime, SceneMethod, Subdivide, bake,
+    BakeInput, BakeRequest, Bakeable, BufferRequest, CellsFrom, Gap, Runtime, SceneMethod, Subdivide, bake,
 };
 use sightlines::cells::{Plan, Scene, SceneObject};
 use sightlines::formats::scene::{parse_glb, write_glb};
@@ -140,7 +140,7 @@ fn options() -> Vec<(&'static str, BakeRequest)> {
     let walls_alone = BufferRequest { sheets: Some(0), carry: Some(false), occluders: Some(20), ..small };
     let view_region = Some(Aabb { min: [1.0, 0.5, 1.0], max: [9.0, 2.5, 9.0] });
     let split = Some(Split { depth: 1, ..Split::default() });
-    let (tau, portals) = (Some(0.5), Some(PortalMode::Bounding));
+    let tau = Some(0.5);
     vec![
         ("--n-cells 12", few()),
         ("--cell-size 4", BakeRequest { cells: places(None, Some(4.0)), ..plain() }),
@@ -162,7 +162,6 @@ fn options() -> Vec<(&'static str, BakeRequest)> {
         ("--n-cells 12 --gap 0", BakeRequest { gap: Gap::Width(0.0), ..few() }),
         ("--method sightlines --detail-below 0.5", BakeRequest { detail_below: Some(0.5), ..sightlines() }),
         ("--method sightlines --keep-solid --tau 0.5", BakeRequest { keep_solid: true, tau, ..sightlines() }),
-        ("--method sightlines --portals bounding", BakeRequest { portals, ..sightlines() }),
         ("--n-cells 12 --max-cells 40", BakeRequest { max_cells: Some(40), ..few() }),
     ]
 }

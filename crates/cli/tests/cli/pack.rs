@@ -147,7 +147,7 @@ fn tables_are_built_packed() {
     folder.run(&["unpack", "built.PVZ", "-o", "back.pvs"]).expect(0);
     assert!(folder.read("back.pvs") == folder.read("a.pvs"));
     // Row by row.
-    let how = ["--method", "voxels", "--grid", "3,2,3"];
+    let how = ["--method", "shafts", "--grid", "3,2,3"];
     folder.run(&[&["build", "a.glb", "-o", "b.pvs"][..], &how].concat()).expect(0);
     folder.run(&["pack", "b.pvs", "-o", "packed.pvz", "--class", "large"]).expect(0);
     folder.run(&[&["build", "a.glb", "-o", "rows.pvz", "--class", "large"][..], &how].concat()).expect(0);

@@ -29,7 +29,7 @@ fn names_of_given_cells_are_in_the_export_and_every_method_runs() {
     ]});
     folder.write("cells.json", cells.to_string());
     let mut counts = Vec::new();
-    for method in ["sightlines", "multifocal", "both", "shafts", "voxels"] {
+    for method in ["sightlines", "multifocal", "both", "shafts", "line-space"] {
         let args = ["build", "scene.glb", "--method", method, "--cells", "cells.json", "-o", "t.pvs", "--json"];
         let reply = folder.run(&args).expect(0).json();
         assert_eq!((&reply["n_cells"], &reply["subdivide"]), (&json!(2), &json!("boxes")), "{reply}");

@@ -88,7 +88,7 @@ fn generated_scenes_give_the_same_bytes() {
     exported(&folder, "generated/office/plan", "office/plan.pvs", &mut found);
     exported(&folder, "generated/tower/tower", "tower/tower.pvs", &mut found);
     table(&folder, "generated/office-kd", "office/plan.geojson", &["--subdivide", "kd"], &mut found);
-    for method in ["multifocal", "both", "shafts", "voxels"] {
+    for method in ["multifocal", "both", "shafts"] {
         let options = ["--method", method, "--grid", "2,2,1"];
         table(&folder, &format!("generated/tower-{method}"), "tower/tower.glb", &options, &mut found);
     }

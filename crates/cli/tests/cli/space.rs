@@ -65,14 +65,10 @@ fn build_is_deterministic_and_options_matter() {
         table(&folder, "out.pvs")
     };
     let plain = table(&folder, "tower.pvs");
-    let same = ["--threads", "1", "--portals", "exact", "--tau", "0"];
+    let same = ["--threads", "1", "--method", "sightlines", "--tau", "0"];
     assert_eq!(build(&same), plain);
     assert_eq!(build(&["--threads", "2"]), plain);
     assert_eq!((plain.info_value("up"), plain.info_value("unit")), (Some("y"), Some("metre")));
-    let bounding = build(&["--portals", "bounding"]);
-    assert_eq!((bounding.n_cells(), bounding.info_value("portals")), (plain.n_cells(), Some("bounding")));
-    let ids = || (0..plain.n_cells() as u32).map(CellId);
-    assert!(ids().all(|a| plain.visible(a).all(|b| bounding.sees(a, b))));
     assert!(build(&["--tau", "0.6"]).n_cells() < plain.n_cells());
     let fine = build(&["--detail-below", "0"]);
     assert!(fine.info_value("detail-below") == Some("0") && fine.n_cells() >= plain.n_cells());
@@ -118,7 +114,6 @@ fn options_without_meaning_are_refused() {
             &["plan.geojson", "--detail-below", "1"],
             "plan.geojson: --detail-below is for scenes in space, and this is a plan",
         ),
-        (&["plan.geojson", "--portals", "exact"], "plan.geojson: --portals is for scenes in space, and this is a plan"),
         (&["plan.geojson", "--max-cells", "9"], "plan.geojson: --max-cells is for scenes in space, and this is a plan"),
         (
             &["plan.geojson", "--view-region", "0,0,0,1,1,1"],
@@ -131,7 +126,7 @@ fn options_without_meaning_are_refused() {
         let run = folder.run(&["build", "tower.glb", "-o", "out.pvs", "--view-region", region]).expect(2);
         assert!(run.err.contains("--view-region"), "{region}: {}", run.err);
     }
-    for option in [["--detail-below", "-1"], ["--detail-below", "inf"], ["--max-cells", "0"], ["--portals", "loose"]] {
+    for option in [["--detail-below", "-1"], ["--detail-below", "inf"], ["--max-cells", "0"]] {
         folder.run(&[&["build", "tower.glb", "-o", "out.pvs"][..], &option].concat()).expect(2);
     }
     assert!(!folder.path("out.pvs").exists());
@@ -273,7 +268,7 @@ fn explanations_in_space_are_drawn() {
 #[test]
 fn explain_agrees_with_tables_in_space() {
     let folder = Folder::with_tower();
-    folder.run(&["build", "tower.glb", "-o", "loose.pvs", "--portals", "bounding"]).expect(0);
+    folder.run(&["build", "tower.glb", "-o", "loose.pvs", "--tau", "0.6"]).expect(0);
     let (mut n_seen, mut n_hidden) = (0, 0);
     for (name, step) in [("tower.pvs", 7), ("loose.pvs", 13)] {
         let made = table(&folder, name);

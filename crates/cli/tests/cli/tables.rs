@@ -111,7 +111,7 @@ fn points_may_begin_with_a_minus() {
         (&Value::Null, &json!([]), &json!([-1.5, -2.0]))
     );
     let outside = folder.run(&["explain", "office.pvs", "-1,-2", "0", "--json"]).expect(1).json();
-    assert_eq!(outside, json!({"version": 2, "answer": "outside", "place": "point (-1, -2)"}));
+    assert_eq!(outside, json!({"version": 3, "answer": "outside", "place": "point (-1, -2)"}));
     // Inside, too: a room around the origin.
     folder.write("room.geojson", r#"{"type":"LineString","coordinates":[[-2,-2],[2,-2],[2,2],[-2,2],[-2,-2]]}"#);
     folder.run(&["build", "room.geojson", "-o", "room.pvs"]).expect(0);

@@ -1,13 +1,10 @@
 use super::*;
-use std::io::Cursor;
 
 /// Size and pixels with their transparency.
 fn decoded(png: &[u8]) -> ([u32; 2], Vec<[u8; 4]>) {
-    let mut reader = ::png::Decoder::new(Cursor::new(png)).read_info().unwrap();
-    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
-    let info = reader.next_frame(&mut bytes).unwrap();
-    assert_eq!(info.color_type, ::png::ColorType::Rgba);
-    ([info.width, info.height], bytes.chunks_exact(4).map(|p| [p[0], p[1], p[2], p[3]]).collect())
+    let picture = image::load_from_memory_with_format(png, image::ImageFormat::Png).unwrap();
+    let picture = picture.as_rgba8().unwrap();
+    ([picture.width(), picture.height()], picture.pixels().map(|pixel| pixel.0).collect())
 }
 
 /// Six squares of 10 by 10, the middle one below without a value, in a box.

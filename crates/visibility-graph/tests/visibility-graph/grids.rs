@@ -161,3 +161,46 @@ fn slanted_walls_are_closed() {
     let all = open.fill(&[at(50.0, 20.0)]).unwrap().len();
     assert!(all >= low.len() + high.len(), "{all}");
 }
+
+/// A building with walls drawn by their outlines, one unit thick, and with an open door or without.
+fn thick_walled(has_door: bool) -> Plan {
+    let ring = |low: f64, [width, height]: [f64; 2]| {
+        let [right, top] = [width - low, height - low];
+        [[low, low, low, top], [low, top, right, top], [right, top, right, low]]
+    };
+    let mut walls = [ring(0.0, [20.0, 12.0]), ring(1.0, [20.0, 12.0])].concat();
+    // Below, with the door from 8 to 10.
+    for (y, from, to) in [(0.0, 0.0, 20.0), (1.0, 1.0, 19.0)] {
+        if has_door {
+            walls.extend([[from, y, 8.0, y], [10.0, y, to, y]]);
+        } else {
+            walls.push([from, y, to, y]);
+        }
+    }
+    if has_door {
+        walls.extend([[8.0, 0.0, 8.0, 1.0], [10.0, 0.0, 10.0, 1.0]]);
+    }
+    walls.push([12.0, 4.0, 12.0, 11.0]);
+    let point = |x: f64, y: f64| Point2::new(x, y);
+    Plan::from_walls(walls.into_iter().map(|[ax, ay, bx, by]| (point(ax, ay), point(bx, by)))).unwrap()
+}
+
+#[test]
+fn the_interior_of_a_building_with_an_open_door_is_found() {
+    let is_in_room = |p: &Point2| (1.0..=19.0).contains(&p.x) && (1.0..=11.0).contains(&p.y);
+    let closed = Grid::over(&thick_walled(false), 0.5).unwrap();
+    let interior = closed.interior().unwrap();
+    assert!(interior.is_enclosed && interior.points == closed.enclosed().unwrap());
+    let open = Grid::over(&thick_walled(true), 0.5).unwrap();
+    let interior = open.interior().unwrap();
+    let n_in_rooms = closed.enclosed().unwrap().coordinates().iter().filter(|p| is_in_room(p)).count();
+    let found = interior.points.coordinates();
+    let n_found = found.iter().filter(|p| is_in_room(p)).count();
+    assert!(!interior.is_enclosed && n_in_rooms > 600, "{n_in_rooms}");
+    // What sees out through the door in two directions is left out, and the doorway is not.
+    assert!(n_found > n_in_rooms * 9 / 10 && found.len() - n_found <= 8, "{n_found} of {n_in_rooms}, {}", found.len());
+    // The impostor: what is enclosed is the insides of the walls alone.
+    assert!(open.enclosed().unwrap().coordinates().iter().all(|p| !is_in_room(p)));
+    let wall = Plan::from_walls([(Point2::new(0.0, 0.0), Point2::new(5.0, 3.0))]).unwrap();
+    assert_eq!(Grid::over(&wall, 1.0).unwrap().interior().unwrap_err(), GridError::NothingEnclosed);
+}

@@ -19,7 +19,7 @@ fn a_gap_that_is_too_wide_is_noticed() {
     let eye = turn(&rows, [0.5, 1.6, 0.5]);
     let detail = |gap| {
         let mut options = with(Gap::Width(gap));
-        options.cut.detail_below = Some(0.0);
+        options.detail_below = Some(0.0);
         options
     };
     let scene = turned(&slit(0.25), &rows);
@@ -45,7 +45,7 @@ fn a_gap_that_is_too_wide_is_noticed() {
 fn a_frame_that_is_forgotten_hides_what_is_seen() {
     let rows = rotation(-17.0, 0.0);
     let mut options = with(Gap::Width(1e-4));
-    options.cut.detail_below = Some(0.0);
+    options.detail_below = Some(0.0);
     let table = bake(&turned(&slit(0.0), &rows), &options).unwrap().table;
     let eye = turn(&rows, [6.55, 1.6, 1.0]);
     assert!(sees_east(&table, eye) && !table.place_at(eye).is_outside());
@@ -58,7 +58,7 @@ fn cracks_are_counted_apart() {
     let rows = rotation(20.0, 0.0);
     let detail = |gap| {
         let mut options = with(Gap::Width(gap));
-        options.cut.detail_below = Some(0.0);
+        options.detail_below = Some(0.0);
         options
     };
     let remarks = |width: f64, gap: f64| {

@@ -312,7 +312,7 @@ impl Outcome {
                 Self::Plan(plan::Outcome::new(out, map.map(|name| name.to_string()), table, did))
             }
             (Bakeable::Scene(file), Report::Scene(did)) => {
-                Self::Scene(Box::new(space::Outcome::new(out, file, recipe.portals, table, did)))
+                Self::Scene(Box::new(space::Outcome::new(out, file, table, did)))
             }
             (Bakeable::Scene(file), Report::Regions(did)) => {
                 Self::Regions(Box::new(region::Outcome::new(out, file, recipe.has_given_cells(), table, did)))

@@ -1,9 +1,8 @@
 //! How to bake, as arguments. Options that mean nothing for what is baked are refused, not ignored.
 
-use crate::named::one_of;
 use crate::numbers::{share, size};
 use crate::region::Region;
-use sightlines::bake::{BakeRequest, Gap, PortalMode, Subdivide};
+use sightlines::bake::{BakeRequest, Gap, Subdivide};
 
 /// How to bake.
 #[derive(Debug, Clone, Default, clap::Args)]
@@ -22,10 +21,6 @@ pub(crate) struct BakeArgs {
     /// [default: chosen from the scene]
     #[arg(long, help_heading = "Cells", value_name = "SIZE", value_parser = size, allow_hyphen_values = true)]
     detail_below: Option<f64>,
-    /// Scenes in space only: look through the exact openings between cells, which is the default, or
-    /// through one rectangle around each, which shows more
-    #[arg(long, help_heading = "Method", value_name = "HOW", value_parser = one_of(&PortalMode::ALL, PortalMode::name, |_| ""))]
-    portals: Option<PortalMode>,
     /// Scenes in space: how precise coordinates are, in scene units. Walls within WIDTH/2 of a plane across an axis of the building,
     /// which may be turned in its file, are taken to lie in it. Errs towards hidden by no more than that: openings narrower than WIDTH may count as
     /// closed, and what is thinner as hidden. 0 takes every coordinate as it is, and does not err so [default: for glTF what single
@@ -49,14 +44,12 @@ pub(crate) struct BakeArgs {
 impl BakeArgs {
     /// These arguments as a request; all others are not named.
     pub(super) fn request(&self) -> BakeRequest {
-        let Self { subdivide, tau, view_region, detail_below, portals, gap, max_cells, keep_solid, fast, threads: _ } =
-            *self;
+        let Self { subdivide, tau, view_region, detail_below, gap, max_cells, keep_solid, fast, threads: _ } = *self;
         BakeRequest {
             subdivide,
             tau,
             view_region: view_region.map(|region| region.0),
             detail_below,
-            portals,
             gap: gap.map_or(Gap::OfFile, Gap::Width),
             max_cells,
             keep_solid,

@@ -5,7 +5,7 @@ use super::limit::{Undecided, brief};
 use crate::facts::{Facts, Stated, times};
 use crate::output::{bytes, count, percent};
 use serde::Serialize;
-use sightlines::bake::{DoorPortals, PortalMode, SceneReport};
+use sightlines::bake::{DoorPortals, SceneReport};
 use sightlines::cells::{Scene, SceneObject};
 use sightlines::formats::SceneFile;
 use sightlines::pvs::Table;
@@ -49,8 +49,6 @@ pub(crate) struct Outcome {
     #[serde(flatten)]
     stated: Stated,
     subdivide: &'static str,
-    /// Which portals were looked through: `exact` or `bounding`.
-    portals: &'static str,
     n_triangles: usize,
     n_axial_triangles: usize,
     /// Triangles that hide nothing, because they are not perpendicular to an axis.
@@ -93,14 +91,13 @@ pub(crate) struct Outcome {
 }
 
 impl Outcome {
-    pub(crate) fn new(out: &Path, file: &SceneFile, portals: PortalMode, table: &Table, report: &SceneReport) -> Self {
+    pub(crate) fn new(out: &Path, file: &SceneFile, table: &Table, report: &SceneReport) -> Self {
         let (cut, did) = (&report.cut, &report.counters);
         let triangles: Vec<u64> = file.scene.objects().iter().map(|o| o.triangles.len() as u64).collect();
         Self {
             out: out.display().to_string(),
             stated: Stated::new(&file.info),
             subdivide: "kd",
-            portals: if portals == PortalMode::Bounding { "bounding" } else { "exact" },
             n_triangles: file.info.n_triangles,
             n_axial_triangles: cut.n_axial_triangles,
             n_other_triangles: cut.n_other_triangles,
@@ -130,11 +127,10 @@ impl Outcome {
     pub(super) fn brief(&self) -> Brief {
         let objects = count(self.table.n_objects as u64, "object");
         let [walls, triangles] = [self.n_axial_triangles, self.n_triangles];
-        let openings = if self.portals == "exact" { "" } else { " of rectangles around portals" };
         Brief {
             kind: "scene",
             taken: format!("{}: {objects}, {walls} of {triangles} triangles hide", self.stated),
-            method: format!("sightlines{openings}"),
+            method: "sightlines".to_owned(),
             cells: of_cells(self.table.n_cells, "cell", self.table.n_portals) + " along walls",
             out: self.out.clone(),
             n_bytes: self.table.n_bytes,
@@ -171,8 +167,7 @@ impl fmt::Display for SpaceFacts<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let o = self.0;
         writeln!(f, "scene          {}", o.stated)?;
-        let openings = if o.portals == "exact" { "exact portals" } else { "rectangles around portals" };
-        writeln!(f, "method         a k-d tree in space, exact axial stabbing of {openings}")?;
+        writeln!(f, "method         a k-d tree in space, exact axial stabbing of exact portals")?;
         let [n, axial, others] = [o.n_triangles, o.n_axial_triangles, o.n_other_triangles];
         writeln!(f, "triangles      {n}: {axial} axis-aligned, {others} others that hide nothing")?;
         if o.n_degenerate_triangles > 0 {

@@ -8,7 +8,7 @@ use crate::glb::save_glb;
 use crate::output::{self, bytes, percent};
 use crate::picture::{self, PictureError, PictureKind, save_picture};
 use serde::Serialize;
-use sightlines::bake::{BakeRequest, PortalMode, Report};
+use sightlines::bake::{BakeRequest, Report};
 use sightlines::formats::scene::read_scene;
 use sightlines::pvs::{CellId, Table};
 use sightlines::report::{IsometricOptions, SliceOptions, View, isometric_svg, slice_svg};
@@ -41,7 +41,7 @@ pub(super) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer, Error>
     let Report::Scene(report) = &baked.report else { unreachable!("a scene was baked by sightlines") };
     let demo = Demo {
         n_floors: options.floors,
-        built: space::Outcome::new(&table_path, &file, PortalMode::default(), &baked.table, report),
+        built: space::Outcome::new(&table_path, &file, &baked.table, report),
         done: Done::new(args, start, files),
     };
     output::print(args.json, &demo)?;

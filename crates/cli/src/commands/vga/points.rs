@@ -1,18 +1,29 @@
 //! Which points there are.
 
 use super::error::Error;
+use crate::output::count;
 use sightlines::cells::Plan;
 use sightlines::formats::points::read_points;
 use sightlines::geometry::Point2;
-use sightlines::visibility_graph::{Grid, GridError, Points};
+use sightlines::visibility_graph::{Grid, GridError, Interior, Points};
 use std::path::Path;
 
-/// The points of a grid over a plan: those that seeds reach or, without seeds, all that are enclosed; and the grid's columns and rows.
+/// The points of a grid over a plan: those that seeds reach or, without seeds, the interior; and the grid's columns and rows.
 pub(super) fn of_grid(path: &Path, plan: &Plan, spacing: f64, seeds: &[Point2]) -> Result<(Points, [usize; 2]), Error> {
     let failed = |source: GridError| Error::Grid { path: path.to_owned(), source };
     let grid = Grid::over(plan, spacing).map_err(failed)?;
-    let points = if seeds.is_empty() { grid.enclosed() } else { grid.fill(seeds) };
-    Ok((points.map_err(failed)?, grid.size()))
+    if !seeds.is_empty() {
+        return Ok((grid.fill(seeds).map_err(failed)?, grid.size()));
+    }
+    let Interior { points, is_enclosed } = grid.interior().map_err(failed)?;
+    if !is_enclosed {
+        let n = count(points.len() as u64, "point");
+        tracing::warn!(
+            "{}: walls leave gaps to the outside: {n} with walls around are taken; name a --seed for others",
+            path.display()
+        );
+    }
+    Ok((points, grid.size()))
 }
 
 /// The points of a file.

@@ -1,6 +1,6 @@
 //! Pictures that the program wrote.
 
-use png::{BitDepth, ColorType, Decoder};
+use image::{DynamicImage, ImageFormat};
 
 /// How the names of pictures of tables end, in the richest kind that this build of the program writes.
 pub(crate) const DRAWN: &str = if cfg!(feature = "png") { "png" } else { "svg" };
@@ -20,17 +20,14 @@ pub(crate) struct Picture {
 impl Picture {
     /// The picture in an RGB, RGBA or grey PNG of eight bits.
     pub(crate) fn decode(png: &[u8]) -> Self {
-        let mut reader = Decoder::new(std::io::Cursor::new(png)).read_info().expect("a PNG");
-        let mut bytes = vec![0; reader.output_buffer_size().expect("a picture that fits into memory")];
-        let info = reader.next_frame(&mut bytes).expect("a picture");
-        assert_eq!(info.bit_depth, BitDepth::Eight);
-        let pixels = match info.color_type {
-            ColorType::Rgb => bytes.chunks_exact(3).map(|p| [p[0], p[1], p[2]]).collect(),
-            ColorType::Rgba => bytes.chunks_exact(4).map(|p| [p[0], p[1], p[2]]).collect(),
-            ColorType::Grayscale => bytes.iter().map(|&grey| [grey; 3]).collect(),
-            other => panic!("{other:?}"),
-        };
-        Self { size: [info.width, info.height], pixels }
+        let picture = image::load_from_memory_with_format(png, ImageFormat::Png).expect("a PNG");
+        assert!(
+            matches!(picture, DynamicImage::ImageRgb8(_) | DynamicImage::ImageRgba8(_) | DynamicImage::ImageLuma8(_)),
+            "{:?}",
+            picture.color()
+        );
+        let size = [picture.width(), picture.height()];
+        Self { size, pixels: picture.to_rgb8().pixels().map(|pixel| pixel.0).collect() }
     }
 
     /// How many pixels differ from those of another picture; all, if the size does.

@@ -148,7 +148,7 @@ fn differences(page: &str, results: &[(&str, Value)]) -> Vec<String> {
         let (mut seen, mut wrong) = (BTreeSet::new(), BTreeSet::new());
         for value in of_name() {
             compare(section, value, "", &mut seen, &mut wrong);
-            if value["version"] != 2 {
+            if value["version"] != 3 {
                 wrong.insert("the version is not 1".to_owned());
             }
         }
