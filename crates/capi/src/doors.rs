@@ -1,14 +1,15 @@
 //! Doors by name, portals in a box, and where objects are in the file that a table was made of.
 
 use crate::border;
-use crate::eye::Viewer;
 use crate::info::{SlBox, below};
 use crate::query::put_ids;
 use crate::status::{Failure, SL_ERROR_NOT_FOUND, SL_NONE, SlStatus, guard};
 use crate::table::{SlTable, table};
 use crate::viewer::{SlViewer, viewer};
 use sightlines_pvs::{DoorId, ObjectId};
+use sightlines_walkthrough::Viewer;
 use std::ffi::c_char;
+use std::sync::Arc;
 
 /// A door: what closes portals while it is shut.
 #[repr(C)]
@@ -254,9 +255,10 @@ unsafe fn set_named(viewer: *mut SlViewer, name: *const c_char, open: bool) -> R
 }
 
 fn set_doors(viewer: &mut Viewer, ids: impl IntoIterator<Item = DoorId>, open: bool) {
-    let (table, doors) = viewer.table_and_doors();
+    let cells = Arc::clone(viewer.cells());
+    let doors = viewer.doors_mut();
     for door in ids {
-        for &portal in &table.doors()[door.idx()].portals {
+        for &portal in &cells.table().doors()[door.idx()].portals {
             if open {
                 doors.open(portal)
             } else {

@@ -1,12 +1,12 @@
 //! What is seen in mirrors.
 
 use crate::border;
-use crate::eye::Viewer;
 use crate::info::below;
 use crate::query::put_ids;
 use crate::status::{Failure, SlStatus, guard};
 use crate::viewer::{SlViewer, viewer};
 use sightlines_eye_to_cell::Image;
+use sightlines_walkthrough::Viewer;
 use std::sync::MutexGuard;
 
 /// What is seen by way of one mirror after another.
@@ -40,14 +40,14 @@ pub unsafe extern "C" fn sl_viewer_follow_mirrors(
         // SAFETY: pointers are as the header demands.
         let mut viewer = unsafe { self::viewer(viewer)? };
         border::place(image_count, "the place of the count")?;
-        viewer.follow(bounces);
+        let found = viewer.follow_reflections(bounces as usize).len() as u32;
         // SAFETY: pointers are as the header demands.
-        unsafe { border::put(image_count, viewer.images.len() as u32, "the place of the count") }
+        unsafe { border::put(image_count, found, "the place of the count") }
     })
 }
 
 fn image_of<'a>(viewer: &'a MutexGuard<'_, Viewer>, image: u32) -> Result<&'a Image, Failure> {
-    Ok(&viewer.images[below(image, viewer.images.len(), "image")?])
+    Ok(&viewer.images()[below(image, viewer.images().len(), "image")?])
 }
 
 /// Stores an image.

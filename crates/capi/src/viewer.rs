@@ -1,7 +1,7 @@
 //! Viewers: what one eye sees in one view.
 
 use crate::border;
-use crate::eye::{SlAnswer, Viewer};
+use crate::eye::SlAnswer;
 use crate::handle::{self, Handle, lock};
 use crate::info::below;
 use crate::query::put_ids;
@@ -10,6 +10,7 @@ use crate::table::SlTable;
 use crate::view::{SlView, view_of};
 use sightlines_eye_to_cell::{Budget, Method};
 use sightlines_pvs::PortalId;
+use sightlines_walkthrough::Viewer;
 use std::sync::{Arc, Mutex, MutexGuard};
 
 /// What follows one eye through a table: the data of the cells that it was in lately, the doors that are closed for it, and its last
@@ -45,7 +46,7 @@ pub unsafe extern "C" fn sl_viewer_new(table: *const SlTable, viewer: *mut *mut 
         unsafe { border::put(viewer, std::ptr::null_mut(), "the place of the viewer")? };
         // SAFETY: pointers are as the header demands.
         let cells = Arc::clone(unsafe { handle::behind(table)? });
-        let made = handle::give::<SlViewer>(Mutex::new(Viewer::new(cells)));
+        let made = handle::give::<SlViewer>(Mutex::new(Viewer::of(cells)));
         // SAFETY: pointers are as the header demands.
         unsafe { border::put(viewer, made, "the place of the viewer") }
     })
@@ -73,7 +74,8 @@ pub unsafe extern "C" fn sl_viewer_set_method(viewer: *mut SlViewer, method: u32
         // SAFETY: pointers are as the header demands.
         let mut viewer = unsafe { self::viewer(viewer)? };
         let method = Method::ALL[below(method, Method::ALL.len(), "method")?];
-        (viewer.method, viewer.budget) = (method, Budget::steps(max_steps));
+        viewer.set_method(method);
+        viewer.set_budget(Budget::steps(max_steps));
         Ok(())
     })
 }
@@ -121,7 +123,7 @@ unsafe fn set_portal(viewer: *mut SlViewer, portal: u32, open: bool) -> Outcome 
     // SAFETY: as for this function.
     let mut viewer = unsafe { self::viewer(viewer)? };
     below(portal, viewer.table().portals().len(), "portal")?;
-    let doors = &mut viewer.doors;
+    let doors = viewer.doors_mut();
     if open {
         doors.open(PortalId(portal))
     } else {
@@ -137,7 +139,7 @@ unsafe fn set_portal(viewer: *mut SlViewer, portal: u32, open: bool) -> Outcome 
 pub unsafe extern "C" fn sl_viewer_open_all(viewer: *mut SlViewer) -> SlStatus {
     guard(|| {
         // SAFETY: pointers are as the header demands.
-        unsafe { self::viewer(viewer)? }.doors.open_all();
+        unsafe { self::viewer(viewer)? }.doors_mut().open_all();
         Ok(())
     })
 }
@@ -158,9 +160,9 @@ pub unsafe extern "C" fn sl_viewer_closed_portals(
     guard(|| {
         // SAFETY: pointers are as the header demands.
         let viewer = unsafe { self::viewer(viewer)? };
-        let closed = viewer.doors.closed().map(|portal| portal.0);
+        let closed = viewer.doors().closed().map(|portal| portal.0);
         // SAFETY: pointers are as the header demands.
-        unsafe { put_ids(closed, viewer.doors.n_closed(), portals, capacity, count) }
+        unsafe { put_ids(closed, viewer.doors().n_closed(), portals, capacity, count) }
     })
 }
 
@@ -183,7 +185,7 @@ pub unsafe extern "C" fn sl_viewer_look(viewer: *mut SlViewer, view: *const SlVi
         if !answer.is_null() {
             border::place(answer, "the place of the answer")?;
         }
-        let found = viewer.look(view);
+        let found = SlAnswer::of(&viewer.look(&view));
         // SAFETY: pointers are as the header demands.
         if answer.is_null() { Ok(()) } else { unsafe { border::put(answer, found, "the place of the answer") } }
     })
@@ -205,7 +207,7 @@ pub unsafe extern "C" fn sl_viewer_cells(
     guard(|| {
         // SAFETY: pointers are as the header demands.
         let viewer = unsafe { self::viewer(viewer)? };
-        let found = viewer.seen.cells();
+        let found = viewer.seen().cells();
         // SAFETY: pointers are as the header demands.
         unsafe { put_ids(found.iter().map(|cell| cell.0), found.len(), cells, capacity, count) }
     })
@@ -227,7 +229,7 @@ pub unsafe extern "C" fn sl_viewer_objects(
     guard(|| {
         // SAFETY: pointers are as the header demands.
         let viewer = unsafe { self::viewer(viewer)? };
-        let found = viewer.seen.objects();
+        let found = viewer.seen().objects();
         // SAFETY: pointers are as the header demands.
         unsafe { put_ids(found.iter().map(|object| object.0), found.len(), objects, capacity, count) }
     })

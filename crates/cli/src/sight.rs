@@ -5,8 +5,7 @@ use crate::error::InputError;
 use crate::place::{LookupError, Point};
 use crate::tables::Cells;
 use crate::view::{LensArgs, Methods, lifted, method_help};
-use sightlines::eye_to_cell::{Doors, Method, Scratch, View, ViewError, VisibleSet, VisibleSubgraph};
-use sightlines::pvs::CellId;
+use sightlines::eye_to_cell::{Doors, View, ViewError};
 use sightlines::walkthrough::CameraPose;
 use std::path::Path;
 
@@ -77,22 +76,4 @@ impl SightArgs {
         }
         Ok(doors)
     }
-}
-
-/// What a viewer in the cells `at` sees by a method: cells and objects, each ascending.
-pub(crate) fn seen<C: Cells>(
-    method: Method,
-    cells: &C,
-    at: &[CellId],
-    view: &View,
-    doors: &Doors,
-) -> Result<VisibleSet, C::Error> {
-    let [n_cells, n_objects] = cells.counts();
-    let (mut scratch, mut seen) = (Scratch::new(), VisibleSet::new());
-    seen.clear(n_cells, n_objects);
-    for &cell in at {
-        method.look(&VisibleSubgraph::prepare(cells, cell)?, view, doors, &mut scratch, &mut seen);
-    }
-    seen.sort();
-    Ok(seen)
 }

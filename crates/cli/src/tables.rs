@@ -69,12 +69,11 @@ impl Class {
 }
 
 /// A table of either kind. Clones share it.
-pub(crate) trait Cells: CellSource<Error: Send + 'static> + CoarseVisibility + Clone + Send + 'static {
+pub(crate) trait Cells:
+    CellSource<Error: Send + 'static> + CoarseVisibility<PlaceError = <Self as CellSource>::Error> + Clone + Send + 'static
+{
     /// What went wrong, with the file's name.
     fn fail(path: &Path, error: Self::Error) -> InputError;
-
-    /// The same, if a point could not be located.
-    fn lost(path: &Path, error: Self::PlaceError) -> InputError;
 
     /// The axis that points up, if it is known.
     fn up(&self) -> Option<Axis>;
@@ -123,10 +122,6 @@ impl Cells for TableCells<Arc<Table>> {
         match error {}
     }
 
-    fn lost(_: &Path, error: Infallible) -> InputError {
-        match error {}
-    }
-
     fn up(&self) -> Option<Axis> {
         self.table().up()
     }
@@ -167,10 +162,6 @@ impl Cells for TableCells<Arc<Table>> {
 impl Cells for PackedCells<File> {
     fn fail(path: &Path, source: PackedError) -> InputError {
         InputError::Packed { path: path.to_owned(), source }
-    }
-
-    fn lost(path: &Path, error: PackedError) -> InputError {
-        Self::fail(path, error)
     }
 
     fn up(&self) -> Option<Axis> {

@@ -1,7 +1,13 @@
 // Features beside the items that need them, where the documentation is built with a nightly compiler, as on docs.rs.
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![cfg_attr(
-    any(not(doctest), all(feature = "bake", feature = "cells", feature = "formats", feature = "geometry", feature = "scenes")),
+    any(
+        not(doctest),
+        all(
+            feature = "bake", feature = "cells", feature = "eye-to-cell", feature = "formats", feature = "geometry",
+            feature = "pvs", feature = "scenes", feature = "walkthrough"
+        )
+    ),
     doc = include_str!("../README.md")
 )]
 //!

@@ -53,16 +53,30 @@ impl<T> Cache<T> {
         self.pinned.extend_from_slice(cells);
     }
 
+    /// Changes the budget; items are evicted as when one is added.
+    pub(crate) fn set_budget(&mut self, budget: usize) {
+        self.budget = budget;
+        self.evict();
+    }
+
     /// Adds the data of a cell, which counts as used now. Others are evicted until the budget holds or only this one
     /// and pinned ones are left.
-    pub(crate) fn add(&mut self, cell: CellId, thing: T, n_bytes: usize) {
+    pub(crate) fn add(&mut self, cell: CellId, thing: T, n_bytes: usize) -> Arc<T> {
         self.remove(cell);
         self.now += 1;
-        self.things.insert(cell, (Arc::new(thing), n_bytes, self.now));
+        let thing = Arc::new(thing);
+        self.things.insert(cell, (Arc::clone(&thing), n_bytes, self.now));
         self.by_use.insert(self.now, cell);
         self.n_bytes += n_bytes;
+        self.evict();
+        thing
+    }
+
+    /// Evicts, least recently used first, until the budget holds or only the last used item and pinned ones are left.
+    fn evict(&mut self) {
         while self.n_bytes > self.budget {
-            let mut loose = self.by_use.values().filter(|other| **other != cell && !self.pinned.contains(other));
+            let last = self.by_use.values().next_back();
+            let mut loose = self.by_use.values().filter(|cell| Some(*cell) != last && !self.pinned.contains(cell));
             let Some(&oldest) = loose.next() else { break };
             self.remove(oldest);
             self.n_dropped += 1;

@@ -4,12 +4,13 @@
 //!
 //! # Scope
 //!
-//! - **Owns**: the frame loop's side of a table ([`Walkthrough`]): the last answer is reused, and the data of the next
-//!   cells is prepared on another thread ([`Prefetcher`]) along the predicted path of the eye, within a byte budget;
+//! - **Owns**: what one eye sees, look by look ([`Viewer`]); the frame loop's side of a table ([`Walkthrough`]): the last
+//!   answer is reused, and the data of the next cells is prepared on another thread ([`Prefetcher`]) along the predicted
+//!   path of the eye, within a byte budget;
 //!   doors that open and close; tables that are replaced at run time; moving objects that cost nothing while they are
 //!   hidden ([`Movers`]); simplified levels of the scene for the cells of the eye ([`Levels`]).
 //! - **Out of scope**: how visibility is decided (`eye-to-cell`), how tables are stored (`packed`, `pvs`), files, drawing.
-//! - **Invariants**: a frame never waits, neither for the thread nor for a lock; an answer given before everything is
+//! - **Invariants**: a frame of a walk never waits, neither for the thread nor for a lock; an answer given before everything is
 //!   prepared is a superset; a mover that keeps its promises is never missed; where a level has not arrived, or is not
 //!   for all cells of the eye, the original is drawn; an eye outside every cell sees everything.
 
@@ -24,6 +25,7 @@ mod packed;
 mod portals;
 mod predict;
 mod prefetch;
+mod viewer;
 mod walkthrough;
 mod wander;
 
@@ -37,5 +39,6 @@ pub use movers::{
 pub use packed::PackedCells;
 pub use portals::same_portals;
 pub use prefetch::{Prefetcher, Prepare};
+pub use viewer::{Look, Viewer};
 pub use walkthrough::{Answer, Frame, WalkCounters, WalkOptions, Walkthrough};
 pub use wander::{CameraPose, wander};

@@ -347,7 +347,7 @@ fn wanderers_stay_inside() {
 }
 
 /// One room with mirrors on its upper and lower wall.
-fn hall_of_mirrors() -> Arc<Table> {
+pub(crate) fn hall_of_mirrors() -> Arc<Table> {
     let mut parts = Arc::unwrap_or_clone(rooms(2)).into_parts();
     let mirror = |cell: u32, face: u32, left: [f64; 2], right: [f64; 2]| MirrorRecord {
         cell: CellId(cell),

@@ -100,13 +100,14 @@ pub(crate) fn run(args: &DrawArgs) -> Result<Answer, Error> {
     let surfaces = surfaces.as_ref();
     let svg = match viewer {
         None => picture(args, &table, None, surfaces, !args.no_legend)?.to_svg(),
-        Some(viewer) => {
-            let mut drawn = viewer.methods().into_iter().map(|method| {
-                let (legend, shown) = (!args.no_legend && !viewer.has_panels(), viewer.shown(method)?);
+        Some(mut viewer) => {
+            let (methods, has_panels) = (viewer.methods(), viewer.has_panels());
+            let mut drawn = methods.into_iter().map(|method| {
+                let (legend, shown) = (!args.no_legend && !has_panels, viewer.shown(method));
                 let drawing = picture(args, &table, Some(&shown), surfaces, legend)?;
                 Ok((format!("{}: {}", method.name(), shown.counts()), drawing))
             });
-            if viewer.has_panels() {
+            if has_panels {
                 let drawn = drawn.collect::<Result<Vec<_>, Error>>()?;
                 Drawing::side_by_side("What a viewer sees by each eye-to-cell method", &drawn)
             } else {

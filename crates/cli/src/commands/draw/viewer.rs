@@ -3,13 +3,12 @@
 use super::{DrawArgs, Error};
 use crate::output::count;
 use crate::place::Point;
-use crate::sight::{self, Sight, SightError, seen};
+use crate::sight::{self, Sight, SightError};
 use crate::tables::Cells;
 use crate::view::{Methods, lifted};
-use sightlines::eye_to_cell::{Doors, Method, TableCells, VisibleSet};
-use sightlines::pvs::{CellId, Table};
-use sightlines::report;
-use std::path::Path;
+use sightlines::eye_to_cell::{Budget, Method, VisibleSet};
+use sightlines::pvs::Table;
+use sightlines::{report, walkthrough};
 use std::sync::Arc;
 
 /// Refuses options of a view where there is no eye.
@@ -32,29 +31,28 @@ pub(super) fn refuse_without_eye(args: &DrawArgs) -> Result<(), Error> {
 }
 
 /// The viewer of a picture.
-pub(super) struct Viewer<'a> {
-    path: &'a Path,
-    cells: TableCells<Arc<Table>>,
-    /// None outside every cell.
-    at: Vec<CellId>,
+pub(super) struct Viewer {
+    looks: walkthrough::Viewer,
+    is_outside: bool,
     sight: Sight,
-    doors: Doors,
     methods: Methods,
 }
 
-impl<'a> Viewer<'a> {
-    pub(super) fn new(args: &'a DrawArgs, eye: &Point, table: &Arc<Table>) -> Result<Self, Error> {
-        let (path, cells) = (args.table.as_path(), TableCells::new(Arc::clone(table)));
+impl Viewer {
+    pub(super) fn new(args: &DrawArgs, eye: &Point, table: &Arc<Table>) -> Result<Self, Error> {
+        let (path, mut looks) = (args.table.as_path(), walkthrough::Viewer::new(Arc::clone(table)));
+        let cells = Arc::clone(looks.cells());
         let eye = eye.coordinates(cells.n_dimensions(), path)?;
-        let at = table.place_at(lifted(eye)).cells().to_vec();
-        let sight = args.sight.sight(&cells, path, eye)?;
-        let doors = args.sight.doors(&cells, path)?;
+        let is_outside = table.place_at(lifted(eye)).is_outside();
+        let sight = args.sight.sight(&*cells, path, eye)?;
+        *looks.doors_mut() = args.sight.doors(&*cells, path)?;
+        looks.set_budget(Budget::UNLIMITED);
         let methods = args.sight.method.unwrap_or(Methods::One(Method::Exact));
-        Ok(Self { path, cells, at, sight, doors, methods })
+        Ok(Self { looks, is_outside, sight, methods })
     }
 
     pub(super) fn is_outside(&self) -> bool {
-        self.at.is_empty()
+        self.is_outside
     }
 
     /// One picture for each, the widest answer first.
@@ -68,16 +66,15 @@ impl<'a> Viewer<'a> {
     }
 
     /// What is seen by a method.
-    pub(super) fn shown(&self, method: Method) -> Result<Shown<'_>, Error> {
-        let seen = seen(method, &self.cells, &self.at, &self.sight.view, &self.doors);
-        let seen = seen.map_err(|error| <TableCells<Arc<Table>> as Cells>::fail(self.path, error))?;
-        Ok(Shown { seen, sight: &self.sight })
+    pub(super) fn shown(&mut self, method: Method) -> Shown<'_> {
+        self.looks.set_method(method);
+        Shown { seen: self.looks.look(&self.sight.view).seen, sight: &self.sight }
     }
 }
 
 /// What a picture shows of a viewer.
 pub(super) struct Shown<'a> {
-    seen: VisibleSet,
+    seen: &'a VisibleSet,
     sight: &'a Sight,
 }
 

@@ -48,7 +48,7 @@ fn ask<C: Cells>(cells: &C, args: &QueryArgs) -> Result<Answer, Error> {
     cells.refuse_without_places(path)?;
     let eye = args.eye.coordinates(cells.n_dimensions(), path)?;
     let mut buffer = PlaceBuffer::new();
-    let place = cells.cells_at(lifted(eye), &mut buffer).map_err(|error| C::lost(path, error))?;
+    let place = cells.cells_at(lifted(eye), &mut buffer).map_err(|error| C::fail(path, error))?;
     // Outside, the answer says so and names no cells.
     let at = place.inside().unwrap_or_default();
     if args.sight.is_given() {

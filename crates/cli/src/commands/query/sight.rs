@@ -7,13 +7,11 @@ use crate::sight::{Sight, SightArgs, SightError};
 use crate::tables::Cells;
 use crate::view::Methods;
 use serde::Serialize;
-use sightlines::eye_to_cell::{Doors, Method, Scratch, View, VisibleSet, VisibleSubgraph, follow_reflections};
-use sightlines::pvs::{CellId, ObjectId};
-use std::cell::RefCell;
-use std::collections::BTreeMap;
+use sightlines::eye_to_cell::{Budget, Method, View};
+use sightlines::pvs::CellId;
+use sightlines::walkthrough::Viewer;
 use std::fmt;
 use std::path::Path;
-use std::rc::Rc;
 use std::time::{Duration, Instant};
 
 /// A query is timed this many times, and the median is reported.
@@ -50,12 +48,13 @@ pub(super) fn look<C: Cells>(
     if looks.is_none() && args.lens.is_given() {
         return Err(SightError::LensWithoutDirection("--fov, --aspect and --up").into());
     }
-    let doors = args.doors(cells, path)?;
+    let mut viewer = Viewer::of(cells.clone());
+    viewer.set_budget(Budget::UNLIMITED);
+    viewer.set_memory(usize::MAX);
+    *viewer.doors_mut() = args.doors(cells, path)?;
     let all = args.method == Some(Methods::All);
-    let viewer =
-        Viewer { cells, at, view, doors, bounces: bounces.unwrap_or(0), subgraphs: VisibleSubgraphs::default() };
     let methods = args.method.unwrap_or(Methods::One(Method::Exact)).list();
-    let answers = methods.into_iter().map(|method| viewer.answer(method));
+    let answers = methods.into_iter().map(|method| answer(&mut viewer, method, &view, bounces.unwrap_or(0)));
     let mut answers = answers.collect::<Result<Vec<_>, _>>().map_err(|error| C::fail(path, error))?;
     let one = if all { None } else { answers.pop() };
     let (dir, fov) = looks.unzip();
@@ -64,70 +63,32 @@ pub(super) fn look<C: Cells>(
     Ok(Seen { place, outside, dir, fov, one, methods: answers, all: cells.counts() })
 }
 
-/// VisibleSubgraphs that were prepared already.
-type VisibleSubgraphs = RefCell<BTreeMap<CellId, Rc<VisibleSubgraph>>>;
-
-struct Viewer<'a, C> {
-    cells: &'a C,
-    at: &'a [CellId],
-    view: View,
-    doors: Doors,
-    bounces: usize,
-    subgraphs: VisibleSubgraphs,
-}
-
-impl<C: Cells> Viewer<'_, C> {
-    fn subgraph(&self, cell: CellId) -> Result<Rc<VisibleSubgraph>, C::Error> {
-        if let Some(subgraph) = self.subgraphs.borrow().get(&cell) {
-            return Ok(Rc::clone(subgraph));
-        }
-        let subgraph = Rc::new(VisibleSubgraph::prepare(self.cells, cell)?);
-        self.subgraphs.borrow_mut().insert(cell, Rc::clone(&subgraph));
-        Ok(subgraph)
+/// Answers by one method.
+fn answer<C: Cells>(viewer: &mut Viewer<C>, method: Method, view: &View, bounces: usize) -> Result<Answered, C::Error> {
+    viewer.set_method(method);
+    // The first look is not warm.
+    viewer.try_look(view)?;
+    let mut times: Vec<Duration> = Vec::new();
+    for _ in 0..RUNS {
+        let start = Instant::now();
+        viewer.try_look(view)?;
+        times.push(start.elapsed());
     }
-
-    fn answer(&self, method: Method) -> Result<Answered, C::Error> {
-        let [n_cells, n_objects] = self.cells.counts();
-        let (mut scratch, mut seen) = (Scratch::new(), VisibleSet::new());
-        let roots = self.at.iter().map(|&cell| self.subgraph(cell)).collect::<Result<Vec<_>, _>>()?;
-        let mut times: Vec<Duration> = Vec::new();
-        for _ in 0..=RUNS {
-            let start = Instant::now();
-            seen.clear(n_cells, n_objects);
-            for root in &roots {
-                method.look(root, &self.view, &self.doors, &mut scratch, &mut seen);
-            }
-            times.push(start.elapsed());
-        }
-        // The first run was not warm.
-        times.remove(0);
-        times.sort_unstable();
-        if roots.is_empty() {
-            seen.add_cells((0..n_cells as u32).map(CellId));
-            seen.add_objects((0..n_objects as u32).map(ObjectId));
-        }
-        seen.sort();
-        let mut failed = None;
-        let subgraph = |cell| self.subgraph(cell).map_err(|error| failed = Some(error)).ok();
-        let counts = [n_cells, n_objects];
-        let images = follow_reflections(method, &seen, self.bounces, &self.doors, &mut scratch, counts, subgraph);
-        if let Some(error) = failed {
-            return Err(error);
-        }
-        let images = images.into_iter().map(|image| ImageSeen {
-            mirrors: image.mirrors.iter().map(|mirror| mirror.0).collect(),
-            cells: image.cells.iter().map(|cell| cell.0).collect(),
-            objects: image.objects.iter().map(|object| object.0).collect(),
-            complete: image.complete,
-        });
-        Ok(Answered {
-            method: method.name(),
-            visible: seen.cells().iter().map(|cell| cell.0).collect(),
-            objects: named(self.cells, seen.objects().iter().copied())?,
-            images: images.collect(),
-            microseconds: times[RUNS / 2].as_secs_f64() * 1e6,
-        })
-    }
+    times.sort_unstable();
+    let images = viewer.try_follow_reflections(bounces)?.iter().map(|image| ImageSeen {
+        mirrors: image.mirrors.iter().map(|mirror| mirror.0).collect(),
+        cells: image.cells.iter().map(|cell| cell.0).collect(),
+        objects: image.objects.iter().map(|object| object.0).collect(),
+        complete: image.complete,
+    });
+    let (images, seen) = (images.collect(), viewer.seen());
+    Ok(Answered {
+        method: method.name(),
+        visible: seen.cells().iter().map(|cell| cell.0).collect(),
+        objects: named(&**viewer.cells(), seen.objects().iter().copied())?,
+        images,
+        microseconds: times[RUNS / 2].as_secs_f64() * 1e6,
+    })
 }
 
 /// What a viewer sees.
@@ -159,7 +120,7 @@ struct Answered {
     visible: Vec<u32>,
     objects: Vec<Object>,
     images: Vec<ImageSeen>,
-    /// The median of several queries, with everything prepared and warm.
+    /// The median of several looks, with everything prepared and warm.
     microseconds: f64,
 }
 

@@ -95,7 +95,7 @@ fn ask<C: Cells>(cells: &C, table: &Path, path: &Path, scene: &Scene, eye: Point
         return Err(Error::OtherScene { table: table.to_owned(), scene: path.to_owned(), unlike });
     }
     let mut buffer = PlaceBuffer::new();
-    let place = cells.cells_at(eye, &mut buffer).map_err(|error| C::lost(table, error))?;
+    let place = cells.cells_at(eye, &mut buffer).map_err(fail)?;
     let Place::Inside(at) = place else {
         tracing::warn!("{}: the eye is outside every cell, where everything may be seen", table.display());
         return Ok(None);

@@ -40,7 +40,7 @@ pub(super) fn drawn<C: Cells>(folder: &Path, cells: &C, file: &Path, views: &[Vi
     let mut buffer = PlaceBuffer::new();
     let (mut n_frames, mut n_with_level, mut sum, mut most) = (0, 0, 0, 0);
     for view in views {
-        let place = cells.cells_at(view.eye(), &mut buffer).map_err(|error| C::lost(file, error))?;
+        let place = cells.cells_at(view.eye(), &mut buffer).map_err(|error| C::fail(file, error))?;
         if let Place::Inside(at) = place {
             let n = levels.n_triangles_at(at, index.n_triangles);
             n_frames += 1;
