@@ -558,8 +558,8 @@ typedef struct sl_bake_options {
      */
     size_t struct_size;
     /**
-     * What decides, by the name that the program has for it: "sightlines", "auto", "both", "multifocal", "line-space", "shafts",
-     * "voxels". Null: sight lines, and for cells that were chosen to be boxes what "auto" chooses.
+     * What decides, by the name that the program has for it: "sightlines", "auto", "both", "multifocal", "line-space", "shafts".
+     * Null: "auto", which measures the scene.
      */
     const char *method;
     /**
@@ -567,7 +567,7 @@ typedef struct sl_bake_options {
      */
     uint32_t cells;
     /**
-     * How many boxes to cut, for `SL_CELLS_PLACES`; 0 for 256.
+     * How many boxes to cut, for `SL_CELLS_PLACES`; 0 for 256. A number for cells of another kind is refused, as are `grid` and `box_count`.
      */
     uint32_t place_count;
     /**
@@ -592,8 +592,9 @@ typedef struct sl_bake_options {
     const struct sl_box *view_region;
     /**
      * How precise coordinates are, in scene units: walls within half of this of a plane across an axis of the building, which may be
-     * turned by any angle, are taken to lie in it, and openings narrower than this may count as closed. 0 takes every coordinate as
-     * it is. For buildings in single precision that stand at an angle, about a millionth of their size.
+     * turned by any angle, are taken to lie in it, and openings narrower than this may count as closed. 0: what single precision explains,
+     * about a millionth of the building's size, where that puts many walls into planes and all objects were added in single precision;
+     * else nothing. Anything below 0 takes every coordinate as it is.
      */
     double gap;
     /**

@@ -259,15 +259,20 @@ impl Driver<'_> {
         let mut left = 1 + u32::from(self.bytes.byte());
         let stated = size_of::<SlBakeOptions>() - self.bytes.below(16) / 15;
         let method = self.bytes.below(14);
+        let cells = self.bytes.below(6) as u32;
+        // What cells of another kind need is refused.
+        let is_odd = self.bytes.below(16) == 0;
         let options = SlBakeOptions {
             struct_size: stated,
             method: METHODS.get(method).map_or(ptr::null(), |name| name.as_ptr()),
-            cells: self.bytes.below(6) as u32,
-            place_count: self.bytes.below(9) as u32,
-            grid: std::array::from_fn(|_| self.bytes.below(3) as u32),
+            cells,
+            place_count: if is_odd || cells == SL_CELLS_PLACES { self.bytes.below(9) as u32 } else { 0 },
+            grid: std::array::from_fn(|_| {
+                if is_odd || cells == SL_CELLS_GRID { self.bytes.below(3) as u32 } else { 0 }
+            }),
             max_cells: 200,
             boxes: boxes.as_ptr(),
-            box_count: boxes.len(),
+            box_count: if is_odd || cells == SL_CELLS_BOXES { boxes.len() } else { 0 },
             view_region: if self.bytes.below(4) == 0 { &region } else { ptr::null() },
             gap: if self.bytes.below(8) == 0 { self.bytes.real() } else { 0.0 },
             detail_below: if self.bytes.below(4) == 0 { self.bytes.real() } else { -1.0 },
