@@ -3,99 +3,64 @@
 use numpy::{PyArray2, PyArray3};
 use pyo3::prelude::*;
 use sightlines_bake::TableGraph;
-use sightlines_bake::lines::ends_in_plan;
-use sightlines_cells::{CellGraph, CellId, Convex, Planar, PortalId};
+use sightlines_bake::explain::{Answer, ExactLine, ExplainError, ExplainOptions, Explainer, Reason, SightLine};
+use sightlines_cells::{CellId, PortalId, Scene};
 use sightlines_pvs::Table;
-use sightlines_sightline::{Branch, Verdict};
-use sightlines_stabtree::{
-    Barrier, BlockedSequence, ConvexPath, MOST_EXPLAINED, PlanPath, Sight, SpacePath, SpaceProof, explain as in_plan,
-    explain_convex, explain_space,
-};
-
-/// After so many cells entered in a plan, and linear programs in space, a pair is given up.
-const MAX_VISITS: u64 = 20_000_000;
-const MAX_PROGRAMS: u32 = 20_000;
-/// Blocked ways that are kept.
-const MAX_BLOCKED: usize = 8;
 
 /// What was found about two cells.
 #[pyclass(frozen, module = "sightlines._native")]
-pub(crate) struct Explanation {
-    dimension: usize,
-    found: Found,
-}
-
 #[derive(Default)]
-struct Found {
+pub(crate) struct Explanation {
+    /// `None` if it was not decided.
+    #[pyo3(get)]
     visible: Option<bool>,
+    #[pyo3(get)]
     text: String,
     /// Two points of a line, along the axes of the scene.
     line: Option<[[f64; 3]; 2]>,
+    /// The cells that the line passes, in order.
+    #[pyo3(get)]
     cells: Vec<u32>,
+    /// The portals between them.
+    #[pyo3(get)]
     portals: Vec<u32>,
+    /// Sequences of portals that no line passes.
+    #[pyo3(get)]
     blocked: Vec<Vec<u32>>,
-    /// Boxes along the axes of the table.
+    /// Boxes along the axes of the table, of which every line meets one.
     walls: Vec<[[f64; 3]; 2]>,
+    dimension: usize,
 }
 
 #[pymethods]
 impl Explanation {
-    /// `None` if it was not decided.
-    #[getter]
-    fn visible(&self) -> Option<bool> {
-        self.found.visible
-    }
-
-    #[getter]
-    fn text(&self) -> &str {
-        &self.found.text
-    }
-
     fn line<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
         let d = self.dimension;
         let flat = |line: [[f64; 3]; 2]| line.into_iter().flat_map(|p| p.into_iter().take(d)).collect();
-        self.found.line.map(|line| crate::arrays::matrix(py, flat(line), [2, d])).transpose()
-    }
-
-    /// The cells that the line passes, in order.
-    #[getter]
-    fn cells(&self) -> Vec<u32> {
-        self.found.cells.clone()
-    }
-
-    /// The portals between them.
-    #[getter]
-    fn portals(&self) -> Vec<u32> {
-        self.found.portals.clone()
-    }
-
-    /// Sequences of portals that no line passes.
-    #[getter]
-    fn blocked(&self) -> Vec<Vec<u32>> {
-        self.found.blocked.clone()
+        self.line.map(|line| crate::arrays::matrix(py, flat(line), [2, d])).transpose()
     }
 
     /// Walls of which every line meets one, as boxes.
     fn walls<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
-        let flat: Vec<f64> = self.found.walls.iter().flatten().flatten().copied().collect();
-        crate::arrays::cube(py, flat, [self.found.walls.len(), 2, 3])
+        let flat: Vec<f64> = self.walls.iter().flatten().flatten().copied().collect();
+        crate::arrays::cube(py, flat, [self.walls.len(), 2, 3])
     }
 }
 
-/// Explains two cells of a table by its graph.
-pub(crate) fn explain(table: &Table, graph: Option<&TableGraph>, [a, b]: [CellId; 2]) -> Explanation {
-    let mut found = if a == b {
-        Found { visible: Some(true), text: format!("both are cell {a}, and a cell sees itself"), ..Found::default() }
-    } else {
-        match graph {
-            Some(TableGraph::Planar(graph)) => plan(graph, [a, b]),
-            Some(TableGraph::Axial(graph)) => {
-                found([a, b], explain_space(graph, &[], a, b, MAX_PROGRAMS), |path| space_line(a, path), space_walls)
-            }
-            Some(TableGraph::Convex(graph)) => convex(graph, [a, b]),
-            Some(TableGraph::Boxes(_)) => silent([a, b], table, "the cells of this table have no portals"),
-            None => silent([a, b], table, "this table does not have the shapes of its cells and portals"),
-        }
+/// Explains two cells of a table by its graph, or by the scene that it was made of if they have no portals.
+pub(crate) fn explain(
+    table: &Table,
+    graph: Option<&TableGraph>,
+    scene: Option<&Scene>,
+    [a, b]: [CellId; 2],
+) -> Result<Explanation, ExplainError> {
+    let options = ExplainOptions::default();
+    let mut found = match (graph, graph.and_then(Explainer::new)) {
+        _ if a == b => of_answer([a, b], Answer::Same),
+        (_, Some(explainer)) => of_answer([a, b], explainer.explain([a, b], &options).answer),
+        (None, None) => silent([a, b], table, "this table does not have the shapes of its cells and portals"),
+        (Some(_), None) if scene.is_none() => silent([a, b], table, "the cells of this table have no portals"),
+        (Some(_), None) => of_answer([a, b], sightlines_bake::explain::explain(table, scene, [a, b], &options)?.answer),
     };
     if let (Some(line), Some(frame)) = (&mut found.line, table.frame()) {
         *line = line.map(|p| frame.to_scene(p));
@@ -105,14 +70,14 @@ pub(crate) fn explain(table: &Table, graph: Option<&TableGraph>, [a, b]: [CellId
         let place = |p: [f64; 3]| p.iter().take(d).map(ToString::to_string).collect::<Vec<_>>().join(", ");
         found.text.push_str(&format!(", along the line from ({}) to ({})", place(p), place(q)));
     }
-    Explanation { dimension: usize::from(table.dimension()), found }
+    Ok(Explanation { dimension: usize::from(table.dimension()), ..found })
 }
 
-fn silent([a, b]: [CellId; 2], table: &Table, why: &str) -> Found {
+fn silent([a, b]: [CellId; 2], table: &Table, why: &str) -> Explanation {
     let listed = if table.sees(a, b) { "may see" } else { "does not see" };
-    Found {
+    Explanation {
         text: format!("by the table, cell {a} {listed} cell {b}; {why}, so there is no reason"),
-        ..Found::default()
+        ..Explanation::default()
     }
 }
 
@@ -120,101 +85,75 @@ fn numbers(portals: &[PortalId]) -> Vec<u32> {
     portals.iter().map(|portal| portal.0).collect()
 }
 
-fn found<Path, Proof, Doubt>(
-    [a, b]: [CellId; 2],
-    explanation: Verdict<Sight<Path>, Barrier<Proof>, Doubt>,
-    line: impl FnOnce(Path) -> Found,
-    proof: impl FnOnce(Proof) -> Found,
-) -> Found {
-    match explanation {
-        Verdict::Visible(Sight::SameCell) => Found { visible: Some(true), ..Found::default() },
-        Verdict::Visible(Sight::Along(path)) => {
-            let found = line(path);
-            let n = match found.portals.len() {
-                1 => "1 portal".to_owned(),
-                n => format!("{n} portals"),
+fn of_answer([a, b]: [CellId; 2], answer: Answer) -> Explanation {
+    let visible = answer.verdict();
+    match answer {
+        Answer::Same => Explanation {
+            visible,
+            text: format!("both are cell {a}, and a cell sees itself"),
+            ..Explanation::default()
+        },
+        Answer::Visible(SightLine { cells, portals, ends }, exact) => {
+            let through = match (&exact, portals.len()) {
+                (ExactLine::Segment, _) => String::new(),
+                (_, 1) => " through 1 portal".to_owned(),
+                (_, n) => format!(" through {n} portals"),
             };
-            Found { visible: Some(true), text: format!("cell {a} sees cell {b} through {n}"), ..found }
+            let line = match exact {
+                ExactLine::Convex(points, _) => Some(points),
+                // Without points in the cells, those in the first and the last portal.
+                _ => ends.or_else(|| exact.outer_crossings()),
+            };
+            Explanation {
+                visible,
+                text: format!("cell {a} sees cell {b}{through}"),
+                line,
+                cells: cells.iter().map(|cell| cell.0).collect(),
+                portals: numbers(&portals),
+                ..Explanation::default()
+            }
         }
-        Verdict::Hidden(Barrier::NotConnected) => {
-            let text = format!("cell {a} does not see cell {b}: no way through portals joins them");
-            Found { visible: Some(false), text, ..Found::default() }
+        Answer::Hidden(reason) => {
+            let (why, blocked, walls) = of_reason(&reason);
+            Explanation {
+                visible,
+                text: format!("cell {a} does not see cell {b}: {why}"),
+                blocked,
+                walls,
+                ..Explanation::default()
+            }
         }
-        Verdict::Hidden(Barrier::Blocked(why)) => {
-            let found = proof(why);
-            let text = format!("cell {a} does not see cell {b}: {}", found.text);
-            Found { visible: Some(false), text, ..found }
-        }
-        Verdict::Undecided(_) => {
+        Answer::GivenUp(_) | Answer::Undecided(_) => {
             let text = format!("cell {a} and cell {b}: given up, neither a line nor a proof was found");
-            Found { text, ..Found::default() }
+            Explanation { text, ..Explanation::default() }
+        }
+        Answer::Unknown { n_rays, hidden_by } => {
+            let n = n_rays.unwrap_or_default();
+            let by =
+                if hidden_by.is_empty() { String::new() } else { format!("; hidden by {}", hidden_by.join(" or ")) };
+            let text = format!(
+                "cell {a} and cell {b}: {n} rays from each found no line between them, which proves nothing{by}"
+            );
+            Explanation { text, ..Explanation::default() }
         }
     }
 }
 
-fn blocked_ways(n: u64, blocked: Vec<Vec<u32>>) -> Found {
-    let text = format!("every way passes one of {n} sequences of portals that no line passes");
-    Found { text, blocked, ..Found::default() }
-}
-
-fn plan(graph: &CellGraph<Planar>, [a, b]: [CellId; 2]) -> Found {
-    let line = |path: PlanPath| {
-        let mut cells = vec![a];
-        for portal in &path.portals {
-            let [one, other] = graph.portal(*portal).cells;
-            cells.push(if cells.last() == Some(&one) { other } else { one });
+/// In words, with the blocked ways or the walls as boxes.
+fn of_reason(reason: &Reason) -> (String, Vec<Vec<u32>>, Vec<[[f64; 3]; 2]>) {
+    match reason {
+        Reason::NotConnected => ("no way through portals joins them".to_owned(), Vec::new(), Vec::new()),
+        Reason::Blocked { n_blocked, blocked, .. } => {
+            let text = format!("every way passes one of {n_blocked} sequences of portals that no line passes");
+            (text, blocked.iter().map(|blocked| numbers(&blocked.way.portals)).collect(), Vec::new())
         }
-        let polygons = [a, b].map(|cell| &graph.cell(cell).polygon[..]);
-        let ends = ends_in_plan(polygons, &path.doors, &path.witness);
-        Found {
-            line: ends.map(|ends| ends.map(|p| [p.x, p.y, 0.0])),
-            cells: cells.iter().map(|cell| cell.0).collect(),
-            portals: numbers(&path.portals),
-            ..Found::default()
-        }
-    };
-    found([a, b], in_plan(graph, a, b, MAX_BLOCKED, MAX_VISITS), line, |proof| {
-        let ways = proof.blocked.iter().map(|BlockedSequence { portals, .. }| numbers(portals));
-        blocked_ways(proof.n_blocked, ways.collect())
-    })
-}
-
-fn space_line(from: CellId, path: SpacePath) -> Found {
-    // Without points in the cells, those in the first and the last portal.
-    let crossing = |k: usize| path.witness.crossing(path.doors.get(k)?);
-    let line = path.ends.or_else(|| Some([crossing(0)?, crossing(path.doors.len().checked_sub(1)?)?]));
-    let cells = std::iter::once(from).chain(path.cells).map(|cell| cell.0).collect();
-    Found { line, cells, portals: numbers(&path.portals), ..Found::default() }
-}
-
-fn space_walls(SpaceProof { proof, walls, .. }: SpaceProof) -> Found {
-    fn count(branch: &Branch, n: &mut [usize]) {
-        if let Branch::Past { rectangle, ways, .. } = branch {
-            n[*rectangle as usize] += 1;
-            ways.iter().for_each(|(_, branch)| count(branch, n));
+        Reason::Walls(found) => {
+            let text = match found.walls.len() {
+                1 => "every line meets one wall".to_owned(),
+                n => format!("every line meets one of {n} walls"),
+            };
+            let walls = found.most_important();
+            (text, Vec::new(), walls.iter().map(|(wall, _)| [wall.min, wall.max]).collect())
         }
     }
-    let mut n = vec![0; walls.len()];
-    proof.octants.iter().for_each(|(_, branch)| count(branch, &mut n));
-    let mut order: Vec<usize> = (0..walls.len()).collect();
-    order.sort_by_key(|&k| std::cmp::Reverse(n[k]));
-    let text = match walls.len() {
-        1 => "every line meets one wall".to_owned(),
-        n => format!("every line meets one of {n} walls"),
-    };
-    let walls = order.into_iter().map(|k| [walls[k].min, walls[k].max]).collect();
-    Found { text, walls, ..Found::default() }
-}
-
-fn convex(graph: &CellGraph<Convex>, [a, b]: [CellId; 2]) -> Found {
-    let line = |ConvexPath { gates, line }: ConvexPath| {
-        let first = gates.iter().take(1).map(|gate| gate.cells(graph)[0]);
-        let cells = first.chain(gates.iter().map(|gate| gate.cells(graph)[1])).map(|cell| cell.0).collect();
-        let portals = gates.iter().map(|gate| gate.portal.0).collect();
-        Found { line: Some([line.a, line.b]), cells, portals, ..Found::default() }
-    };
-    found([a, b], explain_convex(graph, a, b, MOST_EXPLAINED), line, |proof| {
-        let ways = proof.blocked.iter().map(|way| way.gates.iter().map(|gate| gate.portal.0).collect());
-        blocked_ways(proof.blocked.len() as u64, ways.take(MAX_BLOCKED).collect())
-    })
 }

@@ -1,14 +1,15 @@
 //! Tables: read, written, asked.
 
 use crate::arrays::{Ids, cube, guarded, ids, matrix, rows};
-use crate::error::{error, file_failed, room, value_error, write_failed};
+use crate::error::{error, file_failed, read_failed, room, value_error, write_failed};
 use crate::explain::{Explanation, explain};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
-use sightlines_bake::{TableGraph, from_table};
+use sightlines_bake::{TableGraph, from_table, stated_reading};
 use sightlines_formats::atomic_write;
+use sightlines_formats::scene::read_scene_with;
 use sightlines_packed::{PackOptions, Packed, pack};
 use sightlines_pvs::{Axis, CellId, Inside, ObjectId, Place, PlaceBuffer};
 use std::path::PathBuf;
@@ -361,14 +362,17 @@ impl Table {
         })
     }
 
-    /// Why one cell sees another, or why not.
-    fn explain(&self, py: Python<'_>, a: i64, b: i64) -> PyResult<Explanation> {
+    /// Why one cell sees another, or why not; for cells without portals by the file of their scene, if that is given.
+    #[pyo3(signature = (a, b, scene=None))]
+    fn explain(&self, py: Python<'_>, a: i64, b: i64, scene: Option<PathBuf>) -> PyResult<Explanation> {
         let pair = [self.cell(a)?, self.cell(b)?];
         py.detach(|| {
             guarded(|| {
                 let graph = self.graph.get_or_init(|| from_table::graph(&self.table));
-                explain(&self.table, graph.as_ref(), pair)
+                let read = |path: PathBuf| read_scene_with(path, &stated_reading(self.table.info()));
+                let file = scene.map(read).transpose().map_err(|failure| read_failed(&failure))?;
+                explain(&self.table, graph.as_ref(), file.as_ref().map(|file| &file.scene), pair).map_err(error)
             })
-        })
+        })?
     }
 }

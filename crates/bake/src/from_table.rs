@@ -3,23 +3,23 @@
 //! For tables that come from a file. Whoever has just baked a table has its graph ([`Baked::graph`](crate::Baked::graph)),
 //! and needs nothing here.
 
-use crate::graph::TableGraph;
+use crate::graph::{GraphKind, TableGraph};
 use crate::table::axial_portal_record;
 use sightlines_cells::graph::Portal;
 use sightlines_cells::{Axial, AxialDoor, BoxCell, CellGraph, CellId, Convex, ConvexCell2, Planar, Portal3};
 use sightlines_geometry::{Aabb, Point2, Portal2, check_coordinate};
-use sightlines_pvs::{CellRecord, PortalRecord, Table, TableKind};
+use sightlines_pvs::{CellRecord, PortalRecord, Table};
 
-/// The graph that a table stores, by its [kind](TableKind): [`planar_graph`], [`convex_graph`] or [`axial_graph`]. For a table
-/// whose kind is not stated, by its dimension. `None` where those say so.
+/// The graph that a table stores, by its [kind](GraphKind::of): [`planar_graph`], [`convex_graph`], [`axial_graph`], or its boxes. `None` where
+/// those say so.
 pub fn graph(table: &Table) -> Option<TableGraph> {
-    match table.kind() {
-        kind if kind.is_quake() => convex_graph(table).map(TableGraph::Convex),
-        _ if table.dimension() == 2 => planar_graph(table).map(TableGraph::Planar),
-        TableKind::SceneGivenCells { .. } => {
+    match GraphKind::of(table) {
+        GraphKind::Convex => convex_graph(table).map(TableGraph::Convex),
+        GraphKind::Planar => planar_graph(table).map(TableGraph::Planar),
+        GraphKind::Boxes => {
             Some(TableGraph::Boxes(table.cells().iter().map(|c| Aabb { min: c.min, max: c.max }).collect()))
         }
-        _ => axial_graph(table).map(TableGraph::Axial),
+        GraphKind::Axial => axial_graph(table).map(TableGraph::Axial),
     }
 }
 
@@ -78,7 +78,7 @@ pub fn axial_graph(table: &Table) -> Option<CellGraph<Axial>> {
 }
 
 /// The graph of clusters that a table of a portal file, or of a map, stores: the one that the table was made from, to the
-/// bit. `None` if the table is of another kind ([`TableKind::is_quake`]), its portals were stripped, or have coordinates out
+/// bit. `None` if the table is of another kind ([`TableKind::is_quake`](sightlines_pvs::TableKind::is_quake)), its portals were stripped, or have coordinates out
 /// of range or corners without an area. That portals are convex and flat is not checked.
 pub fn convex_graph(table: &Table) -> Option<CellGraph<Convex>> {
     // Cells that see each other are joined by portals, so without any they were stripped.

@@ -2,7 +2,7 @@
 
 use sightlines_cells::{Axial, CellGraph, Convex, Planar};
 use sightlines_geometry::Aabb;
-use sightlines_pvs::Table;
+use sightlines_pvs::{Table, TableKind};
 
 /// The cells and portals that a table was made from, of whichever kind.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,6 +44,31 @@ impl From<CellGraph<Axial>> for TableGraph {
 impl From<CellGraph<Convex>> for TableGraph {
     fn from(graph: CellGraph<Convex>) -> Self {
         Self::Convex(graph)
+    }
+}
+
+/// The kinds of [`TableGraph`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum GraphKind {
+    /// Convex polygons of a plan.
+    Planar,
+    /// The boxes of a k-d tree in space.
+    Axial,
+    /// The clusters of a Quake map.
+    Convex,
+    /// View cells that were given: boxes without portals.
+    Boxes,
+}
+
+impl GraphKind {
+    /// The kind of the graph that a table stores, by the table's [kind](TableKind); by its dimension if that is not stated.
+    pub fn of(table: &Table) -> Self {
+        match table.kind() {
+            kind if kind.is_quake() => Self::Convex,
+            _ if table.dimension() == 2 => Self::Planar,
+            TableKind::SceneGivenCells { .. } => Self::Boxes,
+            _ => Self::Axial,
+        }
     }
 }
 

@@ -10,7 +10,8 @@
 //!   from-region methods and backends by name ([`methods`]), and the choice of methods from the properties of an input
 //!   ([`auto`]); the frame of a scene that does not stand along the axes of its file ([`Framed`]); cells for scenes without
 //!   walls along axes ([`places`]); the REJECT lumps of a WAD ([`reject_wad`]) or of several ([`reject_wads`]), the visibility of Quake maps and the state of an interrupted
-//!   search ([`quake`]), the table of a changing scene ([`live`]), lines of sight for the pairs of a table ([`lines`]);
+//!   search ([`quake`]), the table of a changing scene ([`live`]), why cells of a table see each other
+//!   ([`explain`](mod@explain)), lines of sight for the pairs of a table ([`lines`]);
 //!   the floor plan of a scene at a height ([`floor_cut`]); one tile of a world that is too large for one table ([`tile`]).
 //! - **Out of scope**: paths, the command line, pictures.
 //! - **Invariants**: the same scene and options give the same table, byte for byte, with any number of
@@ -23,6 +24,7 @@ mod baked;
 mod certify;
 mod doors;
 mod error;
+pub mod explain;
 mod floor;
 mod framed;
 pub mod from_table;
@@ -49,6 +51,7 @@ mod run;
 pub mod scene;
 mod sectors;
 mod stab;
+mod stated;
 mod subdivide;
 mod table;
 mod threads;
@@ -63,7 +66,7 @@ pub use error::{BakeError, Meaningless};
 pub use floor::{FloorCut, FloorCutError, floor_cut};
 pub use framed::{Along, Framed, growth_of_cells};
 pub use gap::Gap;
-pub use graph::{GraphRef, OtherGraph, TableGraph};
+pub use graph::{GraphKind, GraphRef, OtherGraph, TableGraph};
 pub use input::BakeInput;
 pub use limit::LimitReport;
 pub use live::{LiveScene, LiveUpdate};
@@ -82,5 +85,6 @@ pub use run::bake;
 pub use scene::{PortalMode, SceneBakeOptions, bake_scene};
 pub use sectors::see_groups;
 pub use stab::{BakedStab, StabBakeError, StabOptions, StabReport, with_stab_trees};
+pub use stated::{StatedMethods, stated_methods, stated_reading};
 pub use subdivide::{ParseSubdivideError, Subdivide};
 pub use table::{TableOptions, table_of};

@@ -1,5 +1,6 @@
 //! What a bake has not decided because its budget was spent.
 
+use crate::stated::TIME_LIMIT;
 use sightlines_pvs::{BitMatrix, TableParts};
 use sightlines_stabtree::PairMask;
 use std::fmt;
@@ -69,12 +70,9 @@ fn count(n: u64, noun: &str) -> String {
     format!("{n} {noun}{}", if n == 1 { "" } else { "s" })
 }
 
-/// The key under which a table states it.
-const KEY: &str = "time-limit";
-
 /// Lets the table state what was not decided.
 pub(crate) fn state_limit(parts: &mut TableParts, limit: &LimitReport) {
-    parts.info.push((KEY.to_owned(), limit.to_string()));
+    parts.info.push((TIME_LIMIT.to_owned(), limit.to_string()));
     parts.info.sort();
 }
 

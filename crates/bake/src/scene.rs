@@ -7,6 +7,7 @@ use crate::limit::{LimitReport, state_limit};
 use crate::mirrors;
 use crate::objects::object_lists;
 use crate::reports::SceneReport;
+use crate::stated::DETAIL_BELOW;
 use crate::table::{axial_portal_record, box_record, object_record, state_file};
 use crate::threads;
 use sightlines_cells::{Axial, AxialDoor, CellGraph, Portal, Scene, SceneObject};
@@ -168,7 +169,7 @@ pub(crate) fn info(options: &SceneBakeOptions<'_>, cut: &SceneSummary) -> Vec<(S
     let pair = |k: &str, v: String| (k.to_owned(), v);
     // Ascending keys.
     vec![
-        pair("detail-below", cut.detail_below.to_string()),
+        pair(DETAIL_BELOW, cut.detail_below.to_string()),
         pair("portals", options.portals.name().to_owned()),
         pair("subdivide", "kd".to_owned()),
         pair("tau", options.cut.tau.to_string()),

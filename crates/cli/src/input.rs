@@ -5,9 +5,7 @@ pub(crate) use crate::refuse::refuse;
 
 use crate::error::InputError;
 use crate::{plans, surfaces};
-use sightlines::bake::from_table::planar_graph;
 use sightlines::bake::{Bakeable, BakeableError};
-use sightlines::cells::{CellGraph, Planar};
 use sightlines::formats::doom::{DoomMap, MapChoiceError, choose_map, list_maps};
 use sightlines::formats::input::HEAD;
 use sightlines::formats::quake::Prt;
@@ -60,11 +58,6 @@ pub(crate) fn is_of_portals(table: &Table) -> bool {
 /// Refuses a table that does not store where its cells are; `what` names what cannot be done without.
 pub(crate) fn refuse_without_places(table: &Table, path: &Path, what: &'static str) -> Result<(), InputError> {
     if !table.has_places() { Err(InputError::NoPlaces { path: path.to_owned(), what }) } else { Ok(()) }
-}
-
-/// The cell graph that a table holds.
-pub(crate) fn graph(table: &Table, path: &Path) -> Result<CellGraph<Planar>, InputError> {
-    planar_graph(table).ok_or_else(|| InputError::Stripped(path.to_owned()))
 }
 
 /// What `build` takes, in the words of errors.

@@ -2,7 +2,7 @@
 
 use crate::output::count;
 use serde::Serialize;
-use sightlines::bake::Backs;
+use sightlines::bake::{Backs, stated_reading};
 use sightlines::cells::Scene;
 use sightlines::formats::SceneFile;
 use sightlines::formats::scene::{NamePattern, Role, SceneInfo, SceneReadOptions};
@@ -52,17 +52,13 @@ impl SurfaceArgs {
 
     /// The same, and what the scene of a table was read with, by the information of that table.
     pub(crate) fn options_with(&self, info: &[(String, String)]) -> SceneReadOptions {
-        let mut options = self.options();
-        let value = |key: &str| info.iter().find(|(k, _)| k == key).map(|(_, value)| value.as_str());
-        let lists =
-            [("opaque", &mut options.opaque), ("see-through", &mut options.see_through), ("still", &mut options.still)];
-        for (key, patterns) in lists {
-            let stated = value(key).unwrap_or_default();
-            patterns.extend(stated.lines().filter_map(|pattern| pattern.parse().ok()));
-        }
-        options.single_sided |= value("single-sided").is_some();
-        options.both_sides |= value("both-sides").is_some();
-        options.scene = options.scene.or_else(|| value("scene").map(str::to_owned));
+        let (mut options, stated) = (self.options(), stated_reading(info));
+        options.opaque.extend(stated.opaque);
+        options.see_through.extend(stated.see_through);
+        options.still.extend(stated.still);
+        options.single_sided |= stated.single_sided;
+        options.both_sides |= stated.both_sides;
+        options.scene = options.scene.or(stated.scene);
         options
     }
 

@@ -288,12 +288,16 @@ class Table:
         """How many cells each cell may see, itself included."""
         return self._inner.counts()
 
-    def explain(self, a: Any, b: Any) -> Explanation:
+    def explain(self, a: Any, b: Any, *, scene: str | os.PathLike[str] | None = None) -> Explanation:
         """Why two cells see each other, or why they do not.
 
         :param a: a cell, or a point; of points on borders a pair of cells is taken that see each other, if there is one
+        :param scene: of cells without portals: the file that the table was made of, to look for a line between them with rays
+        :raises OSError: if the scene cannot be read
+        :raises Error: if it is not the scene of such a table
         """
-        found = self._inner.explain(*self._choose(self._cells(a, "a"), self._cells(b, "b")))
+        pair = self._choose(self._cells(a, "a"), self._cells(b, "b"))
+        found = self._inner.explain(*pair, None if scene is None else os.fspath(scene))
         return Explanation(
             found.visible, found.text, found.line(), found.cells, found.portals, found.blocked, found.walls()
         )

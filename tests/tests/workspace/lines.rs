@@ -1,17 +1,16 @@
 //! Lines of sight for the pairs of tables: each is followed by other code, joins only what the table lists, and is that of the
 //! explanation of its pair alone.
 
+use sightlines::bake::explain::{Answer, ExplainOptions, Explainer};
 use sightlines::bake::from_table;
 use sightlines::bake::lines::{LineOptions, Lines, Obstacle, lines};
-use sightlines::bake::{BakeRequest, TableGraph, bake};
+use sightlines::bake::{BakeRequest, bake};
 use sightlines::cells::PortalId;
 use sightlines::certificates::space::{BoxLine, BoxNetwork, BoxPortal};
 use sightlines::formats::quake::{Bsp, BspFormat};
 use sightlines::pvs::{CellId, PortalRecord, Table};
 use sightlines::scenes::world::{QuakeLikeOptions, quake_like};
 use sightlines::scenes::{OfficeOptions, TowerOptions, office, tower};
-use sightlines::sightline::Verdict;
-use sightlines::stabtree::{Sight, explain, explain_convex, explain_space};
 use sightlines_tests::world_files::{bsp_bytes, prt_of_world};
 use std::sync::LazyLock;
 
@@ -39,21 +38,10 @@ fn lines_of(table: &Table, options: LineOptions) -> Lines {
 }
 
 /// The portals of the explanation of one pair alone.
-fn explained(graph: &TableGraph, from: CellId, to: CellId) -> Option<Vec<PortalId>> {
-    match graph {
-        TableGraph::Convex(graph) => match explain_convex(graph, from, to, 1_000) {
-            Verdict::Visible(Sight::Along(path)) => Some(path.gates.iter().map(|gate| gate.portal).collect()),
-            _ => None,
-        },
-        TableGraph::Planar(graph) => match explain(graph, from, to, 1, 100_000) {
-            Verdict::Visible(Sight::Along(path)) => Some(path.portals),
-            _ => None,
-        },
-        TableGraph::Axial(graph) => match explain_space(graph, &[], from, to, 2_000) {
-            Verdict::Visible(Sight::Along(path)) => Some(path.portals),
-            _ => None,
-        },
-        _ => panic!("cells without portals"),
+fn explained(explainer: &Explainer<'_>, from: CellId, to: CellId) -> Option<Vec<PortalId>> {
+    match explainer.explain([from, to], &ExplainOptions::default()).answer {
+        Answer::Visible(line, _) => Some(line.portals),
+        _ => None,
     }
 }
 
@@ -69,6 +57,7 @@ fn n_contradicted(table: &Table, found: &Lines) -> usize {
 fn lines_join_all_visible_pairs_and_no_others() {
     for table in [plan(), BUILDING.clone(), map()] {
         let graph = from_table::graph(&table).expect("the table has portals");
+        let explainer = Explainer::new(&graph).expect("its cells are joined");
         let found = lines_of(&table, ALL);
         let visible: usize =
             (0..).take(table.n_cells()).map(|a| table.visible(CellId(a)).filter(|b| b.0 > a).count()).sum();
@@ -84,13 +73,13 @@ fn lines_join_all_visible_pairs_and_no_others() {
         }
         for line in found.lines.iter().step_by(17) {
             let (first, last) = (line.cells[0], line.cells[line.cells.len() - 1]);
-            assert_eq!(explained(&graph, first, last).as_ref(), Some(&line.portals), "{first} and {last}");
+            assert_eq!(explained(&explainer, first, last).as_ref(), Some(&line.portals), "{first} and {last}");
         }
         assert!(!found.hidden.is_empty());
         for pair in &found.hidden {
             let [a, b] = pair.cells;
             assert!(!table.sees(a, b));
-            assert_eq!(explained(&graph, a, b), None);
+            assert_eq!(explained(&explainer, a, b), None);
             match &pair.obstacle {
                 Obstacle::NotConnected => {}
                 Obstacle::Portals(portals) => assert!(!portals.is_empty()),

@@ -4,29 +4,15 @@
 //! are asked first, and what their lines pass is not asked again: in buildings one pair in six or seven has to be, in plans of small rooms every
 //! second.
 
-mod ends;
-mod engine;
+pub use crate::explain::SightLine;
 
-pub use ends::ends_in_plan;
-use engine::Engine;
+use crate::explain::{Answer, ExplainOptions, Explainer, Reason};
 use rayon::prelude::*;
 use sightlines_cells::{CellId, PortalId};
 use sightlines_geometry::Aabb;
 use sightlines_progress::{Cancelled, Observer, Progress};
 use sightlines_pvs::Table;
 use std::collections::HashSet;
-
-/// A line through portals.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SightLine {
-    /// The cells that it passes, in order: at least two.
-    pub cells: Vec<CellId>,
-    /// The portals between them, one fewer.
-    pub portals: Vec<PortalId>,
-    /// A point in the first cell and one in the last, rounded, along the axes of the table; `None` if the line leaves no room for one in
-    /// doubles.
-    pub ends: Option<[[f64; 3]; 2]>,
-}
 
 /// Why no line joins two cells.
 #[derive(Debug, Clone, PartialEq)]
@@ -89,7 +75,7 @@ type Pair = [u32; 2];
 /// [`Cancelled`] if the observer says so.
 pub fn lines(table: &Table, options: LineOptions, observer: Option<&dyn Observer>) -> Result<Option<Lines>, Cancelled> {
     let Some(graph) = crate::from_table::graph(table) else { return Ok(None) };
-    let Some(engine) = Engine::new(&graph) else { return Ok(None) };
+    let Some(explainer) = Explainer::new(&graph) else { return Ok(None) };
     let n_pairs = n_visible_pairs(table);
     let step = n_pairs.div_ceil(MOST_PAIRS).max(1);
     let mut visible = visible_pairs(table, step);
@@ -109,7 +95,7 @@ pub fn lines(table: &Table, options: LineOptions, observer: Option<&dyn Observer
             at += 1;
         }
         n_asked += chunk.len();
-        let answers: Vec<_> = chunk.par_iter().map(|pair| engine.line(*pair)).collect();
+        let answers: Vec<_> = chunk.par_iter().map(|pair| line(&explainer, *pair)).collect();
         for (pair, line) in chunk.iter().zip(answers) {
             // Another pair of the same chunk may have found the way.
             if let Some(line) = line.filter(|_| !joined.contains(pair)) {
@@ -120,12 +106,46 @@ pub fn lines(table: &Table, options: LineOptions, observer: Option<&dyn Observer
     }
     for (k, chunk) in hidden.chunks(CHUNK).enumerate() {
         tell(observer, visible.len() + k * CHUNK, total)?;
-        let answers: Vec<_> = chunk.par_iter().map(|pair| engine.obstacle(*pair)).collect();
+        let answers: Vec<_> = chunk.par_iter().map(|pair| obstacle(&explainer, *pair)).collect();
         let pairs = chunk.iter().zip(answers).filter_map(|(pair, obstacle)| Some((pair, obstacle?)));
         found.hidden.extend(pairs.map(|(pair, obstacle)| HiddenPair { cells: pair.map(CellId), obstacle }));
     }
     found.n_joined = joined.iter().filter(|[a, b]| table.sees(CellId(*a), CellId(*b))).count();
     Ok(Some(found))
+}
+
+/// Less than where one pair is asked for alone.
+const OPTIONS: ExplainOptions = ExplainOptions {
+    max_visits: 100_000,
+    max_programs: 2_000,
+    max_questions: 1_000,
+    n_rays: 0,
+    max_blocked: 1,
+    check: false,
+};
+
+/// The most walls that are named.
+const MAX_WALLS: usize = 12;
+
+fn line(explainer: &Explainer<'_>, pair: Pair) -> Option<SightLine> {
+    match explainer.explain(pair.map(CellId), &OPTIONS).answer {
+        // Without points in the cells, those in the first and the last portal.
+        Answer::Visible(line, exact) => Some(SightLine { ends: line.ends.or_else(|| exact.outer_crossings()), ..line }),
+        _ => None,
+    }
+}
+
+fn obstacle(explainer: &Explainer<'_>, pair: Pair) -> Option<Obstacle> {
+    match explainer.explain(pair.map(CellId), &OPTIONS).answer {
+        Answer::Hidden(Reason::NotConnected) => Some(Obstacle::NotConnected),
+        Answer::Hidden(Reason::Blocked { blocked, .. }) => {
+            blocked.into_iter().next().map(|first| Obstacle::Portals(first.way.portals))
+        }
+        Answer::Hidden(Reason::Walls(found)) => {
+            Some(Obstacle::Walls(found.most_important().iter().take(MAX_WALLS).map(|(wall, _)| *wall).collect()))
+        }
+        _ => None,
+    }
 }
 
 /// Pairs that are asked at once.

@@ -24,6 +24,7 @@ use crate::objects::object_lists;
 use crate::places::{PlaceOptions, PlaceSummary, PlacesError, observed_places};
 use crate::reports::RegionReport;
 use crate::scene::{PortalMode, SceneBakeOptions, extents, merge_portals, n_triangles, see_scene};
+use crate::stated::{DETAIL_BELOW, METHOD};
 use crate::table::{object_record, state_file};
 use crate::threads;
 use parts::Start;
@@ -287,10 +288,10 @@ pub(crate) fn decide(
         TableGraph::Boxes(_) => TableKind::SceneGivenCells { hidden_by },
         _ => TableKind::SceneKdTree { hidden_by },
     };
-    parts.info.push(("method".to_owned(), format!("{by}{text}")));
+    parts.info.push((METHOD.to_owned(), format!("{by}{text}")));
     // Those of a k-d tree state it whether it was chosen or not.
     if let Some(size) = options.cut.detail_below.filter(|_| by_sightlines && matches!(graph, TableGraph::Boxes(_))) {
-        parts.info.push(("detail-below".to_owned(), size.to_string()));
+        parts.info.push((DETAIL_BELOW.to_owned(), size.to_string()));
     }
     parts.info.sort();
     limit.iter().for_each(|limit| state_limit(&mut parts, limit));

@@ -2,6 +2,7 @@
 
 use crate::graph::TableGraph;
 use crate::mirrors;
+use crate::stated::DETAIL_BELOW;
 use crate::table::{axial_portal_record, box_record};
 use sightlines_cells::{Axial, CellGraph, Scene};
 use sightlines_formats::{ViewCell, ViewCells};
@@ -39,7 +40,7 @@ pub(super) fn of_seen(graph: CellGraph<Axial>, mut parts: TableParts) -> Start {
 pub(super) fn of_cut(scene: &Scene, cut: SceneSubdivision, n_objects: usize) -> Start {
     let cells: Vec<Aabb<3>> = cut.graph.cells().iter().map(|cell| cell.bounds).collect();
     let info = vec![
-        ("detail-below".to_owned(), cut.summary.detail_below.to_string()),
+        (DETAIL_BELOW.to_owned(), cut.summary.detail_below.to_string()),
         ("subdivide".to_owned(), "kd".to_owned()),
     ];
     let parts = TableParts {

@@ -5,6 +5,7 @@ use super::{RegionBakeOptions, cells_alone, see, state_objects, targets_of, volu
 use crate::error::BakeError;
 use crate::reports::RegionReport;
 use crate::scene::extents;
+use crate::stated::METHOD;
 use crate::table::state_file;
 use crate::threads;
 use sightlines_cells::Scene;
@@ -76,7 +77,7 @@ fn pack_here<W: Write>(
     parts.cell_objects = touching.iter().map(|list| list.iter().copied().map(ObjectId).collect()).collect();
     parts.kind =
         TableKind::SceneGivenCells { hidden_by: SceneMethods { sightlines: false, from_region: true, only_in_air } };
-    parts.info.push(("method".to_owned(), method.clone()));
+    parts.info.push((METHOD.to_owned(), method.clone()));
     parts.info.sort();
     state_file(&mut parts, options.file);
     parts.digest = Some(scene.digest());

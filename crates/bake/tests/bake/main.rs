@@ -3,6 +3,7 @@
 mod any_input;
 mod bakeable;
 mod doubled;
+mod explain;
 mod floor;
 mod limit;
 mod line_space;

@@ -17,7 +17,7 @@ const N_LINES: u64 = 1_000;
 const BUDGETS: [Option<usize>; 3] = [Some(12), Some(150), None];
 
 /// A table of each kind with its graph, by name.
-fn tables() -> Vec<(&'static str, Table, TableGraph)> {
+pub(crate) fn tables() -> Vec<(&'static str, Table, TableGraph)> {
     let options = OfficeOptions { rooms_x: 6, rooms_y: 3, block: 3, ..OfficeOptions::default() };
     let plan = office(options).expect("options in range");
     let plan = bake_plan(&plan, &PlanBakeOptions::default()).expect("a sound plan").into_any();

@@ -56,9 +56,6 @@ pub(crate) enum InputError {
     /// A table that does not store where its cells are.
     #[error("{}: the table is of a portal file, which does not say where its cells are: {what}", path.display())]
     NoPlaces { path: PathBuf, what: &'static str },
-    /// A table without polygons and portals, in which no lines can be searched for.
-    #[error("{}: the table has no polygons and portals to look for lines in", .0.display())]
-    Stripped(PathBuf),
     /// A scene whose triangles were moved, where occluders are needed.
     #[error("{}: the scene was simplified and its triangles were moved, so that it may hide what can be seen: use the original \
              that it was made from", .0.display())]

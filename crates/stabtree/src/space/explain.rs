@@ -5,7 +5,7 @@ use crate::explanation::{Barrier, Explanation, SearchLimit, Sight};
 use sightlines_cells::{Axial, CellGraph, CellId, Exit, PortalId};
 use sightlines_geometry::{Aabb, AxialDoor};
 use sightlines_sightline::{
-    AxialStabber, AxialWitness, BlockedProof, Blockers, Shaft, ShaftLine, Stabber, Target, Verdict,
+    AxialStabber, AxialWitness, BlockedProof, Blockers, Branch, Shaft, ShaftLine, Stabber, Target, Verdict,
 };
 
 /// The explanation for two cells in space.
@@ -36,6 +36,28 @@ pub struct SpaceProof {
     pub walls: Vec<Aabb<3>>,
     /// Number of rectangles that all walls were merged into.
     pub n_blockers: usize,
+}
+
+impl SpaceProof {
+    /// How often the proof goes past each wall.
+    pub fn n_steps(&self) -> Vec<usize> {
+        fn count(branch: &Branch, n: &mut [usize]) {
+            if let Branch::Past { rectangle, ways, .. } = branch {
+                n[*rectangle as usize] += 1;
+                ways.iter().for_each(|(_, branch)| count(branch, n));
+            }
+        }
+        let mut n = vec![0; self.walls.len()];
+        self.proof.octants.iter().for_each(|(_, branch)| count(branch, &mut n));
+        n
+    }
+
+    /// The walls and how often the proof goes past each, the most often first.
+    pub fn most_important(&self) -> Vec<(Aabb<3>, usize)> {
+        let mut walls: Vec<_> = self.walls.iter().copied().zip(self.n_steps()).collect();
+        walls.sort_by_key(|&(_, n)| std::cmp::Reverse(n));
+        walls
+    }
 }
 
 /// Most sequences of portals that are tried for a line that touches their edges.

@@ -2,7 +2,7 @@
 
 use crate::file_error::{FileError, from_file_error};
 use crate::place::LookupError;
-use sightlines::verify::VerifyError;
+use sightlines::bake::explain::ExplainError;
 use std::path::PathBuf;
 
 /// Why `explain` fails; exit code 2.
@@ -14,9 +14,9 @@ pub(crate) enum Error {
     /// A cell or a point that the table does not have.
     #[error(transparent)]
     Lookup(#[from] LookupError),
-    /// The scene of another table.
+    /// A table without shapes, or the scene of another table.
     #[error("{}: {source}", table.display())]
-    OtherScene { table: PathBuf, source: VerifyError },
+    Explain { table: PathBuf, source: ExplainError },
     /// A cluster that a portal file does not have.
     #[error("{}: there is no cluster {cluster}: there are {n_clusters}", path.display())]
     NoSuchCluster { path: PathBuf, cluster: u32, n_clusters: usize },

@@ -1,29 +1,71 @@
-//! The picture of an explanation in space: from above, and as an isometric view.
+//! The picture of an explanation: in a plan, and in space from above and as an isometric view.
 
-use super::report::Reason;
-use super::space::SpaceReason;
-use crate::picture::{PictureError, middle, up_of};
+use crate::picture::{PictureError, draw_plan, middle, up_of};
+use sightlines::bake::GraphKind;
+use sightlines::bake::explain::{Answer, Explanation, Reason};
+use sightlines::cells::PortalId;
+use sightlines::geometry::Point2;
 use sightlines::pvs::{CellId, Table};
-use sightlines::report::{Drawing, IsometricOptions, SliceOptions, Up, View, isometric_drawing, slice_drawing};
+use sightlines::report::{
+    DrawOptions, Drawing, IsometricOptions, SliceOptions, Up, View, isometric_drawing, slice_drawing,
+};
 use std::path::Path;
 
 /// The size of each of the two views, in pixels.
 const SIZE: u32 = 1000;
 
-/// What A sees, B, and the line through the portals or the walls that block all lines: from above at the height where the line begins, else of
-/// the middle of A, and as an isometric view that is cut above all that is shown.
+/// What A sees, B, and the line through the portals or what blocks it.
 pub(super) fn svg(
     path: &Path,
     table: &Table,
+    pair: [CellId; 2],
+    explanation: &Explanation,
+) -> Result<String, PictureError> {
+    match explanation.cells {
+        GraphKind::Planar => draw_plan(path, table, &in_plan(pair, &explanation.answer)),
+        _ => in_space(path, table, pair, explanation),
+    }
+}
+
+/// The line through the portals, or the first blocked way.
+fn in_plan([a, b]: [CellId; 2], answer: &Answer) -> DrawOptions<'static> {
+    let (ends, portals) = match answer {
+        Answer::Visible(line, _) => (line.ends, &line.portals[..]),
+        Answer::Hidden(Reason::Blocked { blocked, .. }) => {
+            (None, blocked.first().map_or(&[][..], |first| &first.way.portals))
+        }
+        _ => (None, &[][..]),
+    };
+    DrawOptions {
+        view: View::Cell(a),
+        target: Some(b),
+        marked_portals: portals.iter().map(|p| p.idx()).collect(),
+        line: ends.map(|ends| ends.map(|[x, y, _]| Point2::new(x, y))),
+        ..DrawOptions::default()
+    }
+}
+
+/// The line through the portals or the walls that block all lines: from above at the height where the line begins, else of
+/// the middle of A, and as an isometric view that is cut above all that is shown.
+fn in_space(
+    path: &Path,
+    table: &Table,
     [a, b]: [CellId; 2],
-    reason: &SpaceReason,
+    explanation: &Explanation,
 ) -> Result<String, PictureError> {
     let up = up_of(table);
-    let (line, portals) = reason.line();
+    let (line, portals): (_, &[PortalId]) = match &explanation.answer {
+        Answer::Visible(line, _) => (line.ends, &line.portals),
+        _ => (None, &[]),
+    };
+    let portals: Vec<usize> = portals.iter().map(|portal| portal.idx()).collect();
     let height = line.map_or(middle(table, a, up), |line| line[0][up.axis()]);
-    let marked: Vec<Vec<[f64; 3]>> = match line {
-        Some(_) => portals.iter().map(|&portal| table.portals()[portal].points.clone()).collect(),
-        None => reason.walls().iter().map(|[min, max]| corners(*min, *max)).collect(),
+    let marked: Vec<Vec<[f64; 3]>> = match (line, &explanation.answer) {
+        (Some(_), _) => portals.iter().map(|&portal| table.portals()[portal].points.clone()).collect(),
+        (None, Answer::Hidden(Reason::Walls(found))) => {
+            found.walls.iter().map(|wall| corners(wall.min, wall.max)).collect()
+        }
+        _ => Vec::new(),
     };
     let failed = |source| PictureError::Draw { path: path.to_owned(), source };
     let view = View::Cell(a);
@@ -52,7 +94,7 @@ pub(super) fn svg(
         ..IsometricOptions::default()
     };
     let isometric = isometric_drawing(table, &options).map_err(failed)?;
-    let title = match (line, reason.verdict()) {
+    let title = match (line, explanation.answer.verdict()) {
         (Some(_), _) => format!("Cell {} sees cell {} along this line", a.0, b.0),
         (None, Some(true)) => format!("Cell {} sees cell {}", a.0, b.0),
         (None, Some(false)) => format!("Cell {} does not see cell {}", a.0, b.0),
