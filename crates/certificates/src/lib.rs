@@ -12,15 +12,15 @@
 //! It has its own exact arithmetic on purpose and does not use `sightlines-exact`: a checker must not share the errors of
 //! the code that it checks.
 
+pub mod axial;
 mod bits;
 mod bytes;
 pub mod convex;
 mod exact;
 mod graph;
 mod pairs;
-pub mod plan;
+pub mod planar;
 mod proven;
-pub mod space;
 mod walk;
 
 pub use bytes::{Kind, ReadError, ReadErrorKind, VERSION};

@@ -4,7 +4,7 @@ use crate::graph::GraphKind;
 use sightlines_cells::{CellId, PortalId};
 use sightlines_geometry::{AxialDoor, Point2, Point3, Portal2};
 use sightlines_sightline::{AxialWitness, PlanarWitness};
-use sightlines_stabtree::{Blocking, SpaceProof};
+use sightlines_stabtree::{AxialProof, Blocking};
 
 /// Why one cell sees another, or why it does not.
 #[derive(Debug, Clone, PartialEq)]
@@ -115,7 +115,7 @@ pub enum Reason {
         blocked: Vec<BlockedWay>,
     },
     /// Boxes of a k-d tree: every line meets a wall.
-    Walls(SpaceProof),
+    Walls(AxialProof),
 }
 
 /// Portals in order, as they are passed.

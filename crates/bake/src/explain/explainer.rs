@@ -8,8 +8,8 @@ use sightlines_cells::{CellGraph, CellId, Convex, Planar, PortalId};
 use sightlines_geometry::Portal2;
 use sightlines_sightline::{End, Verdict};
 use sightlines_stabtree::{
-    Barrier, BlockedSequence, ConvexDoubt, ConvexExplainer, ConvexGate, ConvexPath, ConvexProof, PlanPath, PlanProof,
-    SearchLimit, Sight, SpaceExplainer, SpacePath, check_convex, explain,
+    AxialExplainer, AxialPath, Barrier, BlockedSequence, ConvexDoubt, ConvexExplainer, ConvexGate, ConvexPath,
+    ConvexProof, PlanarPath, PlanarProof, SearchLimit, Sight, check_convex, explain,
 };
 
 /// Explains pairs of cells that portals join.
@@ -19,7 +19,7 @@ pub struct Explainer<'a>(Search<'a>);
 #[derive(Debug)]
 enum Search<'a> {
     Planar(&'a CellGraph<Planar>),
-    Axial(SpaceExplainer<'a>),
+    Axial(AxialExplainer<'a>),
     Convex(&'a CellGraph<Convex>, ConvexExplainer),
 }
 
@@ -29,7 +29,7 @@ impl<'a> Explainer<'a> {
         Some(Self(match graph.into() {
             GraphRef::Planar(graph) => Search::Planar(graph),
             // A table does not record what was left out beside its cells, and no answer depends on it.
-            GraphRef::Axial(graph) => Search::Axial(SpaceExplainer::new(graph, &[])),
+            GraphRef::Axial(graph) => Search::Axial(AxialExplainer::new(graph, &[])),
             GraphRef::Convex(graph) => Search::Convex(graph, ConvexExplainer::new(graph)),
             GraphRef::Boxes(_) => return None,
         }))
@@ -45,7 +45,7 @@ impl<'a> Explainer<'a> {
         let (cells, answer) = match &self.0 {
             Search::Planar(graph) => {
                 let found = explain(graph, from, to, options.max_blocked, options.max_visits);
-                let reason = |PlanProof { n_blocked, blocked }| {
+                let reason = |PlanarProof { n_blocked, blocked }| {
                     let blocked = blocked.iter().map(|way| blocked_in_plan(graph, from, way)).collect();
                     Reason::Blocked { start: from, n_blocked, blocked }
                 };
@@ -113,8 +113,8 @@ fn walk(graph: &CellGraph<Planar>, from: CellId, portals: &[PortalId]) -> (Vec<C
     portals.iter().map(step).unzip()
 }
 
-fn in_plan(graph: &CellGraph<Planar>, pair: [CellId; 2], path: PlanPath) -> Answer {
-    let PlanPath { portals, doors, witness } = path;
+fn in_plan(graph: &CellGraph<Planar>, pair: [CellId; 2], path: PlanarPath) -> Answer {
+    let PlanarPath { portals, doors, witness } = path;
     let cells = passed(pair[0], walk(graph, pair[0], &portals).0);
     let ends = ends_in_plan(pair.map(|cell| &graph.cell(cell).polygon[..]), &doors, &witness);
     let line = SightLine { cells, portals, ends: ends.map(|ends| ends.map(lifted)) };
@@ -132,8 +132,8 @@ fn blocked_in_plan(graph: &CellGraph<Planar>, from: CellId, sequence: &BlockedSe
     BlockedWay { way: Way { portals: portals.clone(), cells }, proof: Blocks::Corners { lefts, rights } }
 }
 
-fn in_space(from: CellId, path: SpacePath) -> Answer {
-    let SpacePath { portals, cells, doors, witness, ends } = path;
+fn in_space(from: CellId, path: AxialPath) -> Answer {
+    let AxialPath { portals, cells, doors, witness, ends } = path;
     let line = SightLine { cells: passed(from, cells), portals, ends };
     Answer::Visible(line, ExactLine::Axial(witness, doors))
 }

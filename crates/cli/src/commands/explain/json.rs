@@ -8,7 +8,7 @@ use sightlines::bake::GraphKind;
 use sightlines::bake::explain::{Answer, BlockedWay, Blocks, Corner, ExactLine, Reason, SightLine, Way};
 use sightlines::cells::PortalId;
 use sightlines::sightline::{Branch, BranchRow, Bypass, Contradiction, ConvexCertificate, ConvexNode, ConvexTerm};
-use sightlines::stabtree::{Blocking, SpaceProof};
+use sightlines::stabtree::{AxialProof, Blocking};
 
 impl Serialize for Report<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -205,7 +205,7 @@ struct Wall {
     n_nodes: usize,
 }
 
-fn write_walls<M: SerializeMap>(map: &mut M, found: &SpaceProof) -> Result<(), M::Error> {
+fn write_walls<M: SerializeMap>(map: &mut M, found: &AxialProof) -> Result<(), M::Error> {
     let size = found.proof.size();
     map.serialize_entry("n_blockers", &found.n_blockers)?;
     map.serialize_entry("n_nodes", &size.n_nodes)?;

@@ -6,7 +6,7 @@ use sightlines::bake::GraphKind;
 use sightlines::bake::explain::{Answer, BlockedWay, Blocks, Corner, ExactLine, Reason, SightLine};
 use sightlines::cells::PortalId;
 use sightlines::sightline::{ConvexCertificate, ProofSize};
-use sightlines::stabtree::{Blocking, SpaceProof};
+use sightlines::stabtree::{AxialProof, Blocking};
 use std::fmt;
 
 impl fmt::Display for Report<'_> {
@@ -189,7 +189,7 @@ fn write_more(f: &mut fmt::Formatter<'_>, n: u64, n_shown: usize) -> fmt::Result
     if n_more > 0 && n_shown > 0 { writeln!(f, "  and {n_more} more") } else { Ok(()) }
 }
 
-fn write_walls(f: &mut fmt::Formatter<'_>, found: &SpaceProof, n_shown: usize) -> fmt::Result {
+fn write_walls(f: &mut fmt::Formatter<'_>, found: &AxialProof, n_shown: usize) -> fmt::Result {
     let n_walls = found.walls.len();
     let walls = if n_walls == 1 { "one wall".to_owned() } else { format!("one of {n_walls} walls") };
     writeln!(f, "every line meets {walls} (of {})", found.n_blockers)?;
