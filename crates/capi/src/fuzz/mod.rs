@@ -262,26 +262,27 @@ impl Driver<'_> {
         let cells = self.bytes.below(6) as u32;
         // What cells of another kind need is refused.
         let is_odd = self.bytes.below(16) == 0;
-        let options = SlBakeOptions {
-            struct_size: stated,
-            method: METHODS.get(method).map_or(ptr::null(), |name| name.as_ptr()),
-            cells,
-            place_count: if is_odd || cells == SL_CELLS_PLACES { self.bytes.below(9) as u32 } else { 0 },
-            grid: std::array::from_fn(|_| {
-                if is_odd || cells == SL_CELLS_GRID { self.bytes.below(3) as u32 } else { 0 }
-            }),
-            max_cells: 200,
-            boxes: boxes.as_ptr(),
-            box_count: if is_odd || cells == SL_CELLS_BOXES { boxes.len() } else { 0 },
-            view_region: if self.bytes.below(4) == 0 { &region } else { ptr::null() },
-            gap: if self.bytes.below(8) == 0 { self.bytes.real() } else { 0.0 },
-            detail_below: if self.bytes.below(4) == 0 { self.bytes.real() } else { -1.0 },
-            keep_solid: u32::from(self.bytes.byte()) % 2,
-            threads: 1,
-            time_limit: [0.0, 0.05, f64::NAN][self.bytes.below(24) / 11 % 3],
-            progress: if self.bytes.below(2) == 0 { Some(progress) } else { None },
-            user: ptr::from_mut(&mut left).cast(),
-        };
+        let options =
+            SlBakeOptions {
+                struct_size: stated,
+                method: METHODS.get(method).map_or(ptr::null(), |name| name.as_ptr()),
+                cells,
+                place_count: if is_odd || cells == SL_CELLS_PLACES { self.bytes.below(9) as u32 } else { 0 },
+                grid: std::array::from_fn(|_| {
+                    if is_odd || cells == SL_CELLS_GRID { self.bytes.below(3) as u32 } else { 0 }
+                }),
+                max_cells: 200,
+                boxes: boxes.as_ptr(),
+                box_count: if is_odd || cells == SL_CELLS_BOXES { boxes.len() } else { 0 },
+                view_region: if self.bytes.below(4) == 0 { &region } else { ptr::null() },
+                gap: if self.bytes.below(8) == 0 { self.bytes.real() } else { 0.0 },
+                detail_below: if self.bytes.below(4) == 0 { self.bytes.real() } else { -1.0 },
+                keep_solid: u32::from(self.bytes.byte()) % 2,
+                threads: 1,
+                time_limit: [0.0, 0.05, f64::NAN][self.bytes.below(24) / 11 % 3],
+                progress: if self.bytes.below(2) == 0 { Some(progress) } else { None },
+                user: ptr::from_mut(&mut left).cast(),
+            };
         let mut report = SlBakeReport {
             struct_size: size_of::<SlBakeReport>() + self.bytes.below(16) / 15,
             cell_count: 0,

@@ -18,9 +18,9 @@ use sightlines::pvs::{CellId, Table};
 
 /// A floor whose corners were moved: in single precision, as a file has them.
 fn floor(moved: impl Fn(Point3) -> Point3) -> Vec<u8> {
+    let single = |p: &Point3| moved(*p).map(|x| f64::from(x as f32));
     let upright = parse_glb(&one_floor(2, 0), None).expect("a floor").scene;
-    let object =
-        |o: &SceneObject| SceneObject { vertices: o.vertices.iter().map(|p| moved(*p)).collect(), ..o.clone() };
+    let object = |o: &SceneObject| SceneObject { vertices: o.vertices.iter().map(single).collect(), ..o.clone() };
     write_glb(&Scene::new(upright.objects().iter().map(object).collect()).expect("a scene")).expect("single precision")
 }
 
