@@ -197,7 +197,7 @@ fn wrong_usage_is_refused() {
         ("info tower.glb", "info: only build, vis, reject and tiles build can be shared"),
         ("build tower.glb -o out.pvs --time-limit 5", "--time-limit means nothing for a job"),
         ("build tower.glb -o out.pvs --resume", "--resume or --state means nothing for a job"),
-        ("vis map.bsp --resume", "--resume means nothing for a job"),
+        ("vis map.bsp --resume", "--resume or --state means nothing for a job"),
         ("build tower.glb --no-such -o out.pvs", "the command of the job: unexpected argument '--no-such' found"),
         ("build none.glb -o out.pvs", "none.glb: No such file or directory (os error 2)"),
     ] {
