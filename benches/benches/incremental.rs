@@ -9,7 +9,7 @@ use sightlines::cells::{CellGraph, CellId, PortalId, Scene, SceneObject};
 use sightlines::geometry::Aabb;
 use sightlines::kdtree::{SceneOptions, subdivide_scene};
 use sightlines::scenes::{TowerOptions, tower};
-use sightlines::stabtree::{SearchOptions, SpaceVisibility, space_visibility};
+use sightlines::stabtree::{AxialVisibility, SearchOptions, axial_visibility};
 use sightlines_benches::chart::{Panel, Series, svg};
 use sightlines_benches::program::{Common, Files, exit, read_rows, save};
 use std::error::Error;
@@ -189,7 +189,7 @@ fn keep(best: &mut [f64; 5], update: &LiveUpdate, seconds: f64) {
 }
 
 /// The visibility of a live scene, computed from scratch with closed portals as walls.
-fn see_closed(live: &LiveScene, threads: usize) -> Result<SpaceVisibility, Box<dyn Error>> {
+fn see_closed(live: &LiveScene, threads: usize) -> Result<AxialVisibility, Box<dyn Error>> {
     let cut = subdivide_scene(live.scene(), &SceneOptions::default())?;
     let closed = live.closed_portals();
     let open = (0u32..).zip(cut.graph.portals()).filter(|(id, _)| !closed.contains(&PortalId(*id)));
@@ -197,11 +197,11 @@ fn see_closed(live: &LiveScene, threads: usize) -> Result<SpaceVisibility, Box<d
     let boxes = live.scene().objects().iter().map(|o| Aabb::around(o.corners().flatten()));
     let boxes: Vec<Aabb<3>> = boxes.collect();
     let search = SearchOptions { threads, ..SearchOptions::default() };
-    Ok(space_visibility(&graph, &cut.left_out(), &boxes, &search).expect("nobody cancels"))
+    Ok(axial_visibility(&graph, &cut.left_out(), &boxes, &search).expect("nobody cancels"))
 }
 
 /// Whether a table says what was found.
-fn says(live: &LiveScene, seen: &SpaceVisibility) -> bool {
+fn says(live: &LiveScene, seen: &AxialVisibility) -> bool {
     let cells = (0..live.table().n_cells() as u32).map(CellId);
     cells.into_iter().all(|cell| {
         live.table().visible(cell).map(|c| c.idx()).eq(seen.cells.iter_ones(cell.idx()))

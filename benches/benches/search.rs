@@ -5,7 +5,7 @@ use divan::counter::ItemsCount;
 use sightlines::bake::see_groups;
 use sightlines::cells::Plan;
 use sightlines::scenes;
-use sightlines::stabtree::{SearchOptions, Zones, plan_visibility};
+use sightlines::stabtree::{SearchOptions, Zones, planar_visibility};
 use sightlines_benches::graph;
 
 fn main() {
@@ -33,12 +33,12 @@ fn one_thread() -> SearchOptions<'static> {
 fn cell_to_cell(bencher: Bencher<'_, '_>, scene: &str) {
     let graph = graph(&plan(scene));
     let zones = Zones::cells(&graph);
-    let (rows, _) = plan_visibility(&graph, &zones, &one_thread()).expect("nobody cancels");
+    let (rows, _) = planar_visibility(&graph, &zones, &one_thread()).expect("nobody cancels");
     assert!(rows.is_symmetric(), "{scene}");
     let pairs = graph.n_cells() * graph.n_cells();
     bencher
         .counter(ItemsCount::new(pairs))
-        .bench_local(|| plan_visibility(&graph, &zones, &one_thread()).expect("nobody cancels").0.count_ones());
+        .bench_local(|| planar_visibility(&graph, &zones, &one_thread()).expect("nobody cancels").0.count_ones());
 }
 
 /// The same without chords, to see what they save.
@@ -47,7 +47,7 @@ fn cell_to_cell_no_chords(bencher: Bencher<'_, '_>, scene: &str) {
     let graph = graph(&plan(scene));
     let zones = Zones::cells(&graph);
     let options = SearchOptions { chords: 0, ..one_thread() };
-    bencher.bench_local(|| plan_visibility(&graph, &zones, &options).expect("nobody cancels").0.count_ones());
+    bencher.bench_local(|| planar_visibility(&graph, &zones, &options).expect("nobody cancels").0.count_ones());
 }
 
 /// Cutting a plan into convex cells.

@@ -8,8 +8,8 @@ use sightlines_cells::{CellGraph, CellId, Convex, Planar, PortalId};
 use sightlines_pvs::Table;
 use sightlines_sightline::{Branch, Verdict};
 use sightlines_stabtree::{
-    Barrier, BlockedSequence, ConvexPath, MOST_EXPLAINED, PlanPath, Sight, SpacePath, SpaceProof, explain as in_plan,
-    explain_convex, explain_space,
+    Barrier, BlockedSequence, ConvexPath, MOST_EXPLAINED, PlanarPath, Sight, AxialPath, AxialProof, explain as in_plan,
+    explain_convex, explain_axial,
 };
 
 /// After so many cells entered in a plan, and linear programs in space, a pair is given up.
@@ -90,7 +90,7 @@ pub(crate) fn explain(table: &Table, graph: Option<&TableGraph>, [a, b]: [CellId
         match graph {
             Some(TableGraph::Planar(graph)) => plan(graph, [a, b]),
             Some(TableGraph::Axial(graph)) => {
-                found([a, b], explain_space(graph, &[], a, b, MAX_PROGRAMS), |path| space_line(a, path), space_walls)
+                found([a, b], explain_axial(graph, &[], a, b, MAX_PROGRAMS), |path| space_line(a, path), space_walls)
             }
             Some(TableGraph::Convex(graph)) => convex(graph, [a, b]),
             Some(TableGraph::Boxes(_)) => silent([a, b], table, "the cells of this table have no portals"),
@@ -158,7 +158,7 @@ fn blocked_ways(n: u64, blocked: Vec<Vec<u32>>) -> Found {
 }
 
 fn plan(graph: &CellGraph<Planar>, [a, b]: [CellId; 2]) -> Found {
-    let line = |path: PlanPath| {
+    let line = |path: PlanarPath| {
         let mut cells = vec![a];
         for portal in &path.portals {
             let [one, other] = graph.portal(*portal).cells;
@@ -179,7 +179,7 @@ fn plan(graph: &CellGraph<Planar>, [a, b]: [CellId; 2]) -> Found {
     })
 }
 
-fn space_line(from: CellId, path: SpacePath) -> Found {
+fn space_line(from: CellId, path: AxialPath) -> Found {
     // Without points in the cells, those in the first and the last portal.
     let crossing = |k: usize| path.witness.crossing(path.doors.get(k)?);
     let line = path.ends.or_else(|| Some([crossing(0)?, crossing(path.doors.len().checked_sub(1)?)?]));
@@ -187,7 +187,7 @@ fn space_line(from: CellId, path: SpacePath) -> Found {
     Found { line, cells, portals: numbers(&path.portals), ..Found::default() }
 }
 
-fn space_walls(SpaceProof { proof, walls, .. }: SpaceProof) -> Found {
+fn space_walls(AxialProof { proof, walls, .. }: AxialProof) -> Found {
     fn count(branch: &Branch, n: &mut [usize]) {
         if let Branch::Past { rectangle, ways, .. } = branch {
             n[*rectangle as usize] += 1;

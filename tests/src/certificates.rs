@@ -4,9 +4,9 @@ use sightlines::bake::{
     Baked, BakedPlan, BakedPrt, BakedScene, PlanBakeOptions, PrtOptions, SceneBakeOptions, bake_plan, bake_prt,
     bake_scene,
 };
+use sightlines::certificates::axial::AxialProofs;
 use sightlines::certificates::convex::ConvexProofs;
-use sightlines::certificates::plan::PlanProofs;
-use sightlines::certificates::space::BoxProofs;
+use sightlines::certificates::planar::PlanarProofs;
 use sightlines::certificates::{Kind, kind_of};
 use sightlines::formats::Prt;
 use sightlines::pvs::{CellId, Table};
@@ -64,15 +64,15 @@ pub fn check(bytes: &[u8]) -> bool {
 
 fn check_one(bytes: &[u8]) -> bool {
     let proven = match kind_of(bytes) {
-        Ok(Kind::Plan) => {
-            let Ok(proofs) = PlanProofs::from_bytes(bytes) else { return false };
-            assert_eq!(PlanProofs::from_bytes(&proofs.to_bytes()).as_ref(), Ok(&proofs));
+        Ok(Kind::Planar) => {
+            let Ok(proofs) = PlanarProofs::from_bytes(bytes) else { return false };
+            assert_eq!(PlanarProofs::from_bytes(&proofs.to_bytes()).as_ref(), Ok(&proofs));
             let of = |table: &Table| proofs.check(&plan_of(table).ok()?).ok();
             proven().iter().map(|(table, _)| (table, of(table))).collect::<Vec<_>>()
         }
-        Ok(Kind::Space) => {
-            let Ok(proofs) = BoxProofs::from_bytes(bytes) else { return false };
-            assert_eq!(BoxProofs::from_bytes(&proofs.to_bytes()).as_ref(), Ok(&proofs));
+        Ok(Kind::Axial) => {
+            let Ok(proofs) = AxialProofs::from_bytes(bytes) else { return false };
+            assert_eq!(AxialProofs::from_bytes(&proofs.to_bytes()).as_ref(), Ok(&proofs));
             let of = |table: &Table| proofs.check(&boxes_of(table).ok()?).ok();
             proven().iter().map(|(table, _)| (table, of(table))).collect()
         }

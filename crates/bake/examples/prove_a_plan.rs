@@ -4,10 +4,10 @@
 
 use sightlines_bake::{PlanBakeOptions, Proofs, bake_plan, certify_table};
 use sightlines_cells::Plan;
-use sightlines_certificates::plan::PlanProofs;
+use sightlines_certificates::planar::PlanarProofs;
 use sightlines_formats::{DoomMap, Wad, doom::list_maps};
 use sightlines_scenes::{OfficeOptions, office};
-use sightlines_stabtree::{CertifyOptions, plan_network};
+use sightlines_stabtree::{CertifyOptions, planar_network};
 use std::error::Error;
 use std::time::Instant;
 
@@ -42,8 +42,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         bytes.len()
     );
     let start = Instant::now();
-    let proofs = PlanProofs::from_bytes(&bytes)?;
-    let proven = proofs.check(&plan_network(&baked.graph)?)?;
+    let proofs = PlanarProofs::from_bytes(&bytes)?;
+    let proven = proofs.check(&planar_network(&baked.graph)?)?;
     println!(
         "checked in {:?}: {} pairs are visible, {} are hidden, {} are open",
         start.elapsed(),

@@ -2,14 +2,14 @@
 
 use crate::baked::Baked;
 use crate::graph::{GraphRef, OtherGraph, TableGraph};
+use sightlines_certificates::axial::{AxialNetworkError, AxialProofs};
 use sightlines_certificates::convex::{ConvexNetworkError, ConvexProofs};
-use sightlines_certificates::plan::{NetworkError, PlanProofs};
-use sightlines_certificates::space::{BoxNetworkError, BoxProofs};
+use sightlines_certificates::planar::{NetworkError, PlanarProofs};
 use sightlines_geometry::Aabb;
 use sightlines_progress::{Cancelled, Halt};
 use sightlines_pvs::{CellId, Table};
 use sightlines_stabtree::{
-    CertifyError as SearchError, CertifyOptions, ObjectRows, certify_convex, certify_plan, certify_space,
+    CertifyError as SearchError, CertifyOptions, ObjectRows, certify_axial, certify_convex, certify_planar,
 };
 use std::error::Error;
 use std::time::{Duration, Instant};
@@ -29,7 +29,7 @@ pub enum CertifyError {
     Plan(#[from] NetworkError),
     /// Cells or portals of a scene in space that nothing can be proven about.
     #[error(transparent)]
-    Space(#[from] BoxNetworkError),
+    Space(#[from] AxialNetworkError),
     /// Cells or portals of a Quake map that nothing can be proven about.
     #[error(transparent)]
     Convex(#[from] ConvexNetworkError),
@@ -56,9 +56,9 @@ impl CertifyError {
 #[non_exhaustive]
 pub enum Proofs {
     /// Of a plan.
-    Plan(PlanProofs),
+    Plan(PlanarProofs),
     /// Of a scene in space.
-    Space(BoxProofs),
+    Space(AxialProofs),
     /// Of a Quake map, or of a portal file.
     Convex(ConvexProofs),
 }
@@ -104,13 +104,13 @@ pub fn certify_table<'g>(
     graph.check_size(table)?;
     let rows = &table.parts().rows;
     let proofs = match graph {
-        GraphRef::Planar(graph) => Proofs::Plan(certify_plan(graph, rows, options).map_err(CertifyError::of)?),
+        GraphRef::Planar(graph) => Proofs::Plan(certify_planar(graph, rows, options).map_err(CertifyError::of)?),
         GraphRef::Axial(graph) => {
             let boxes: Vec<Aabb<3>> = table.objects().iter().map(|o| Aabb { min: o.min, max: o.max }).collect();
             let cells = (0..table.n_cells() as u32).map(CellId);
             let seen: Vec<_> = cells.map(|cell| table.visible_objects(cell)).collect();
             let objects = Some(ObjectRows { boxes: &boxes, seen: &seen });
-            Proofs::Space(certify_space(graph, rows, objects, options).map_err(CertifyError::of)?)
+            Proofs::Space(certify_axial(graph, rows, objects, options).map_err(CertifyError::of)?)
         }
         GraphRef::Convex(graph) => Proofs::Convex(certify_convex(graph, rows, options).map_err(CertifyError::of)?),
         GraphRef::Boxes(_) => return Err(CertifyError::NoGraph),

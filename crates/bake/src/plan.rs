@@ -9,7 +9,7 @@ use crate::table::{TableOptions, planar_parts};
 use sightlines_cells::{CellGraph, Plan, Planar};
 use sightlines_progress::Observer;
 use sightlines_pvs::{Table, TableKind};
-use sightlines_stabtree::{SearchOptions, Zones, plan_visibility};
+use sightlines_stabtree::{SearchOptions, Zones, planar_visibility};
 use std::fmt;
 use std::time::Instant;
 
@@ -67,7 +67,7 @@ pub fn bake_plan(plan: &Plan, options: &PlanBakeOptions<'_>) -> Result<BakedPlan
         ..SearchOptions::default()
     };
     let start = Instant::now();
-    let (rows, found) = plan_visibility(&graph, &Zones::cells(&graph), &search)?;
+    let (rows, found) = planar_visibility(&graph, &Zones::cells(&graph), &search)?;
     report.see_time = start.elapsed();
     report.n_cells = graph.n_cells();
     report.n_portals = graph.portals().len();

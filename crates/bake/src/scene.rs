@@ -15,7 +15,7 @@ use sightlines_geometry::Aabb;
 use sightlines_kdtree::{SceneOptions, SceneSummary, subdivide_scene};
 use sightlines_progress::{Allowance, Observer, Units};
 use sightlines_pvs::{CellRecord, Locator, MirrorRecord, SceneMethods, Table, TableKind, TableParts};
-use sightlines_stabtree::{PairMask, SearchOptions, SpaceVisibility, space_visibility};
+use sightlines_stabtree::{AxialVisibility, PairMask, SearchOptions, axial_visibility};
 use std::time::Instant;
 
 /// Which portals the search goes through.
@@ -106,7 +106,7 @@ pub(crate) fn see_scene(
         PortalMode::Bounding => merge_portals(&cut.graph),
         PortalMode::Exact => cut.graph,
     };
-    let mut seen = space_visibility(&graph, &solid, &boxes, &search)?;
+    let mut seen = axial_visibility(&graph, &solid, &boxes, &search)?;
     let left = seen.left.take();
     let see_time = start.elapsed();
     let found = mirrors::of_scene(&graph, scene);
@@ -178,7 +178,7 @@ pub(crate) fn info(options: &SceneBakeOptions<'_>, cut: &SceneSummary) -> Vec<(S
 /// The parts of the table of a scene that was cut, from what its cells see.
 pub(crate) fn scene_parts(
     graph: &CellGraph<Axial>,
-    seen: SpaceVisibility,
+    seen: AxialVisibility,
     scene: &Scene,
     boxes: &[Aabb<3>],
     info: Vec<(String, String)>,

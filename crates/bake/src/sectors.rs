@@ -3,7 +3,7 @@
 use crate::error::BakeError;
 use sightlines_cells::Plan;
 use sightlines_pvs::BitMatrix;
-use sightlines_stabtree::{SearchOptions, Zones, plan_visibility};
+use sightlines_stabtree::{SearchOptions, Zones, planar_visibility};
 use sightlines_triangulation::{Summary, TriangulationError, subdivide};
 
 /// Which groups see each other, groups by groups: symmetric, with the diagonal set, for groups below
@@ -28,7 +28,7 @@ pub fn see_groups(plan: &Plan, n_groups: u32, options: &SearchOptions<'_>) -> Re
         Err(error) => return Err(error.into()),
     };
     let (zones, groups) = Zones::by_groups(&graph);
-    let (visible, _) = plan_visibility(&graph, &zones, options)?;
+    let (visible, _) = planar_visibility(&graph, &zones, options)?;
     for (zone, own) in groups.iter().enumerate() {
         for other in visible.iter_ones(zone) {
             for &a in own {

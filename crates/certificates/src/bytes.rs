@@ -67,20 +67,20 @@ pub enum ReadErrorKind {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// Of a plan: polygons joined by segments.
-    Plan,
+    Planar,
     /// Of a scene in space cut into boxes.
-    Space,
+    Axial,
     /// Of convex cells in space, as Quake maps have them.
     Convex,
 }
 
 impl Kind {
-    const ALL: [Self; 3] = [Self::Plan, Self::Space, Self::Convex];
+    const ALL: [Self; 3] = [Self::Planar, Self::Axial, Self::Convex];
 
     const fn code(self) -> u8 {
         match self {
-            Self::Plan => 1,
-            Self::Space => 2,
+            Self::Planar => 1,
+            Self::Axial => 2,
             Self::Convex => 3,
         }
     }
@@ -119,7 +119,7 @@ pub(crate) fn unframed(bytes: &[u8]) -> Result<(Kind, Reader<'_>), ReadError> {
         return fail(end, ReadErrorKind::Checksum);
     }
     match Kind::ALL.into_iter().find(|kind| kind.code() == bytes[12]) {
-        Some(kind) if version != FIRST_VERSION && kind == Kind::Plan => fail(8, ReadErrorKind::Version(version)),
+        Some(kind) if version != FIRST_VERSION && kind == Kind::Planar => fail(8, ReadErrorKind::Version(version)),
         Some(kind) => Ok((kind, Reader { bytes: &bytes[..end], at: HEAD, version })),
         None => fail(12, ReadErrorKind::Kind(bytes[12])),
     }
@@ -379,9 +379,9 @@ mod tests {
             writer.whole(&BigInt::from(y));
             writer.double(z, true);
             writer.double(f64::from(z as f32), false);
-            let bytes = framed(Kind::Space, FIRST_VERSION, writer);
+            let bytes = framed(Kind::Axial, FIRST_VERSION, writer);
             let (kind, mut reader) = unframed(&bytes).unwrap();
-            prop_assert_eq!(kind, Kind::Space);
+            prop_assert_eq!(kind, Kind::Axial);
             prop_assert_eq!(reader.number().unwrap(), x);
             prop_assert_eq!(reader.whole().unwrap(), BigInt::from(y));
             prop_assert_eq!(reader.coordinate(true).unwrap(), z);
@@ -391,7 +391,7 @@ mod tests {
     }
 
     fn of(body: &[u8]) -> Vec<u8> {
-        framed(Kind::Plan, FIRST_VERSION, Writer(body.to_vec()))
+        framed(Kind::Planar, FIRST_VERSION, Writer(body.to_vec()))
     }
 
     #[test]

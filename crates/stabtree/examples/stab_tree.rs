@@ -8,7 +8,7 @@ use sightlines_pvs::BitMatrix;
 use sightlines_scenes::{OfficeOptions, office};
 use sightlines_sightline::{Funnel, Verdict};
 use sightlines_stabtree::{
-    Barrier, PlanPath, PlanProof, SearchLimit, SearchOptions, Sight, StabTree, Zones, explain, plan_visibility,
+    Barrier, PlanarPath, PlanarProof, SearchLimit, SearchOptions, Sight, StabTree, Zones, explain, planar_visibility,
 };
 use std::fmt::Write;
 
@@ -34,14 +34,14 @@ fn print_explanation(graph: &CellGraph<Planar>, from: CellId, to: CellId) {
     println!("does cell {from} see {}?", place(graph, to));
     match explain(graph, from, to, 1, 1_000_000) {
         Verdict::Visible(Sight::SameCell) => println!("  it is the same cell"),
-        Verdict::Visible(Sight::Along(PlanPath { portals, doors, witness })) => {
+        Verdict::Visible(Sight::Along(PlanarPath { portals, doors, witness })) => {
             println!("  yes, through {} portals", portals.len());
             if let Some([p, q]) = witness.rounded(&doors) {
                 println!("  along the line from {p} to {q}");
             }
         }
         Verdict::Hidden(Barrier::NotConnected) => println!("  no: no portals lead there"),
-        Verdict::Hidden(Barrier::Blocked(PlanProof { n_blocked, blocked })) => {
+        Verdict::Hidden(Barrier::Blocked(PlanarProof { n_blocked, blocked })) => {
             println!("  no: {n_blocked} sequences of portals are blocked");
             for sequence in blocked {
                 let cause = sequence.certificate.portals();
@@ -183,7 +183,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         office(OfficeOptions { seed: 3, rooms_x: 8, rooms_y: 2, furniture: false, ..OfficeOptions::default() })?;
     let (graph, _) = sightlines_triangulation::subdivide(&floor)?;
     let zones = Zones::cells(&graph);
-    let (seen, summary) = plan_visibility(&graph, &zones, &SearchOptions::default())?;
+    let (seen, summary) = planar_visibility(&graph, &zones, &SearchOptions::default())?;
     let n = graph.n_cells() as u64;
     let n_visible = (seen.count_ones() - n) / 2;
     println!("{n} cells, {} portals: {n_visible} of {} pairs see each other", graph.portals().len(), n * (n - 1) / 2);

@@ -15,11 +15,11 @@ pub struct BlockedSequence {
 }
 
 /// The explanation for two cells of a plan.
-pub type PlanExplanation = Explanation<PlanPath, PlanProof>;
+pub type PlanarExplanation = Explanation<PlanarPath, PlanarProof>;
 
 /// How one cell of a plan sees another.
 #[derive(Debug, Clone, PartialEq)]
-pub struct PlanPath {
+pub struct PlanarPath {
     /// The portals between them, in order.
     pub portals: Vec<PortalId>,
     /// The same portals, oriented for crossing them in this order.
@@ -30,7 +30,7 @@ pub struct PlanPath {
 
 /// Why one cell of a plan does not see another: every sequence of portals towards the target ends at a blocked one.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct PlanProof {
+pub struct PlanarProof {
     /// Number of blocked sequences.
     pub n_blocked: u64,
     /// The first of them, as many as requested.
@@ -45,7 +45,7 @@ pub fn explain(
     to: CellId,
     max_proofs: usize,
     max_visits: u64,
-) -> PlanExplanation {
+) -> PlanarExplanation {
     if from == to {
         return Verdict::Visible(Sight::SameCell);
     }
@@ -93,7 +93,7 @@ pub fn explain(
             }
         }
     }
-    Verdict::Hidden(Barrier::Blocked(PlanProof { n_blocked: search.n_blocked, blocked: search.blocked }))
+    Verdict::Hidden(Barrier::Blocked(PlanarProof { n_blocked: search.n_blocked, blocked: search.blocked }))
 }
 
 struct Search<'a> {
@@ -115,10 +115,10 @@ impl Search<'_> {
         self.path.iter().map(|e| e.portal).collect()
     }
 
-    fn visible(&self, funnel: &Funnel<Adaptive>) -> PlanExplanation {
+    fn visible(&self, funnel: &Funnel<Adaptive>) -> PlanarExplanation {
         debug_assert!(self.path.last().is_some_and(|e| e.to == self.to));
         let (portals, doors) = (self.portals(), self.doors());
-        Verdict::Visible(Sight::Along(PlanPath { portals, doors, witness: Box::new(funnel.witness()) }))
+        Verdict::Visible(Sight::Along(PlanarPath { portals, doors, witness: Box::new(funnel.witness()) }))
     }
 
     fn note_blocked(&mut self) {

@@ -10,8 +10,8 @@ use sightlines_sightline::Verdict;
 ///
 /// | graph | search | path | proof | doubt |
 /// | --- | --- | --- | --- | --- |
-/// | plan | [`explain`](fn@crate::explain) | [`PlanPath`](crate::PlanPath) | [`PlanProof`](crate::PlanProof) | [`SearchLimit`] |
-/// | boxes in space | [`explain_space`](crate::explain_space) | [`SpacePath`](crate::SpacePath) | [`SpaceProof`](crate::SpaceProof) | [`SearchLimit`] |
+/// | plan | [`explain`](fn@crate::explain) | [`PlanarPath`](crate::PlanarPath) | [`PlanarProof`](crate::PlanarProof) | [`SearchLimit`] |
+/// | boxes in space | [`explain_axial`](crate::explain_axial) | [`AxialPath`](crate::AxialPath) | [`AxialProof`](crate::AxialProof) | [`SearchLimit`] |
 /// | convex cells | [`explain_convex`](crate::explain_convex) | [`ConvexPath`](crate::ConvexPath) | [`ConvexProof`](crate::ConvexProof) | [`ConvexDoubt`](crate::ConvexDoubt) |
 pub type Explanation<Path, Proof, Doubt = SearchLimit> = Verdict<Sight<Path>, Barrier<Proof>, Doubt>;
 

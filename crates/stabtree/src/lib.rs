@@ -3,18 +3,19 @@
 //! # Scope
 //!
 //! - **Owns**: [`visible_zones`] (which cells, or groups of cells, see each other, by portal sequences),
-//!   [`space_visibility`] (the same for boxes in space, and for objects, by the walls between them), [`LiveSpace`] (that answer
+//!   [`axial_visibility`] (the same for boxes in space, and for objects, by the walls between them), [`LiveAxial`] (that answer
 //!   kept up to date while walls and objects change), [`box_visibility`] (from-region queries for boxes that are no cells),
 //!   [`ConvexSearch`] (which cells see each other through convex portals in space, by beams and sequences),
 //!   [`StabTree`] (every stabbable portal sequence out of one cell), [`stab_trees`] (those out of all cells, in one graph,
 //!   up to a limit), [`explain`](fn@explain),
-//!   [`explain_space`] and [`explain_convex`] (the line between two cells, or why there is none), [`certify_plan`],
-//!   [`certify_space`] and [`certify_convex`] (proofs of all rows of a table).
+//!   [`explain_axial`] and [`explain_convex`] (the line between two cells, or why there is none), [`certify_planar`],
+//!   [`certify_axial`] and [`certify_convex`] (proofs of all rows of a table).
 //! - **Out of scope**: files, tables, how cells were cut. The search over sequences is generic over the
 //!   [`Stabber`](sightlines_sightline::Stabber), and with it over the dimension.
 //! - **Invariants**: the answer is exact if the stabber is; it is symmetric, has every zone see itself, and
 //!   does not depend on the number of threads or on which hints a caller gives.
 
+mod axial;
 mod certify;
 mod chords;
 mod convex;
@@ -22,25 +23,26 @@ mod explain;
 mod explanation;
 mod network;
 mod search;
-mod space;
 mod tree;
 mod zones;
 
-pub use certify::{CertifyError, CertifyOptions, ObjectRows, certify_plan, certify_space, plan_network, space_network};
+pub use axial::{
+    AxialExplainer, AxialExplanation, AxialPath, AxialProof, AxialUpdate, AxialVisibility, BoxVisibility, LiveAxial,
+    PairMask, axial_visibility, box_visibility, explain_axial,
+};
+pub use certify::{
+    CertifyError, CertifyOptions, ObjectRows, axial_network, certify_axial, certify_planar, planar_network,
+};
 pub use chords::{shoot_axial_chords, shoot_chords};
 pub use convex::{
     BlockedConvex, Blocking, ConvexCounters, ConvexDoubt, ConvexExplainer, ConvexExplanation, ConvexGate,
     ConvexOptions, ConvexPath, ConvexProof, ConvexSearch, ConvexState, ConvexVisibility, MOST_EXPLAINED, WorkChain,
     certify_convex, check_convex, convex_network, explain_convex,
 };
-pub use explain::{BlockedSequence, PlanExplanation, PlanPath, PlanProof, explain};
+pub use explain::{BlockedSequence, PlanarExplanation, PlanarPath, PlanarProof, explain};
 pub use explanation::{Barrier, Explanation, SearchLimit, Sight};
 pub use network::Network;
 pub use search::{SearchOptions, SearchSummary, ZoneVisibility, visible_zones};
-pub use space::{
-    BoxVisibility, LiveSpace, PairMask, SpaceExplainer, SpaceExplanation, SpacePath, SpaceProof, SpaceUpdate,
-    SpaceVisibility, box_visibility, explain_space, space_visibility,
-};
 pub use tree::{
     ByPolygons, ByStabber, Follower, StabNode, StabTree, StabTreesOptions, StabTreesSummary, TooLarge, gate_of,
     portal_of, stab_trees, stab_trees_axial, stab_trees_convex, stab_trees_planar,
@@ -63,7 +65,7 @@ use sightlines_sightline::Funnel;
 ///
 /// # Errors
 /// [`Cancelled`] by the observer.
-pub fn plan_visibility(
+pub fn planar_visibility(
     graph: &CellGraph<Planar>,
     zones: &Zones,
     options: &SearchOptions<'_>,

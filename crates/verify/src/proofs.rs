@@ -3,9 +3,9 @@
 //! The proofs are checked by `sightlines-certificates`, which knows no tables: what it proves of cells and portals is compared
 //! here with what the table says. Whether cells and portals are those of the scene is what the structure's check is for.
 
+use sightlines_certificates::axial::{AxialNetwork, AxialNetworkError, AxialPortal, AxialProofs};
 use sightlines_certificates::convex::{ConvexNetwork, ConvexNetworkError, ConvexPortal, ConvexProofs};
-use sightlines_certificates::plan::{NetworkError, PlanNetwork, PlanPortal, PlanProofs};
-use sightlines_certificates::space::{BoxNetwork, BoxNetworkError, BoxPortal, BoxProofs};
+use sightlines_certificates::planar::{NetworkError, PlanarNetwork, PlanarPortal, PlanarProofs};
 use sightlines_certificates::{Kind, Proven, ReadError, Refusal, kind_of};
 use sightlines_pvs::{CellId, SceneMethods, Table, TableKind};
 use std::fmt;
@@ -36,7 +36,7 @@ pub enum ProofError {
     Plan(#[from] NetworkError),
     /// Cells or portals of a scene in space that nothing can be proven about.
     #[error("the table: {0}")]
-    Space(#[from] BoxNetworkError),
+    Space(#[from] AxialNetworkError),
     /// Cells or portals of a Quake map that nothing can be proven about.
     #[error("the table: {0}")]
     Convex(#[from] ConvexNetworkError),
@@ -196,7 +196,7 @@ pub fn can_be_proven(table: &Table) -> bool {
 
 /// Checks all proofs, and compares what they prove with a table. Exact.
 ///
-/// Cost: as for [`PlanProofs::check`], [`BoxProofs::check`] and [`ConvexProofs::check`], and O(cells (cells + objects)), where the objects of cells
+/// Cost: as for [`PlanarProofs::check`], [`AxialProofs::check`] and [`ConvexProofs::check`], and O(cells (cells + objects)), where the objects of cells
 /// are those that touch them also O(cells) for each cell that an object touches.
 ///
 /// # Errors
@@ -204,8 +204,8 @@ pub fn can_be_proven(table: &Table) -> bool {
 pub fn check_proofs(table: &Table, bytes: &[u8]) -> Result<ProofFindings, ProofError> {
     let kind = kind_of(bytes)?;
     let proven = match kind {
-        Kind::Plan => PlanProofs::from_bytes(bytes)?.check(&plan_of(table)?),
-        Kind::Space => BoxProofs::from_bytes(bytes)?.check(&boxes_of(table)?),
+        Kind::Planar => PlanarProofs::from_bytes(bytes)?.check(&plan_of(table)?),
+        Kind::Axial => AxialProofs::from_bytes(bytes)?.check(&boxes_of(table)?),
         Kind::Convex => ConvexProofs::from_bytes(bytes)?.check(&convex_of(table)?),
     };
     Ok(match proven {
@@ -222,7 +222,7 @@ pub fn check_proofs(table: &Table, bytes: &[u8]) -> Result<ProofFindings, ProofE
 ///
 /// # Errors
 /// [`ProofError`] for other tables, stripped ones, and those whose cells and portals do not fit together.
-pub fn plan_of(table: &Table) -> Result<PlanNetwork, ProofError> {
+pub fn plan_of(table: &Table) -> Result<PlanarNetwork, ProofError> {
     if table.dimension() != 2 {
         return Err(ProofError::Kind { proofs: "a plan", table: "of a scene in space" });
     }
@@ -232,17 +232,17 @@ pub fn plan_of(table: &Table) -> Result<PlanNetwork, ProofError> {
     let cells: Vec<Vec<[f64; 2]>> = table.cells().iter().map(|cell| cell.polygon.clone()).collect();
     let portal = |p: &sightlines_pvs::PortalRecord| {
         let [[lx, ly, _], [rx, ry, _]] = p.points[..] else { return None };
-        Some(PlanPortal { cells: p.cells.map(|cell| cell.0), sides: p.sides, left: [lx, ly], right: [rx, ry] })
+        Some(PlanarPortal { cells: p.cells.map(|cell| cell.0), sides: p.sides, left: [lx, ly], right: [rx, ry] })
     };
-    let portals: Option<Vec<PlanPortal>> = table.portals().iter().map(portal).collect();
-    Ok(PlanNetwork::new(&cells, &portals.ok_or(ProofError::NoGraph)?)?)
+    let portals: Option<Vec<PlanarPortal>> = table.portals().iter().map(portal).collect();
+    Ok(PlanarNetwork::new(&cells, &portals.ok_or(ProofError::NoGraph)?)?)
 }
 
 /// The cells, portals and objects of a table of a scene in space, as proofs know them.
 ///
 /// # Errors
 /// [`ProofError`] for other tables, stripped ones, those of regions, and those whose cells and portals do not fit together.
-pub fn boxes_of(table: &Table) -> Result<BoxNetwork, ProofError> {
+pub fn boxes_of(table: &Table) -> Result<AxialNetwork, ProofError> {
     if table.dimension() != 3 {
         return Err(ProofError::Kind { proofs: "a scene in space", table: "of a plan" });
     }
@@ -270,10 +270,10 @@ pub fn boxes_of(table: &Table) -> Result<BoxNetwork, ProofError> {
         if p.points.len() != 4 || !p.points.iter().all(corner) || !differ {
             return Err(ProofError::Portal(index));
         }
-        portals.push(BoxPortal { cells: p.cells.map(|cell| cell.0), extent, axis, forward: p.sides[0] % 2 == 1 });
+        portals.push(AxialPortal { cells: p.cells.map(|cell| cell.0), extent, axis, forward: p.sides[0] % 2 == 1 });
     }
     let objects: Vec<_> = table.objects().iter().map(|object| [object.min, object.max]).collect();
-    Ok(BoxNetwork::new(&cells, &portals)?.with_objects(&objects))
+    Ok(AxialNetwork::new(&cells, &portals)?.with_objects(&objects))
 }
 
 /// The cells and portals of a table of a Quake map, as proofs know them: with corners that count as on a portal's plane within

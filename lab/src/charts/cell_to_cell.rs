@@ -19,7 +19,7 @@ use sightlines::kdtree::{SceneOptions, subdivide_scene};
 use sightlines::pvs::BitMatrix;
 use sightlines::scenes::{OfficeOptions, doom_like, maze, office};
 use sightlines::sightline::{AxialStabber, Funnel, Stabber};
-use sightlines::stabtree::{Network, SearchOptions, Zones, plan_visibility, space_visibility, visible_zones};
+use sightlines::stabtree::{Network, SearchOptions, Zones, axial_visibility, planar_visibility, visible_zones};
 use sightlines_benches::quake::MapSpec;
 use sightlines_benches::quake::job::{self, Method};
 use sightlines_benches::spec::SceneSpec;
@@ -250,7 +250,7 @@ fn in_the_plane(settings: &Settings, name: &str, plan: &Plan, rows: &mut Vec<Row
     let graph: CellGraph<Planar> = sightlines::triangulation::subdivide(plan).map_err(|e| failed(name)(e.into()))?.0;
     let zones = Zones::cells(&graph);
     let (truth, seconds, repeats) =
-        settings.best_of(|| plan_visibility(&graph, &zones, &one_thread()).expect("nobody cancels").0);
+        settings.best_of(|| planar_visibility(&graph, &zones, &one_thread()).expect("nobody cancels").0);
     let mut case = Case { settings, name, truth: truth.clone(), truth_by: "funnel", rows };
     case.add("funnel after chords (shipped)", &truth, seconds, repeats, "");
     let network: Network<Portal2, _> = Network::planar(&graph, &zones);
@@ -271,7 +271,7 @@ fn among_boxes(
     let cut = subdivide_scene(scene, &SceneOptions::default()).map_err(|e| failed(name)(e.into()))?;
     let (graph, solid) = (&cut.graph, cut.left_out());
     let see = |graph: &CellGraph<Axial>| {
-        settings.best_of(|| space_visibility(graph, &solid, &[], &one_thread()).expect("nobody cancels"))
+        settings.best_of(|| axial_visibility(graph, &solid, &[], &one_thread()).expect("nobody cancels"))
     };
     let (seen, seconds, repeats) = see(graph);
     let options = SceneBakeOptions { portals: PortalMode::Bounding, ..SceneBakeOptions::default() };

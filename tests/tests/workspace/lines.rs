@@ -5,13 +5,13 @@ use sightlines::bake::from_table;
 use sightlines::bake::lines::{LineOptions, Lines, Obstacle, lines};
 use sightlines::bake::{BakeRequest, TableGraph, bake};
 use sightlines::cells::PortalId;
-use sightlines::certificates::space::{BoxLine, BoxNetwork, BoxPortal};
+use sightlines::certificates::axial::{AxialLine, AxialNetwork, AxialPortal};
 use sightlines::formats::quake::{Bsp, BspFormat};
 use sightlines::pvs::{CellId, PortalRecord, Table};
 use sightlines::scenes::world::{QuakeLikeOptions, quake_like};
 use sightlines::scenes::{OfficeOptions, TowerOptions, office, tower};
 use sightlines::sightline::Verdict;
-use sightlines::stabtree::{Sight, explain, explain_convex, explain_space};
+use sightlines::stabtree::{Sight, explain, explain_axial, explain_convex};
 use sightlines_tests::world_files::{bsp_bytes, prt_of_world};
 use std::sync::LazyLock;
 
@@ -49,7 +49,7 @@ fn explained(graph: &TableGraph, from: CellId, to: CellId) -> Option<Vec<PortalI
             Verdict::Visible(Sight::Along(path)) => Some(path.portals),
             _ => None,
         },
-        TableGraph::Axial(graph) => match explain_space(graph, &[], from, to, 2_000) {
+        TableGraph::Axial(graph) => match explain_axial(graph, &[], from, to, 2_000) {
             Verdict::Visible(Sight::Along(path)) => Some(path.portals),
             _ => None,
         },
@@ -121,15 +121,15 @@ fn lines_in_space_are_followed_by_the_checker_of_proofs() {
         let extent = [corner(f64::min), corner(f64::max)];
         let axis = (0..3).find(|&k| extent[0][k] == extent[1][k]).expect("portals are flat");
         let forward = table.cells()[portal.cells[0].idx()].max[axis] == extent[0][axis];
-        BoxPortal { cells: portal.cells.map(|id| id.0), extent, axis: axis as u8, forward }
+        AxialPortal { cells: portal.cells.map(|id| id.0), extent, axis: axis as u8, forward }
     };
-    let portals: Vec<BoxPortal> = table.portals().iter().map(portal).collect();
-    let network = BoxNetwork::new(&cells, &portals).expect("a network");
+    let portals: Vec<AxialPortal> = table.portals().iter().map(portal).collect();
+    let network = AxialNetwork::new(&cells, &portals).expect("a network");
     let found = lines_of(table, ALL);
     let mut n_followed = 0;
     for line in &found.lines {
         let Some([from, to]) = line.ends else { continue };
-        let passed = network.follow(&BoxLine::through(line.cells[0].0, from, to));
+        let passed = network.follow(&AxialLine::through(line.cells[0].0, from, to));
         if line.cells.iter().all(|cell| passed.contains(&cell.0)) {
             n_followed += 1;
         }
@@ -138,7 +138,7 @@ fn lines_in_space_are_followed_by_the_checker_of_proofs() {
     // Not every line does: one that is moved leaves the way.
     let line = found.lines.iter().find(|line| line.cells.len() > 3 && line.ends.is_some()).expect("a long line");
     let [from, to] = line.ends.expect("it has some");
-    let moved = network.follow(&BoxLine::through(line.cells[0].0, from, [to[0], to[1] + 1000.0, to[2]]));
+    let moved = network.follow(&AxialLine::through(line.cells[0].0, from, [to[0], to[1] + 1000.0, to[2]]));
     assert!(!line.cells.iter().all(|cell| moved.contains(&cell.0)));
 }
 

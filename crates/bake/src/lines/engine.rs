@@ -6,8 +6,8 @@ use sightlines_cells::{CellGraph, CellId, Convex, Planar, PortalId};
 use sightlines_geometry::Aabb;
 use sightlines_sightline::{Branch, Line3, Verdict};
 use sightlines_stabtree::{
-    Barrier, ConvexExplainer, ConvexGate, ConvexPath, ConvexProof, PlanPath, Sight, SpaceExplainer, SpacePath,
-    SpaceProof, explain,
+    AxialExplainer, AxialPath, AxialProof, Barrier, ConvexExplainer, ConvexGate, ConvexPath, ConvexProof, PlanarPath,
+    Sight, explain,
 };
 
 /// Cells entered in a plan, linear programs in space, and sequences of portals of a Quake map, after which a pair is given up. Fewer than
@@ -21,7 +21,7 @@ const MAX_WALLS: usize = 12;
 
 pub(super) enum Engine<'a> {
     Plan(&'a CellGraph<Planar>),
-    Space(SpaceExplainer<'a>),
+    Space(AxialExplainer<'a>),
     Convex(&'a CellGraph<Convex>, ConvexExplainer),
 }
 
@@ -33,7 +33,7 @@ impl<'a> Engine<'a> {
         match graph {
             TableGraph::Planar(graph) => Some(Self::Plan(graph)),
             // The table does not record what was left out beside its cells, and no answer depends on it.
-            TableGraph::Axial(graph) => Some(Self::Space(SpaceExplainer::new(graph, &[]))),
+            TableGraph::Axial(graph) => Some(Self::Space(AxialExplainer::new(graph, &[]))),
             TableGraph::Convex(graph) => Some(Self::Convex(graph, ConvexExplainer::new(graph))),
             TableGraph::Boxes(_) => None,
         }
@@ -62,7 +62,7 @@ impl<'a> Engine<'a> {
                 |proof| proof.blocked.into_iter().next().map(|way| Obstacle::Portals(way.portals)),
             ),
             Self::Space(explainer) => {
-                let line = |path: SpacePath| Some(space_line(from, path));
+                let line = |path: AxialPath| Some(space_line(from, path));
                 found(explainer.explain(from, to, MAX_PROGRAMS), line, |proof| Some(Obstacle::Walls(walls(&proof))))
             }
             Self::Convex(graph, explainer) => found(
@@ -90,7 +90,7 @@ fn found<Path, Proof, Doubt>(
     }
 }
 
-fn plan_line(graph: &CellGraph<Planar>, [from, to]: [CellId; 2], path: &PlanPath) -> Option<SightLine> {
+fn plan_line(graph: &CellGraph<Planar>, [from, to]: [CellId; 2], path: &PlanarPath) -> Option<SightLine> {
     let mut cells = vec![from];
     for portal in &path.portals {
         let [a, b] = graph.portal(*portal).cells;
@@ -102,7 +102,7 @@ fn plan_line(graph: &CellGraph<Planar>, [from, to]: [CellId; 2], path: &PlanPath
     Some(SightLine { cells, portals: path.portals.clone(), ends })
 }
 
-fn space_line(from: CellId, path: SpacePath) -> SightLine {
+fn space_line(from: CellId, path: AxialPath) -> SightLine {
     // Without points in the cells, those in the first and the last portal.
     let crossing = |k: usize| path.witness.crossing(&path.doors[k]);
     let ends = path.ends.or_else(|| Some([crossing(0)?, crossing(path.doors.len() - 1)?]));
@@ -138,7 +138,7 @@ fn convex_ends(graph: &CellGraph<Convex>, gates: &[ConvexGate], line: &Line3) ->
 }
 
 /// The walls of a proof, those that it goes past most often first.
-fn walls(SpaceProof { proof, walls, .. }: &SpaceProof) -> Vec<Aabb<3>> {
+fn walls(AxialProof { proof, walls, .. }: &AxialProof) -> Vec<Aabb<3>> {
     fn count(branch: &Branch, n: &mut [usize]) {
         if let Branch::Past { rectangle, ways, .. } = branch {
             n[*rectangle as usize] += 1;

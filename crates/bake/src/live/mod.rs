@@ -1,7 +1,7 @@
 //! The table of a scene that changes: doors that close and open, walls that are built, moved and torn down, furniture
 //! that is carried about.
 //!
-//! The scene is cut with what the last one leaves of its faces ([`SceneCutter`]); [`LiveSpace`] updates the visibility
+//! The scene is cut with what the last one leaves of its faces ([`SceneCutter`]); [`LiveAxial`] updates the visibility
 //! where walls differ. The table is the one that [`bake_scene`](crate::bake_scene) makes of the new scene, byte for
 //! byte, unless pairs are given up ([`SceneReport::n_assumed`](crate::SceneReport::n_assumed)): an update may know from
 //! an easier earlier search that these are hidden.
@@ -22,12 +22,12 @@ use sightlines_formats::SceneInfo;
 use sightlines_geometry::Aabb;
 use sightlines_kdtree::{SceneCutter, SceneOptions};
 use sightlines_pvs::Table;
-use sightlines_stabtree::{LiveSpace, SearchOptions, SpaceUpdate};
+use sightlines_stabtree::{AxialUpdate, LiveAxial, SearchOptions};
 use std::time::{Duration, Instant};
 
 /// A scene with its table, and the state that keeps the table up to date.
 ///
-/// Memory beside the table: see [`LiveSpace`].
+/// Memory beside the table: see [`LiveAxial`].
 #[derive(Debug, Clone)]
 pub struct LiveScene {
     how: How,
@@ -38,7 +38,7 @@ pub struct LiveScene {
     cut: Cut,
     /// Closed openings.
     closed: Vec<AxialDoor>,
-    space: LiveSpace,
+    space: LiveAxial,
     table: Table,
 }
 
@@ -63,7 +63,7 @@ impl How {
 #[non_exhaustive]
 pub struct LiveUpdate {
     /// What changed, and how it was decided.
-    pub space: SpaceUpdate,
+    pub space: AxialUpdate,
     /// Time to cut the scene.
     pub cut_time: Duration,
     /// Time to decide what is visible.
@@ -84,7 +84,7 @@ impl LiveScene {
         let cut = Cut::of(&mut cutter, &scene, &how.cut, portals)?;
         let search = SearchOptions { threads, progress, ..SearchOptions::default() };
         let boxes = extents(&scene);
-        let space = LiveSpace::new(cut.graph.clone(), &cut.solid, boxes.clone(), &search)?;
+        let space = LiveAxial::new(cut.graph.clone(), &cut.solid, boxes.clone(), &search)?;
         let table = tabulate(&scene, &boxes, &cut, &space, &how)?;
         Ok(Self { how, scene, boxes, cutter, cut, closed: Vec::new(), space, table })
     }
@@ -182,7 +182,7 @@ fn lies_in(portal: &AxialDoor, door: &AxialDoor) -> bool {
     portal.axis == door.axis && outer.contains(inner.min) && outer.contains(inner.max)
 }
 
-fn tabulate(scene: &Scene, boxes: &[Aabb<3>], cut: &Cut, space: &LiveSpace, how: &How) -> Result<Table, BakeError> {
+fn tabulate(scene: &Scene, boxes: &[Aabb<3>], cut: &Cut, space: &LiveAxial, how: &How) -> Result<Table, BakeError> {
     let info = info(&how.options(), &cut.summary);
     let mirrors = mirrors::of_scene(&cut.graph, scene).parts;
     let mut parts = scene_parts(&cut.graph, space.seen().clone(), scene, boxes, info, mirrors);

@@ -7,7 +7,7 @@ use sightlines_geometry::Aabb;
 use sightlines_pvs::{BitMatrix, CellRecord, Locator, PortalRecord, Table, TableKind, TableParts};
 use sightlines_scenes::{TowerOptions, tower};
 use sightlines_sightline::{Target, Verdict};
-use sightlines_stabtree::{Barrier, Sight, SpacePath, SpaceProof, explain_space};
+use sightlines_stabtree::{AxialPath, AxialProof, Barrier, Sight, explain_axial};
 use std::collections::BTreeSet;
 
 const MODES: [PortalMode; 2] = [PortalMode::Exact, PortalMode::Bounding];
@@ -64,9 +64,9 @@ fn explanations_agree_with_tables() {
         let ids = || (0..table.n_cells() as u32).step_by(5).map(CellId);
         for (a, b) in ids().flat_map(|a| ids().map(move |b| (a, b))) {
             let [from, to] = [a, b].map(|cell| graph.cell(cell).bounds);
-            match explain_space(&graph, &[], a, b, 20_000) {
+            match explain_axial(&graph, &[], a, b, 20_000) {
                 Verdict::Visible(Sight::SameCell) => assert_eq!(a, b),
-                Verdict::Visible(Sight::Along(SpacePath { portals, cells, doors, witness, ends })) => {
+                Verdict::Visible(Sight::Along(AxialPath { portals, cells, doors, witness, ends })) => {
                     assert!(table.sees(a, b), "{a} {b}");
                     n_seen += 1;
                     n_ends += u32::from(ends.is_some());
@@ -82,7 +82,7 @@ fn explanations_agree_with_tables() {
                         assert!(cell.contains(end), "{a} {b} {end:?}");
                     }
                 }
-                Verdict::Hidden(Barrier::Blocked(SpaceProof { proof, walls, n_blockers })) => {
+                Verdict::Hidden(Barrier::Blocked(AxialProof { proof, walls, n_blockers })) => {
                     assert!(!table.sees(a, b), "{a} {b}");
                     n_hidden += 1;
                     assert!(proof.holds(&from, &to, Target::Inside, &walls) && walls.len() <= n_blockers);
@@ -106,7 +106,7 @@ fn a_closed_portal_is_explained() {
         let mut portals = table.portals().to_vec();
         let [a, b] = portals.remove(*closed).cells;
         let graph = graph(&with(&table, portals, BitMatrix::identity(table.n_cells())));
-        explain_space(&graph, &[], a, b, 20_000).is_hidden()
+        explain_axial(&graph, &[], a, b, 20_000).is_hidden()
     });
     assert!(closed.take(3).count() == 3);
 }
@@ -133,6 +133,6 @@ fn graphs_come_back_from_tables_that_have_them() {
     assert!(changed(&|p| p.points.truncate(3)).is_none());
     // Cells that nothing joins are no stripped table.
     let apart = with(&table, Vec::new(), BitMatrix::identity(table.n_cells()));
-    let explained = explain_space(&graph(&apart), &[], CellId(0), CellId(1), 1);
+    let explained = explain_axial(&graph(&apart), &[], CellId(0), CellId(1), 1);
     assert_eq!(explained, Verdict::Hidden(Barrier::NotConnected));
 }

@@ -8,9 +8,9 @@ use sightlines_bake::{
     BakeError, BakeInput, BakeRequest, Baked, BufferRequest, CellsFrom, CertifyError, RegionBakeOptions, Report,
     Runtime, SceneMethod, StabBakeError, StabOptions, TableGraph, bake, bake_regions, with_stab_trees,
 };
+use sightlines_certificates::axial::AxialProofs;
 use sightlines_certificates::convex::ConvexProofs;
-use sightlines_certificates::plan::PlanProofs;
-use sightlines_certificates::space::BoxProofs;
+use sightlines_certificates::planar::PlanarProofs;
 use sightlines_formats::quake::Prt;
 use sightlines_formats::{ViewCell, ViewCells};
 use sightlines_geometry::Aabb;
@@ -18,7 +18,7 @@ use sightlines_packed::{PackOptions, SizeClass, pack};
 use sightlines_progress::{Halt, Units};
 use sightlines_pvs::CellId;
 use sightlines_scenes::{CityOptions, OfficeOptions, TowerOptions, city_crossings, office, tower};
-use sightlines_stabtree::{CertifyOptions, convex_network, plan_network, space_network};
+use sightlines_stabtree::{CertifyOptions, axial_network, convex_network, planar_network};
 use sightlines_testkit::units::{Memory, Results, check_impostor, check_units};
 use std::collections::BTreeSet;
 
@@ -241,11 +241,11 @@ fn kept_proofs_are_not_trusted() {
 fn check_proofs(baked: &Baked<TableGraph, Report>, bytes: &[u8]) {
     let table = &baked.table;
     let proven = match &baked.graph {
-        TableGraph::Planar(graph) => PlanProofs::from_bytes(bytes).unwrap().check(&plan_network(graph).unwrap()),
+        TableGraph::Planar(graph) => PlanarProofs::from_bytes(bytes).unwrap().check(&planar_network(graph).unwrap()),
         TableGraph::Axial(graph) => {
             let boxes: Vec<_> = table.objects().iter().map(|object| [object.min, object.max]).collect();
-            let network = space_network(graph).unwrap().with_objects(&boxes);
-            BoxProofs::from_bytes(bytes).unwrap().check(&network)
+            let network = axial_network(graph).unwrap().with_objects(&boxes);
+            AxialProofs::from_bytes(bytes).unwrap().check(&network)
         }
         TableGraph::Convex(graph) => ConvexProofs::from_bytes(bytes).unwrap().check(&convex_network(graph).unwrap()),
         _ => panic!("cells without portals"),

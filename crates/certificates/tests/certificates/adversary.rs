@@ -1,7 +1,7 @@
 //! An adversary that proves as much as the checker accepts, true or not: no line refutes what is accepted.
 
 use proptest::prelude::*;
-use sightlines_certificates::plan::{PlanBlock, PlanLine, PlanNetwork, PlanPortal, PlanProofs, PlanWalk};
+use sightlines_certificates::planar::{PlanLine, PlanarBlock, PlanarNetwork, PlanarPortal, PlanarProofs, PlanarWalk};
 use sightlines_certificates::{Pairs, Refusal};
 
 /// Cells of a grid of squares of 4 units, three in a row.
@@ -21,14 +21,14 @@ struct Door {
     turned: bool,
 }
 
-fn network(n_rows: u32, doors: &[Door]) -> PlanNetwork {
+fn network(n_rows: u32, doors: &[Door]) -> PlanarNetwork {
     let cells: Vec<Vec<[f64; 2]>> = (0..WIDE * n_rows)
         .map(|cell| {
             let [x, y] = corner(cell);
             vec![[x, y], [x + 4.0, y], [x + 4.0, y + 4.0], [x, y + 4.0]]
         })
         .collect();
-    let portals: Vec<PlanPortal> = doors
+    let portals: Vec<PlanarPortal> = doors
         .iter()
         .filter(|d| if d.above { d.cell + WIDE < WIDE * n_rows } else { d.cell % WIDE + 1 < WIDE })
         .map(|d| {
@@ -39,16 +39,16 @@ fn network(n_rows: u32, doors: &[Door]) -> PlanNetwork {
                 false => (d.cell + 1, [1, 3], [x + 4.0, y + high], [x + 4.0, y + low]),
             };
             match d.turned {
-                false => PlanPortal { cells: [d.cell, other], sides, left, right },
-                true => PlanPortal { cells: [other, d.cell], sides: [sides[1], sides[0]], left: right, right: left },
+                false => PlanarPortal { cells: [d.cell, other], sides, left, right },
+                true => PlanarPortal { cells: [other, d.cell], sides: [sides[1], sides[0]], left: right, right: left },
             }
         })
         .collect();
-    PlanNetwork::new(&cells, &portals).expect("doors on sides")
+    PlanarNetwork::new(&cells, &portals).expect("doors on sides")
 }
 
 /// All pairs that are joined by lines next to two ends of doors.
-fn joined(network: &PlanNetwork) -> Pairs {
+fn joined(network: &PlanarNetwork) -> Pairs {
     const NEAR: f64 = 1.0 / 64.0;
     let mut pairs = Pairs::none(network.n_cells());
     let mut ends: Vec<[f64; 2]> = (0..network.n_portals() as u32).flat_map(|p| network.gate_ends(2 * p)).collect();
@@ -72,12 +72,12 @@ fn joined(network: &PlanNetwork) -> Pairs {
 
 /// Extends the walk of the last source by one decision after the other: blocked by the first reason that is accepted,
 /// else open.
-fn grow(proofs: &mut PlanProofs, network: &PlanNetwork, source: u32, reasons: &[PlanBlock]) -> bool {
+fn grow(proofs: &mut PlanarProofs, network: &PlanarNetwork, source: u32, reasons: &[PlanarBlock]) -> bool {
     let mut decisions: Vec<usize> = Vec::new();
     for _ in 0..4000 {
         let open: Vec<bool> = decisions.iter().map(|&k| k == reasons.len()).collect();
         let used = decisions.iter().filter(|&&k| k < reasons.len()).map(|&k| reasons[k].clone()).collect();
-        proofs.walks.push(PlanWalk::new(source, &open, used));
+        proofs.walks.push(PlanarWalk::new(source, &open, used));
         match proofs.check(network) {
             Ok(_) => return true,
             Err(Refusal::Block { block, .. }) => match decisions.iter().rposition(|&k| k < reasons.len()) {
@@ -105,11 +105,11 @@ fn door() -> impl Strategy<Value = Door> {
     })
 }
 
-fn reason() -> impl Strategy<Value = PlanBlock> {
+fn reason() -> impl Strategy<Value = PlanarBlock> {
     let shape = prop::sample::select(vec![[1, 1], [1, 2], [2, 1], [2, 2], [1, 3], [3, 1]]);
     shape.prop_flat_map(|[l, r]| {
         (prop::collection::vec(0u32..5, l), prop::collection::vec(0u32..5, r))
-            .prop_map(|(lefts, rights)| PlanBlock { lefts, rights })
+            .prop_map(|(lefts, rights)| PlanarBlock { lefts, rights })
     })
 }
 
@@ -126,7 +126,7 @@ proptest! {
         let truth = joined(&network);
         // A few joined pairs are not left open, so the adversary tries to prove them hidden.
         let unproven = truth.iter().zip(left_out).filter(|(_, k)| *k > 0).map(|(pair, _)| pair).collect();
-        let mut proofs = PlanProofs { checksum: network.checksum(), unproven, ..PlanProofs::default() };
+        let mut proofs = PlanarProofs { checksum: network.checksum(), unproven, ..PlanarProofs::default() };
         for source in 0..9 {
             let _ = grow(&mut proofs, &network, source, &reasons);
         }
@@ -134,6 +134,6 @@ proptest! {
         for [a, b] in truth.iter() {
             prop_assert!(!proven.hidden.has(a, b), "{a} and {b} are joined: {proofs:?}");
         }
-        prop_assert_eq!(PlanProofs::from_bytes(&proofs.to_bytes()), Ok(proofs));
+        prop_assert_eq!(PlanarProofs::from_bytes(&proofs.to_bytes()), Ok(proofs));
     }
 }

@@ -2,6 +2,6 @@
 
 mod adversary;
 mod adversary_convex;
+mod axial;
 mod convex;
-mod plan;
-mod space;
+mod planar;

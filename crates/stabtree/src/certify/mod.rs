@@ -3,13 +3,13 @@
 //! The results go to the makers of `sightlines-certificates`, which check each piece with their own code; so a defect
 //! here can leave pairs without a proof, but cannot prove anything wrong.
 
+mod axial;
 mod chain;
-mod plan;
-mod space;
+mod planar;
 
+pub use axial::{ObjectRows, axial_network, certify_axial};
 pub(crate) use chain::{Steps, through};
-pub use plan::{certify_plan, plan_network};
-pub use space::{ObjectRows, certify_space, space_network};
+pub use planar::{certify_planar, planar_network};
 
 use sightlines_progress::{Cancelled, Halt, Observer, Units};
 use std::error::Error;

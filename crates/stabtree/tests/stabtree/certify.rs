@@ -5,9 +5,9 @@ use crate::boxes::{cut, faces, objects};
 use proptest::prelude::*;
 use sightlines_cells::{Axial, CellGraph, Convex, Planar};
 use sightlines_certificates::Proven;
+use sightlines_certificates::axial::AxialProofs;
 use sightlines_certificates::convex::ConvexProofs;
-use sightlines_certificates::plan::PlanProofs;
-use sightlines_certificates::space::BoxProofs;
+use sightlines_certificates::planar::PlanarProofs;
 use sightlines_geometry::Aabb;
 use sightlines_pvs::{BitMatrix, ObjectId};
 use sightlines_scenes::world::{
@@ -15,8 +15,8 @@ use sightlines_scenes::world::{
 };
 use sightlines_scenes::{OfficeOptions, office};
 use sightlines_stabtree::{
-    CertifyOptions, ConvexOptions, ConvexSearch, ConvexVisibility, ObjectRows, SearchOptions, Zones, certify_convex,
-    certify_plan, certify_space, convex_network, plan_network, plan_visibility, space_network, space_visibility,
+    CertifyOptions, ConvexOptions, ConvexSearch, ConvexVisibility, ObjectRows, SearchOptions, Zones, axial_network,
+    axial_visibility, certify_axial, certify_convex, certify_planar, convex_network, planar_network, planar_visibility,
 };
 use sightlines_testkit::convex::seen_by_rays;
 use sightlines_testkit::{axial_plan, small_grid_plan};
@@ -26,22 +26,22 @@ fn search() -> SearchOptions<'static> {
 }
 
 fn rows_of_plan(graph: &CellGraph<Planar>) -> BitMatrix {
-    plan_visibility(graph, &Zones::cells(graph), &search()).expect("nobody cancels").0
+    planar_visibility(graph, &Zones::cells(graph), &search()).expect("nobody cancels").0
 }
 
 /// Proofs for these rows, through their bytes and the checker.
 fn proven_plan(graph: &CellGraph<Planar>, rows: &BitMatrix, options: &CertifyOptions<'_>) -> Proven {
-    let made = certify_plan(graph, rows, options).expect("the graph is good");
-    let read = PlanProofs::from_bytes(&made.to_bytes()).expect("what was written is read");
+    let made = certify_planar(graph, rows, options).expect("the graph is good");
+    let read = PlanarProofs::from_bytes(&made.to_bytes()).expect("what was written is read");
     assert_eq!(read, made);
-    read.check(&plan_network(graph).expect("the graph is good")).expect("proofs hold")
+    read.check(&planar_network(graph).expect("the graph is good")).expect("proofs hold")
 }
 
 fn proven_space(graph: &CellGraph<Axial>, rows: &BitMatrix) -> Proven {
-    let made = certify_space(graph, rows, None, &CertifyOptions::default()).expect("the graph is good");
-    let read = BoxProofs::from_bytes(&made.to_bytes()).expect("what was written is read");
+    let made = certify_axial(graph, rows, None, &CertifyOptions::default()).expect("the graph is good");
+    let read = AxialProofs::from_bytes(&made.to_bytes()).expect("what was written is read");
     assert_eq!(read, made);
-    read.check(&space_network(graph).expect("the graph is good")).expect("proofs hold")
+    read.check(&axial_network(graph).expect("the graph is good")).expect("proofs hold")
 }
 
 /// The same with objects, of which cells see those in `rows_of_objects`.
@@ -54,11 +54,11 @@ fn proven_objects(
     let of = |cell| rows_of_objects.iter_ones(cell).map(|object| ObjectId(object as u32)).collect();
     let seen: Vec<Vec<ObjectId>> = (0..graph.n_cells()).map(of).collect();
     let objects = ObjectRows { boxes: objects, seen: &seen };
-    let made = certify_space(graph, rows, Some(objects), &CertifyOptions::default()).expect("the graph is good");
-    let read = BoxProofs::from_bytes(&made.to_bytes()).expect("what was written is read");
+    let made = certify_axial(graph, rows, Some(objects), &CertifyOptions::default()).expect("the graph is good");
+    let read = AxialProofs::from_bytes(&made.to_bytes()).expect("what was written is read");
     assert_eq!(read, made);
     let boxes: Vec<_> = objects.boxes.iter().map(|b| [b.min, b.max]).collect();
-    read.check(&space_network(graph).expect("the graph is good").with_objects(&boxes)).expect("proofs hold")
+    read.check(&axial_network(graph).expect("the graph is good").with_objects(&boxes)).expect("proofs hold")
 }
 
 /// Asserts that exactly the content of `rows` is proven; returns how many pairs are visible and hidden.
@@ -124,7 +124,7 @@ proptest! {
         out in prop::collection::vec(prop::bool::weighted(0.25), 1..7),
     ) {
         let (graph, solid) = cut(&faces, &out);
-        let seen = space_visibility(&graph, &solid, &objects, &search()).expect("nobody cancels");
+        let seen = axial_visibility(&graph, &solid, &objects, &search()).expect("nobody cancels");
         prop_assert_eq!(seen.n_assumed, 0);
         let proven = proven_objects(&graph, &seen.cells, &objects, &seen.objects);
         assert_proven(&seen.cells, &proven);
@@ -146,7 +146,7 @@ proptest! {
         out in prop::collection::vec(prop::bool::weighted(0.25), 1..7),
     ) {
         let (graph, solid) = cut(&faces, &out);
-        let seen = space_visibility(&graph, &solid, &objects, &search()).expect("nobody cancels");
+        let seen = axial_visibility(&graph, &solid, &objects, &search()).expect("nobody cancels");
         let none = BitMatrix::new(graph.n_cells(), objects.len());
         let proven = proven_objects(&graph, &seen.cells, &objects, &none);
         for (cell, object) in (0..graph.n_cells()).flat_map(|cell| (0..objects.len()).map(move |object| (cell, object))) {
@@ -162,7 +162,7 @@ proptest! {
         pick in any::<prop::sample::Index>(),
     ) {
         let (graph, solid) = cut(&faces, &out);
-        let seen = space_visibility(&graph, &solid, &[], &search()).expect("nobody cancels");
+        let seen = axial_visibility(&graph, &solid, &[], &search()).expect("nobody cancels");
         if graph.n_cells() > 1 {
             let (a, b) = pair(pick, graph.n_cells());
             assert_nothing_wrong(&seen.cells, &proven_space(&graph, &flipped(&seen.cells, a, b)));
@@ -215,7 +215,7 @@ fn proofs_are_the_same_each_time() {
     let plan = office(OfficeOptions { seed: 7, rooms_x: 6, rooms_y: 3, ..OfficeOptions::default() }).unwrap();
     let cut = sightlines_kdtree::subdivide_plan(&plan, &sightlines_kdtree::Options::default()).unwrap();
     let rows = rows_of_plan(&cut.graph);
-    let made = || certify_plan(&cut.graph, &rows, &CertifyOptions::default()).unwrap().to_bytes();
+    let made = || certify_planar(&cut.graph, &rows, &CertifyOptions::default()).unwrap().to_bytes();
     assert_eq!(made(), made());
 }
 

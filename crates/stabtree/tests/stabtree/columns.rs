@@ -7,7 +7,7 @@ use sightlines_geometry::Aabb;
 use sightlines_kdtree::{AxialFace, SceneOptions, subdivide_scene};
 use sightlines_scenes::{TowerOptions, tower};
 use sightlines_sightline::ShaftCounters;
-use sightlines_stabtree::{LiveSpace, SearchOptions, SpaceVisibility, space_visibility};
+use sightlines_stabtree::{AxialVisibility, LiveAxial, SearchOptions, axial_visibility};
 use std::cell::Cell;
 
 /// Storeys of random buildings: enough for columns.
@@ -20,14 +20,14 @@ fn options() -> SearchOptions<'static> {
     SearchOptions { threads: 1, ..SearchOptions::default() }
 }
 
-fn with_columns(graph: &CellGraph<Axial>, solid: &[Aabb<3>], objects: &[Aabb<3>], threads: usize) -> SpaceVisibility {
+fn with_columns(graph: &CellGraph<Axial>, solid: &[Aabb<3>], objects: &[Aabb<3>], threads: usize) -> AxialVisibility {
     let options = SearchOptions { threads, ..options() };
-    space_visibility(graph, solid, objects, &options).expect("nobody cancels")
+    axial_visibility(graph, solid, objects, &options).expect("nobody cancels")
 }
 
 /// The search that keeps its lines for updates uses neither columns nor horizons.
-fn without(graph: &CellGraph<Axial>, solid: &[Aabb<3>], objects: &[Aabb<3>]) -> SpaceVisibility {
-    let live = LiveSpace::new(graph.clone(), solid, objects.to_vec(), &options()).expect("nobody cancels");
+fn without(graph: &CellGraph<Axial>, solid: &[Aabb<3>], objects: &[Aabb<3>]) -> AxialVisibility {
+    let live = LiveAxial::new(graph.clone(), solid, objects.to_vec(), &options()).expect("nobody cancels");
     live.seen().clone()
 }
 
@@ -96,7 +96,7 @@ fn free_rays(
     graph: &CellGraph<Axial>,
     faces: &[AxialFace<3>],
     seed: u64,
-    seen: &SpaceVisibility,
+    seen: &AxialVisibility,
 ) -> Result<u64, TestCaseError> {
     let mut random = sightlines_testkit::Random::new(seed, 0);
     let mut n = 0;

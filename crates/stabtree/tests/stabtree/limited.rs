@@ -6,7 +6,7 @@ use sightlines_geometry::Aabb;
 use sightlines_kdtree::AxialFace;
 use sightlines_progress::{Allowance, Budget};
 use sightlines_pvs::BitMatrix;
-use sightlines_stabtree::{PairMask, SearchOptions, box_visibility, space_visibility};
+use sightlines_stabtree::{PairMask, SearchOptions, axial_visibility, box_visibility};
 use std::cell::Cell;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
@@ -86,7 +86,7 @@ fn compare(name: &str, run: impl Fn(&[AxialFace<3>], &[bool], &[Aabb<3>], Option
 /// What cells see.
 fn cells(faces: &[AxialFace<3>], out: &[bool], objects: &[Aabb<3>], budget: Option<&dyn Budget>) -> Option<Found> {
     let (graph, solid) = cut(faces, out);
-    let seen = space_visibility(&graph, &solid, objects, &options(1, budget)).expect("nobody cancels");
+    let seen = axial_visibility(&graph, &solid, objects, &options(1, budget)).expect("nobody cancels");
     (graph.n_cells() > 0)
         .then_some(Found { visible: PairMask { boxes: seen.cells, objects: seen.objects }, left: seen.left })
 }

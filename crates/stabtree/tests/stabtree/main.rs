@@ -1,14 +1,14 @@
 //! Searches through portals, their proofs and explanations.
 
+mod axial;
 mod boxes;
 mod certify;
 mod columns;
+mod explain_axial;
 mod explain_convex;
-mod explain_space;
 mod from_boxes;
 mod limited;
-mod live_space;
+mod live_axial;
 mod picture;
 mod search;
-mod space;
 mod stab_trees;

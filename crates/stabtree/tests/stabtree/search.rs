@@ -7,8 +7,8 @@ use sightlines_geometry::{Aabb, Adaptive, Point2, Portal2, orient2d};
 use sightlines_pvs::BitMatrix;
 use sightlines_sightline::{Funnel, FunnelUndo, PlanarCertificate, PlanarVerdict, PlanarWitness, Stabber, Verdict};
 use sightlines_stabtree::{
-    Barrier, Network, PlanPath, PlanProof, SearchLimit, SearchOptions, Sight, StabTree, Zones, explain,
-    plan_visibility, visible_zones,
+    Barrier, Network, PlanarPath, PlanarProof, SearchLimit, SearchOptions, Sight, StabTree, Zones, explain,
+    planar_visibility, visible_zones,
 };
 use std::cell::Cell;
 use std::convert::Infallible;
@@ -109,7 +109,7 @@ fn enumerate<S: Stabber<Portal = Portal2>>(graph: &CellGraph<Planar>, stabber: &
 
 fn search(graph: &CellGraph<Planar>, threads: usize, chords: u32) -> BitMatrix {
     let options = SearchOptions { threads, chords, ..SearchOptions::default() };
-    plan_visibility(graph, &Zones::cells(graph), &options).expect("nobody cancels").0
+    planar_visibility(graph, &Zones::cells(graph), &options).expect("nobody cancels").0
 }
 
 proptest! {
@@ -150,7 +150,7 @@ proptest! {
             for b in graph.cell_ids() {
                 match explain(&graph, a, b, 3, 100_000) {
                     Verdict::Visible(Sight::SameCell) => prop_assert_eq!(a, b),
-                    Verdict::Visible(Sight::Along(PlanPath { portals, doors, witness })) => {
+                    Verdict::Visible(Sight::Along(PlanarPath { portals, doors, witness })) => {
                         prop_assert!(rows.get(a.idx(), b.idx()), "{} sees {}", a, b);
                         prop_assert_eq!(portals.len(), doors.len());
                         prop_assert!(doors.iter().all(|&d| witness.passes(d)));
@@ -158,7 +158,7 @@ proptest! {
                     Verdict::Hidden(Barrier::NotConnected) => {
                         prop_assert!(!rows.get(a.idx(), b.idx()), "{} does not see {}", a, b);
                     }
-                    Verdict::Hidden(Barrier::Blocked(PlanProof { n_blocked, blocked })) => {
+                    Verdict::Hidden(Barrier::Blocked(PlanarProof { n_blocked, blocked })) => {
                         prop_assert!(!rows.get(a.idx(), b.idx()), "{} does not see {}", a, b);
                         prop_assert_eq!(n_blocked > 0, !blocked.is_empty());
                     }

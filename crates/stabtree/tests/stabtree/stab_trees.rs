@@ -10,7 +10,7 @@ use sightlines_scenes::world::{BspWorldOptions, World, bsp_world, world_families
 use sightlines_sightline::{AxialStabber, ConvexStabber, Funnel, Line3, StabLimits, Verdict};
 use sightlines_stabtree::{
     ConvexOptions, ConvexSearch, Network, SearchOptions, StabTree, StabTreesOptions, StabTreesSummary, Zones, gate_of,
-    plan_visibility, portal_of, stab_trees_axial, stab_trees_convex, stab_trees_planar, visible_zones,
+    planar_visibility, portal_of, stab_trees_axial, stab_trees_convex, stab_trees_planar, visible_zones,
 };
 use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet};
@@ -154,7 +154,7 @@ fn cut_plan(plan: &Plan) -> CellGraph<Planar> {
 
 fn rows_of_plan(graph: &CellGraph<Planar>) -> BitMatrix {
     let options = SearchOptions { threads: 1, ..SearchOptions::default() };
-    plan_visibility(graph, &Zones::cells(graph), &options).expect("nobody cancels").0
+    planar_visibility(graph, &Zones::cells(graph), &options).expect("nobody cancels").0
 }
 
 /// The plain trees of all cells; `None` if one is too large to compare.

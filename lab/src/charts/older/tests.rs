@@ -10,7 +10,7 @@ use sightlines::kdtree::{SceneOptions, subdivide_scene};
 use sightlines::pvs::BitMatrix;
 use sightlines::scenes::world::{QuakeLikeOptions, quake_like};
 use sightlines::scenes::{OfficeOptions, TowerOptions, maze, office, tower};
-use sightlines::stabtree::{ConvexOptions, ConvexSearch, SearchOptions, Zones, plan_visibility};
+use sightlines::stabtree::{ConvexOptions, ConvexSearch, SearchOptions, Zones, planar_visibility};
 use sightlines_testkit::Random;
 use sightlines_testkit::small_grid_plan;
 use std::time::Duration;
@@ -22,7 +22,7 @@ fn n_only(a: &BitMatrix, b: &BitMatrix) -> u64 {
 }
 
 fn exact_planar(graph: &CellGraph<Planar>) -> BitMatrix {
-    plan_visibility(graph, &Zones::cells(graph), &SearchOptions { threads: 1, ..SearchOptions::default() })
+    planar_visibility(graph, &Zones::cells(graph), &SearchOptions { threads: 1, ..SearchOptions::default() })
         .expect("nobody cancels")
         .0
 }

@@ -27,7 +27,7 @@ use sightlines::formats::quake::{graph_of_prt, read_prt};
 use sightlines::pvs::{CellId, Table, TableKind};
 use sightlines::report::{DrawOptions, View};
 use sightlines::sightline::Verdict;
-use sightlines::stabtree::{Barrier, MOST_EXPLAINED, PlanExplanation, Sight, explain, explain_space};
+use sightlines::stabtree::{Barrier, MOST_EXPLAINED, PlanarExplanation, Sight, explain, explain_axial};
 use space::SpaceReason;
 use std::path::PathBuf;
 
@@ -189,7 +189,7 @@ fn in_space(args: &ExplainArgs, table: &Table, (a, b): (CellId, CellId)) -> Resu
         tracing::warn!("{}: places are along the axes of the table's frame", args.table.display());
     }
     // The table does not record what was left out beside its cells, and no answer depends on it.
-    let explanation = explain_space(&graph, &[], a, b, args.max_programs.unwrap_or(MAX_PROGRAMS));
+    let explanation = explain_axial(&graph, &[], a, b, args.max_programs.unwrap_or(MAX_PROGRAMS));
     let reason = SpaceReason::new(explanation);
     if let Some(out) = &args.draw {
         save_picture(&space_picture::svg(&args.table, table, [a, b], &reason)?, out)?;
@@ -230,7 +230,7 @@ fn choose(table: &Table, from: &[CellId], to: &[CellId]) -> (CellId, CellId) {
 }
 
 /// The picture of an explanation: what A sees, B, the line through the portals or the first blocked way.
-fn options(graph: &CellGraph<Planar>, [a, b]: [CellId; 2], explanation: &PlanExplanation) -> DrawOptions<'static> {
+fn options(graph: &CellGraph<Planar>, [a, b]: [CellId; 2], explanation: &PlanarExplanation) -> DrawOptions<'static> {
     let mut options = DrawOptions { view: View::Cell(a), target: Some(b), ..DrawOptions::default() };
     match explanation {
         Verdict::Visible(Sight::Along(path)) => {

@@ -6,7 +6,7 @@ use serde::Serialize;
 use sightlines::cells::{CellGraph, CellId, Planar, PortalId};
 use sightlines::geometry::{Point2, Portal2};
 use sightlines::sightline::{End, PlanarCertificate, Verdict};
-use sightlines::stabtree::{Barrier, BlockedSequence, PlanExplanation, PlanPath, SearchLimit, Sight};
+use sightlines::stabtree::{Barrier, BlockedSequence, PlanarExplanation, PlanarPath, SearchLimit, Sight};
 use std::fmt;
 
 /// What was found about two cells of a plan.
@@ -58,7 +58,7 @@ pub(super) struct Corner {
 }
 
 impl PlanReason {
-    pub(super) fn new(graph: &CellGraph<Planar>, from: CellId, explanation: &PlanExplanation) -> Self {
+    pub(super) fn new(graph: &CellGraph<Planar>, from: CellId, explanation: &PlanarExplanation) -> Self {
         match explanation {
             Verdict::Visible(Sight::SameCell) => Self::Same,
             Verdict::Visible(Sight::Along(path)) => visible(graph, from, path),
@@ -91,8 +91,8 @@ fn walk(graph: &CellGraph<Planar>, from: CellId, portals: &[PortalId]) -> Vec<(C
     portals.iter().map(step).collect()
 }
 
-fn visible(graph: &CellGraph<Planar>, from: CellId, path: &PlanPath) -> PlanReason {
-    let PlanPath { portals, doors, witness } = path;
+fn visible(graph: &CellGraph<Planar>, from: CellId, path: &PlanarPath) -> PlanReason {
+    let PlanarPath { portals, doors, witness } = path;
     let [a, b, c] = witness.coefficients().map(ToString::to_string);
     PlanReason::Visible {
         portals: portals.iter().map(|p| p.0).collect(),

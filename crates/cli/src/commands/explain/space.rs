@@ -6,7 +6,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 use sightlines::geometry::{Aabb, AxialDoor};
 use sightlines::sightline::{AxialWitness, BlockedProof, Branch, BranchRow, Bypass, Contradiction, ProofSize, Verdict};
-use sightlines::stabtree::{Barrier, SearchLimit, Sight, SpaceExplanation, SpacePath, SpaceProof};
+use sightlines::stabtree::{AxialExplanation, AxialPath, AxialProof, Barrier, SearchLimit, Sight};
 use std::fmt;
 
 /// What was found about two cells in space.
@@ -67,10 +67,10 @@ pub(super) struct Wall {
 }
 
 impl SpaceReason {
-    pub(super) fn new(explanation: SpaceExplanation) -> Self {
+    pub(super) fn new(explanation: AxialExplanation) -> Self {
         match explanation {
             Verdict::Visible(Sight::SameCell) => Self::Same,
-            Verdict::Visible(Sight::Along(SpacePath { portals, cells, doors, witness, ends })) => Self::Visible {
+            Verdict::Visible(Sight::Along(AxialPath { portals, cells, doors, witness, ends })) => Self::Visible {
                 portals: portals.iter().map(|p| p.0).collect(),
                 cells: cells.iter().map(|c| c.0).collect(),
                 points: crossings(&witness, &doors),
@@ -80,7 +80,7 @@ impl SpaceReason {
                     direction: witness.direction().each_ref().map(ToString::to_string),
                 }),
             },
-            Verdict::Hidden(Barrier::Blocked(SpaceProof { proof, walls, n_blockers })) => {
+            Verdict::Hidden(Barrier::Blocked(AxialProof { proof, walls, n_blockers })) => {
                 Self::Hidden { connected: true, walls: Some(Box::new(Walls::new(&proof, &walls, n_blockers))) }
             }
             Verdict::Hidden(Barrier::NotConnected) => Self::Hidden { connected: false, walls: None },
