@@ -79,7 +79,7 @@ def test_trimesh(tower_bytes):
 def test_cells_may_be_chosen():
     assert sl.bake(HALLS, cells="kd-tree", progress=False).kind == "scene, k-d tree"
     grid = sl.bake(HALLS, cells=(3, 2, 1), progress=False)
-    assert grid.kind == "scene, given cells" and grid.n_cells == 6
+    assert grid.kind == "scene, boxes as cells" and grid.n_cells == 6
     places = sl.bake(HALLS, cells=8, progress=False)
     assert 0 < places.n_cells <= 16
     boxes = np.array([[[1, 1, 1], [3, 3, 2]], [[15, 1, 1], [18, 3, 2]]])

@@ -64,13 +64,13 @@ pub fn check(bytes: &[u8]) -> bool {
 
 fn check_one(bytes: &[u8]) -> bool {
     let proven = match kind_of(bytes) {
-        Ok(Kind::Plan) => {
+        Ok(Kind::Planar) => {
             let Ok(proofs) = PlanarProofs::from_bytes(bytes) else { return false };
             assert_eq!(PlanarProofs::from_bytes(&proofs.to_bytes()).as_ref(), Ok(&proofs));
             let of = |table: &Table| proofs.check(&plan_of(table).ok()?).ok();
             proven().iter().map(|(table, _)| (table, of(table))).collect::<Vec<_>>()
         }
-        Ok(Kind::Space) => {
+        Ok(Kind::Axial) => {
             let Ok(proofs) = AxialProofs::from_bytes(bytes) else { return false };
             assert_eq!(AxialProofs::from_bytes(&proofs.to_bytes()).as_ref(), Ok(&proofs));
             let of = |table: &Table| proofs.check(&boxes_of(table).ok()?).ok();

@@ -23,6 +23,7 @@ mod spdx;
 mod step;
 mod tally;
 mod tidy;
+mod unused;
 
 use clap::{Parser, Subcommand};
 use std::path::PathBuf;
@@ -82,10 +83,12 @@ enum Task {
     },
     /// Builds the documentation; a warning is an error.
     Docs,
-    /// Checks formatting, lints, file lengths, circles of modules, and that nothing is left unfinished.
+    /// Checks formatting, lints, file lengths, circles of modules, that dependencies are used, and that nothing is left unfinished.
     Tidy,
     /// Lists modules of one crate that use each other; a part of `tidy`.
     Circles,
+    /// Lists dependencies that no source names; a part of `tidy`.
+    Unused,
     /// Checks that each published crate compiles on its own.
     Alone,
     /// Checks the licences and sources of all dependencies, and with cargo-deny, if it is installed, their advisories.
@@ -196,6 +199,7 @@ fn run(task: Task) -> Result<(), Failure> {
         Task::Docs => gate::docs(),
         Task::Tidy => tidy::tidy(),
         Task::Circles => circles::refuse(),
+        Task::Unused => unused::refuse(),
         Task::Alone => gate::alone(),
         Task::Deny => deny::check(),
         Task::Package => package::check(),

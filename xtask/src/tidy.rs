@@ -1,7 +1,7 @@
 //! Cheap checks of the text of the sources, beside rustfmt and clippy.
 
-use crate::circles;
 use crate::step::{self, Failure, cargo, root};
+use crate::{circles, unused};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -26,6 +26,7 @@ pub(crate) fn tidy() -> Result<(), Failure> {
     step::run(cargo().args(["fmt", "--all", "--check"]))?;
     texts()?;
     circles::refuse()?;
+    unused::refuse()?;
     let clippy = ["clippy", "--workspace", "--all-targets", "--features", step::FULL_PROGRAM, "--", "-D", "warnings"];
     step::run(cargo().args(clippy))
 }

@@ -2,7 +2,6 @@
 
 use super::{MapError, MapSpec, matrix_of};
 use crate::child::memory_of;
-use sightlines::bake::quake::named_counters;
 use sightlines::cells::{CellGraph, Convex};
 use sightlines::pvs::BitMatrix;
 use sightlines::stabtree::{ConvexOptions, ConvexSearch};
@@ -167,7 +166,7 @@ pub fn measure(graph: &CellGraph<Convex>, method: Method, threads: usize, limit:
             while is_going && !is_over(&search) && (search.state().stage == 0 || took() <= limit) {
                 is_going = search.advance();
             }
-            measured.counters = named_counters(&search.state().counters).map(|(k, v)| format!("{k}={v}")).join(" ");
+            measured.counters = search.state().counters.named().map(|(k, v)| format!("{k}={v}")).join(" ");
             if method == Method::Exact {
                 let chain = search.chain();
                 measured.counters += &format!(" work={} chain={}", chain.all, chain.longest);

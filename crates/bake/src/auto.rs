@@ -193,6 +193,10 @@ impl SceneChoice {
         let standard = Layout::default();
         let mut choice =
             Self { sheets: false, line_space: false, planes: 0, texels: standard.texels, reasons: Vec::new() };
+        if facts.n_triangles == 0 {
+            choice.reasons.push("nothing hides".to_owned());
+            return Ok(choice);
+        }
         if facts.axial >= AXIAL {
             let axial = percent(facts.axial);
             choice.reasons.push(format!("{axial} of the area is perpendicular to an axis: sightlines use these walls"));

@@ -234,7 +234,8 @@ impl Given<'_> {
             return Err(Failure::argument(format!("{threads} threads: there can be 1024 at most")));
         }
         let limit = self.options.time_limit;
-        if !gap.is_finite() || !(limit.is_finite() && limit >= 0.0) || detail_below.is_nan() {
+        let are_numbers = gap.is_finite() && limit.is_finite() && limit >= 0.0 && !detail_below.is_nan();
+        if !are_numbers {
             return Err(Failure::argument(
                 "gap, time limit or size of detail is no finite number, or the limit is below 0",
             ));

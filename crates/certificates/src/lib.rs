@@ -3,7 +3,7 @@
 //! # Scope
 //!
 //! - **Owns**: the proofs as data, their bytes, and a checker that shares no code with the solvers that find them:
-//!   [`plan`] for polygons of the plane, [`space`] for boxes, [`convex`] for cells joined by polygons in space. A search
+//!   [`planar`] for polygons of the plane, [`axial`] for boxes, [`convex`] for cells joined by polygons in space. A search
 //!   that finds proofs passes them to a maker here, which checks each of them immediately.
 //! - **Out of scope**: graphs of cells, searching, tables, files.
 //! - **Invariants**: decisions are signs of exact numbers; no step of a proof rests on a later one. Reading bytes takes memory

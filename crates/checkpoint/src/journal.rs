@@ -243,7 +243,11 @@ impl Journal {
         if records::scan(&self.path, &file)?.is_some_and(|found| !found.records.is_empty()) {
             return Err(StateError::InUse(self.path.clone()));
         }
-        file.set_len(0).and_then(|()| file.write_all(&header)).map_err(failed)?;
+        if let Err(source) = file.set_len(0).and_then(|()| file.write_all(&header)) {
+            // Without a header it is of no use.
+            let _ = fs::remove_file(&self.path);
+            return Err(failed(source));
+        }
         if !is_at(&self.path, &self.owner, mark).map_err(failed)? {
             return Err(StateError::InUse(self.path.clone()));
         }

@@ -16,6 +16,8 @@ use std::path::Path;
 
 pub(crate) const MAGIC: [u8; 8] = *b"SLUNITS\n";
 const VERSION: u32 = 2;
+/// How states of searches of Quake maps began before their results were kept in this form.
+const OLD_MAGIC: [u8; 8] = *b"\x8ESLVIS\r\n";
 /// Bytes of a header before the program's version.
 const HEAD: usize = 8 + 4 + 16 + 16 + 2;
 /// How each record begins.
@@ -148,6 +150,9 @@ pub(crate) fn header(path: &Path, reader: &mut (impl Read + Seek)) -> Result<Opt
     reader.seek(SeekFrom::Start(0)).map_err(failed)?;
     let mut begin = Vec::new();
     reader.by_ref().take(12).read_to_end(&mut begin).map_err(failed)?;
+    if begin.starts_with(&OLD_MAGIC) {
+        return Err(StateError::OtherForm(path.to_owned()));
+    }
     let n_same = begin.len().min(MAGIC.len());
     if begin[..n_same] != MAGIC[..n_same] {
         return Err(not_state());

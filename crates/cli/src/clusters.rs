@@ -3,7 +3,6 @@
 use crate::output::{count, percent, seconds};
 use serde::Serialize;
 use sightlines::bake::ClusterVisibility;
-use sightlines::bake::quake::named_counters;
 use sightlines::formats::quake::Prt;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -48,7 +47,7 @@ impl Clusters {
             n_visible_pairs,
             visible_share: n_visible_pairs as f64 / n_pairs.max(1) as f64,
             undecided: found.seen.undecided.clone(),
-            counters: named_counters(&found.seen.counters).into_iter().collect(),
+            counters: found.seen.counters.named().into_iter().collect(),
             see_seconds: found.see_time.as_secs_f64(),
             n_pairs,
         }

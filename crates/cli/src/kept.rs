@@ -17,6 +17,9 @@ pub(crate) const PROGRAM: &str = env!("CARGO_PKG_VERSION");
 /// What units are, and what their results mean: to be raised when a bake is divided otherwise, or decides otherwise, between two versions of the program.
 pub(crate) const UNITS: u32 = 3;
 
+/// Seconds after which a file of results is made, unless an option says otherwise.
+pub(crate) const SAVE_AFTER: u64 = 10;
+
 /// Whether a bake goes on from an earlier run, and where its results are kept.
 #[derive(Debug, Clone, clap::Args)]
 pub(crate) struct ResumeArgs {
@@ -27,8 +30,15 @@ pub(crate) struct ResumeArgs {
     #[arg(long, help_heading = "Resuming", value_name = "FILE")]
     state: Option<PathBuf>,
     /// Seconds after which that file is made; a run that is over sooner leaves none
-    #[arg(long, help_heading = "Resuming", value_name = "SECONDS", default_value_t = 10)]
+    #[arg(long, help_heading = "Resuming", value_name = "SECONDS", default_value_t = SAVE_AFTER)]
     pub(crate) save_after: u64,
+}
+
+impl Default for ResumeArgs {
+    /// As if nothing of it was given.
+    fn default() -> Self {
+        Self { resume: false, state: None, save_after: SAVE_AFTER }
+    }
 }
 
 impl ResumeArgs {
@@ -61,10 +71,7 @@ impl ResumeArgs {
             (true, n) => tracing::info!("{}: going on from {n} results", path.display()),
             (false, _) => {}
         }
-        if journal.n_damaged() > 0 {
-            let n = count(journal.n_damaged() as u64, "record");
-            tracing::warn!("{}: {n} damaged; the rest is used", path.display());
-        }
+        warn_of_damage(&journal);
         if journal.n_before() > 0 {
             tracing::warn!(
                 "{}: beginning without its {}: --resume goes on from them. They go to {} until this run is done",
@@ -74,6 +81,37 @@ impl ResumeArgs {
             );
         }
         Ok(journal)
+    }
+
+    /// Goes on from the results in the file if they are of this key, and begins anew if they are of another. Warns of a file that cannot be used for
+    /// results at all.
+    fn open_if_it_fits(&self, outputs: &[&Path], key: Key) -> Option<Journal> {
+        let path = self.path(outputs.first().copied().unwrap_or(Path::new("out")));
+        let after = Duration::from_secs(self.save_after);
+        let opened = match Journal::open(&path, key, PROGRAM, Opening::Resume, after) {
+            Err(error @ (StateError::OtherKey(_) | StateError::OtherProgram { .. } | StateError::OtherForm(_))) => {
+                tracing::warn!("{}; beginning anew", plain(&error.to_string()));
+                Journal::open(&path, key, PROGRAM, Opening::Anew, after)
+            }
+            opened => opened,
+        };
+        match opened {
+            Ok(journal) => {
+                warn_of_damage(&journal);
+                Some(journal.or_in_memory())
+            }
+            Err(error) => {
+                tracing::warn!("{}; the results of this run are not kept", plain(&error.to_string()));
+                None
+            }
+        }
+    }
+}
+
+fn warn_of_damage(journal: &Journal) {
+    if journal.n_damaged() > 0 {
+        let n = count(journal.n_damaged() as u64, "record");
+        tracing::warn!("{}: {n} damaged; the rest is used", journal.path().display());
     }
 }
 
@@ -145,7 +183,7 @@ impl Inputs {
     ) -> Result<Self, InputError> {
         let looked = paths.into_iter().map(|path| match keeping {
             Keeping::Nowhere => Ok(Looked::without_content(path)),
-            Keeping::File(_) | Keeping::Job(_) => {
+            Keeping::File(_) | Keeping::FileIfItFits(_) | Keeping::Job(_) => {
                 Looked::new(path).map_err(|source| InputError::Open { path: path.to_owned(), source })
             }
         });
@@ -201,15 +239,22 @@ pub(crate) struct Identity {
 impl Identity {
     /// Of a kind of work on files.
     pub(crate) fn new(kind: &str, inputs: &Inputs) -> Self {
+        let mut identity = Self::apart_from(kind, inputs);
+        inputs.0.iter().for_each(|file| identity.hasher.value("file", &file.key.0));
+        identity
+    }
+
+    /// The same of what is added later only: the files may have other content with the same results.
+    pub(crate) fn apart_from(kind: &str, inputs: &Inputs) -> Self {
         let mut hasher = KeyHasher::new(PROGRAM);
         hasher.value("kind", kind.as_bytes());
         hasher.value("units", &UNITS.to_le_bytes());
-        let file = |Looked { path, n_bytes, key, .. }: &Looked| {
-            hasher.value("file", &key.0);
-            InputFile { path: path.display().to_string(), n_bytes: *n_bytes, key: key.to_string() }
+        let file = |Looked { path, n_bytes, key, .. }: &Looked| InputFile {
+            path: path.display().to_string(),
+            n_bytes: *n_bytes,
+            key: key.to_string(),
         };
-        let inputs = inputs.0.iter().map(file).collect();
-        Self { hasher, inputs }
+        Self { hasher, inputs: inputs.0.iter().map(file).collect() }
     }
 
     /// Adds a value.
@@ -230,6 +275,8 @@ pub(crate) type OpenJob<'a> = &'a dyn Fn(&Identity) -> Result<&'a JobStore, Kept
 pub(crate) enum Keeping<'a> {
     /// In a file beside the output, as the arguments of a command have it.
     File(&'a ResumeArgs),
+    /// The same, where an earlier run is gone on from without being asked: what cannot be used is no error.
+    FileIfItFits(&'a ResumeArgs),
     /// In the folder of a job.
     Job(OpenJob<'a>),
     /// Nowhere.
@@ -258,6 +305,10 @@ impl<'a> Kept<'a> {
                 inputs.check()?;
                 (Some(args.open(inputs, outputs, identify().key())?), None)
             }
+            Keeping::FileIfItFits(args) => {
+                inputs.check()?;
+                (args.open_if_it_fits(outputs, identify().key()), None)
+            }
             Keeping::Job(open) => {
                 inputs.check()?;
                 (None, Some(open(&identify())?))
@@ -274,6 +325,11 @@ impl<'a> Kept<'a> {
         Units(journal.or(self.job.map(|job| job as _)))
     }
 
+    /// How many results of an earlier run a file had.
+    pub(crate) fn n_taken_up(&self) -> usize {
+        self.journal.as_ref().map_or(0, Journal::n_taken_up)
+    }
+
     /// Before anything is written that the command makes: an error if another worker of the job has written it.
     pub(crate) fn before_writing(&self) -> Result<(), KeptError> {
         self.before_writing_files(&self.outputs)
@@ -282,6 +338,15 @@ impl<'a> Kept<'a> {
     /// The same where it is known only now which files that are.
     pub(crate) fn before_writing_files(&self, files: &[PathBuf]) -> Result<(), KeptError> {
         Ok(self.job.map_or(Ok(()), |job| job.begin_writing(files))?)
+    }
+
+    /// After the end, if all went well: leaves all results in their file.
+    pub(crate) fn leave(self) {
+        let Some(journal) = self.journal else { return };
+        let failure = journal.failure().or_else(|| journal.flush().err().map(|error| error.to_string()));
+        if let Some(failure) = failure {
+            tracing::warn!("{}; not all results are kept", plain(&failure));
+        }
     }
 
     /// After the end: results are of no use any more if all went well. Otherwise, if the program was interrupted, they are kept; returns what to say of that.

@@ -91,7 +91,7 @@ impl fmt::Display for TableKind {
             Self::PlanKdTree => "plan, k-d tree",
             Self::PlanTriangulation => "plan, triangulation",
             Self::SceneKdTree { .. } => "scene, k-d tree",
-            Self::SceneGivenCells { .. } => "scene, given cells",
+            Self::SceneGivenCells { .. } => "scene, boxes as cells",
             Self::QuakePortalFile => "Quake portal file",
             Self::QuakeMap => "Quake map",
         })

@@ -204,8 +204,8 @@ pub fn can_be_proven(table: &Table) -> bool {
 pub fn check_proofs(table: &Table, bytes: &[u8]) -> Result<ProofFindings, ProofError> {
     let kind = kind_of(bytes)?;
     let proven = match kind {
-        Kind::Plan => PlanarProofs::from_bytes(bytes)?.check(&plan_of(table)?),
-        Kind::Space => AxialProofs::from_bytes(bytes)?.check(&boxes_of(table)?),
+        Kind::Planar => PlanarProofs::from_bytes(bytes)?.check(&plan_of(table)?),
+        Kind::Axial => AxialProofs::from_bytes(bytes)?.check(&boxes_of(table)?),
         Kind::Convex => ConvexProofs::from_bytes(bytes)?.check(&convex_of(table)?),
     };
     Ok(match proven {

@@ -6,7 +6,7 @@
 
 use dxf_files::Dxf;
 use sightlines::bake::from_table::{convex_graph, planar_graph};
-use sightlines::bake::quake::{StateKey, portals_of_map, state};
+use sightlines::bake::quake::portals_of_map;
 use sightlines::bake::reject::{RejectOptions, reject_wad};
 use sightlines::bake::{PlanBakeOptions, PortalMode, PrtOptions, SceneBakeOptions, bake_plan, bake_prt, bake_scene};
 use sightlines::cells::Scene;
@@ -27,7 +27,7 @@ use sightlines::kdtree::{SceneOptions, subdivide_scene};
 use sightlines::pvs::{CellId, PlaceBuffer, Table};
 use sightlines::scenes::world::{BspWorldOptions, bsp_world};
 use sightlines::scenes::{self, TowerOptions, tower};
-use sightlines::stabtree::{ConvexOptions, ConvexSearch, Zones, shoot_axial_chords};
+use sightlines::stabtree::{Zones, shoot_axial_chords};
 use sightlines_capi::fuzz::drive;
 use sightlines_packed::{PackOptions, Packed, SizeClass, pack};
 use sightlines_testkit::mutate::{SplitMix, mutate};
@@ -55,7 +55,7 @@ struct Target {
     check: fn(&[u8]) -> bool,
 }
 
-const TARGETS: [Target; 27] = [
+const TARGETS: [Target; 26] = [
     Target { name: "wad", seeds: wads, check: check_wad },
     Target { name: "reject", seeds: wads, check: check_reject },
     Target { name: "textmap", seeds: texts, check: check_text },
@@ -76,7 +76,6 @@ const TARGETS: [Target; 27] = [
     Target { name: "prt", seeds: prts, check: check_prt },
     Target { name: "bsp", seeds: maps, check: check_map },
     Target { name: "portals", seeds: map_worlds, check: check_made_portals },
-    Target { name: "vis-state", seeds: vis_states, check: check_vis_state },
     Target { name: "journal", seeds: stored::journals, check: stored::check_journal },
     Target { name: "part", seeds: stored::parts, check: stored::check_part },
     Target { name: "manifest", seeds: stored::manifests, check: stored::check_manifest },
@@ -275,26 +274,6 @@ fn packed_tables() -> Vec<Vec<u8>> {
 
 fn prts() -> Vec<Vec<u8>> {
     quake_files::SMALL_PRTS.iter().map(|text| text.as_bytes().to_vec()).collect()
-}
-
-/// What the state of a search of the first small portal file belongs to.
-fn vis_state_key() -> StateKey {
-    StateKey::new(quake_files::SMALL_PRTS[0].as_bytes(), false)
-}
-
-/// States before each step of a search, without the hash behind them, which is put there when they are broken.
-fn vis_states() -> Vec<Vec<u8>> {
-    let graph = graph_of_prt(&parse_prt(quake_files::SMALL_PRTS[0].as_bytes()).expect("sound portals"));
-    let mut search = ConvexSearch::new(&graph, ConvexOptions::default());
-    let mut states = Vec::new();
-    loop {
-        let mut bytes = state::encode(&vis_state_key(), search.state());
-        bytes.truncate(bytes.len() - state::HASH_LEN);
-        states.push(bytes);
-        if states.len() == 8 || !search.advance() {
-            return states;
-        }
-    }
 }
 
 fn garbage() -> Vec<Vec<u8>> {
@@ -549,20 +528,6 @@ fn check_prt(bytes: &[u8]) -> bool {
     true
 }
 
-/// A state is refused, or is one that a search can go on from and that is written as it was read.
-fn check_vis_state(bytes: &[u8]) -> bool {
-    let graph = graph_of_prt(&parse_prt(quake_files::SMALL_PRTS[0].as_bytes()).expect("sound portals"));
-    assert!(state::decode(&vis_state_key(), &graph, bytes).is_err(), "it has no hash");
-    let whole = state::with_hash(bytes);
-    let Ok(read) = state::decode(&vis_state_key(), &graph, &whole) else { return false };
-    assert_eq!(state::encode(&vis_state_key(), &read), whole);
-    if let Some(mut search) = ConvexSearch::resume(&graph, ConvexOptions::default(), read) {
-        while search.advance() {}
-        assert_eq!(search.finish().cells.n_rows(), graph.n_cells());
-    }
-    true
-}
-
 fn maps() -> Vec<Vec<u8>> {
     [quake_files::small_bsps(), quake_files::small_worlds()].concat()
 }
@@ -588,7 +553,7 @@ fn check_made_portals(bytes: &[u8]) -> bool {
 }
 
 fn check_anything(bytes: &[u8]) -> bool {
-    let text = check_prt(bytes) | check_map(bytes) | check_vis_state(bytes);
+    let text = check_prt(bytes) | check_map(bytes);
     text | certificates::check(bytes)
         | check_reject(bytes)
         | check_text(bytes)

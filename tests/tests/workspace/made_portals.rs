@@ -18,7 +18,7 @@ use std::path::Path;
 fn seen(prt: &Prt) -> BitMatrix {
     let graph = graph_of_prt(prt);
     let mut search = ConvexSearch::new(&graph, ConvexOptions { fast: false, threads: 2 });
-    search.run(None, &mut |_: &ConvexSearch| {}).expect("nobody cancels");
+    search.run(None).expect("nobody cancels");
     search.finish().cells
 }
 

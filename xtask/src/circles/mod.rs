@@ -74,7 +74,7 @@ fn roots(package: &Path) -> Result<Vec<PathBuf>, Failure> {
 }
 
 /// What lies in a folder, in order; nothing if there is no such folder.
-fn entries(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+pub(crate) fn entries(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     let failure = |error| Failure::File { path: folder.to_path_buf(), error };
     let listed = match fs::read_dir(folder) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
@@ -84,6 +84,11 @@ fn entries(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     let mut paths = paths.map_err(failure)?;
     paths.sort();
     Ok(paths)
+}
+
+/// The identifiers and keywords of a source, without those in comments and strings.
+pub(crate) fn words(text: &str) -> BTreeSet<String> {
+    lex::tokens(text).iter().filter(|token| token.is_word()).map(|token| token.text.to_owned()).collect()
 }
 
 /// Uses between modules beside each other: by one, of another.

@@ -1,6 +1,5 @@
 //! Why portals cannot be baked.
 
-use super::StateError;
 use sightlines_formats::quake::{BspError, VisibilityError};
 use sightlines_progress::{Cancelled, Halt};
 use sightlines_pvs::TableError;
@@ -21,15 +20,12 @@ pub enum PrtBakeError {
     /// The map cannot be written with its visibility.
     #[error(transparent)]
     Bsp(#[from] BspError),
-    /// The observer cancelled the search; its state after the last step was given to `after_step`.
+    /// The observer cancelled the search.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
     /// The store of units ends the search: it keeps what was done, and the rest is for others or later.
     #[error(transparent)]
     Halted(Halt),
-    /// The state to begin with is none of these portals.
-    #[error(transparent)]
-    State(#[from] StateError),
     /// A portal that lies on no plane of the map's tree that divides its clusters.
     #[error(
         "portal {portal} is {by} units away from every plane that divides clusters {} and {} of the map",

@@ -2,19 +2,17 @@
 //!
 //! The graph of clusters comes from the file ([`graph_of_prt`]); [`ConvexSearch`] finds out which clusters see
 //! which. [`vis_map`] puts the answer into the map, [`bake_prt`] into a table, [`bake_map`] into one that also knows
-//! where the clusters are and which faces they have, from the map. All take a search up again where
-//! an earlier one stopped ([`PrtOptions::from`]); [`state`] has the bytes in which that is kept.
+//! where the clusters are and which faces they have, from the map. All go on from the results of units that an earlier
+//! run has kept ([`PrtOptions::units`]).
 
 mod covered;
 mod error;
 mod portals;
-pub mod state;
 mod table;
 mod world;
 
 pub use error::PrtBakeError;
 pub use portals::{MapPortals, PortalsError, portals_of_map};
-pub use state::{StateError, StateKey, named_counters};
 pub use world::bake_map;
 
 use crate::baked::{Baked, BakedPrt};
@@ -25,7 +23,7 @@ use sightlines_formats::quake::visibility::{check_portals, lump_with_sounds};
 use sightlines_formats::quake::{Bsp, Prt, graph_of_prt};
 use sightlines_progress::{Observer, Units};
 use sightlines_pvs::Table;
-use sightlines_stabtree::{ConvexOptions, ConvexSearch, ConvexState};
+use sightlines_stabtree::{ConvexOptions, ConvexSearch};
 use std::fmt;
 use std::time::Instant;
 
@@ -34,14 +32,9 @@ use std::time::Instant;
 pub struct PrtOptions<'a> {
     /// How to search.
     pub search: ConvexOptions,
-    /// Where to begin, instead of at the beginning: how far another run with the same portals and options came.
-    pub from: Option<ConvexState>,
     /// Receives a report before the first step of the search and after each, and may cancel it.
     pub progress: Option<&'a dyn Observer>,
-    /// Called after each step, for example to store [`ConvexSearch::state`].
-    pub after_step: Option<&'a mut dyn FnMut(&ConvexSearch)>,
-    /// Where results of units of work are kept, to share a search among processes: then there is no state to begin with, and no step after
-    /// which to store one.
+    /// Where results of units of work are kept, to go on after a stop or to share a search among processes.
     pub units: Units<'a>,
     /// Which textures make sounds in a map of Quake; of no use for a table.
     pub sounds: AmbientTextures,
@@ -49,10 +42,7 @@ pub struct PrtOptions<'a> {
 
 impl fmt::Debug for PrtOptions<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("PrtOptions")
-            .field("search", &self.search)
-            .field("from", &self.from.as_ref().map(|state| (state.stage, state.done)))
-            .finish_non_exhaustive()
+        f.debug_struct("PrtOptions").field("search", &self.search).finish_non_exhaustive()
     }
 }
 
@@ -71,8 +61,8 @@ pub struct VisMap {
 /// leafs say of it. Everything else stays as it is; visibility that was there is replaced.
 ///
 /// # Errors
-/// [`PrtBakeError`], before the search, for portals of another map, for several clusters without a portal, for a map whose leafs lie under another
-/// lump, and for a state that cannot be one of these portals; after it, for an answer that is too large for the map.
+/// [`PrtBakeError`], before the search, for portals of another map, for several clusters without a portal, and for a map whose leafs lie under another
+/// lump; after it, for an answer that is too large for the map.
 pub fn vis_map(bsp: &Bsp, prt: &Prt, options: PrtOptions<'_>) -> Result<VisMap, PrtBakeError> {
     check_portals(bsp, prt)?;
     // What would be refused at the end is refused before the search too: that may take hours.
@@ -110,22 +100,13 @@ fn graph(prt: &Prt) -> Result<CellGraph<Convex>, PrtBakeError> {
 }
 
 fn see(graph: &CellGraph<Convex>, options: PrtOptions<'_>) -> Result<ClusterVisibility, PrtBakeError> {
-    let PrtOptions { search, from, progress, after_step, units, sounds: _ } = options;
+    let PrtOptions { search, progress, units, sounds: _ } = options;
     let start = Instant::now();
+    let mut running = ConvexSearch::new(graph, search);
     if units.are_kept() {
-        let mut running = ConvexSearch::new(graph, search);
         running.run_in_units(progress, units)?;
-        return Ok(ClusterVisibility {
-            seen: running.finish(),
-            n_portals: graph.portals().len(),
-            see_time: start.elapsed(),
-        });
+    } else {
+        running.run(progress)?;
     }
-    let mut running = match from {
-        None => ConvexSearch::new(graph, search),
-        Some(state) => ConvexSearch::resume(graph, search, state).ok_or(StateError::Unfit)?,
-    };
-    let mut nobody = |_: &ConvexSearch| {};
-    running.run(progress, after_step.unwrap_or(&mut nobody))?;
     Ok(ClusterVisibility { seen: running.finish(), n_portals: graph.portals().len(), see_time: start.elapsed() })
 }

@@ -1,17 +1,18 @@
 //! Tables of portal files, maps with visibility, and searches that are stopped and taken up again.
 
-use proptest::prelude::*;
 use sightlines_bake::from_table::{axial_graph, convex_graph, planar_graph};
-use sightlines_bake::quake::state::{HASH_LEN, decode, encode, with_hash};
-use sightlines_bake::quake::{StateError, StateKey};
 use sightlines_bake::{PrtBakeError, PrtOptions, bake_prt, bake_scene, vis_map};
-use sightlines_cells::{CellGraph, CellId, Convex, Portal3};
+use sightlines_cells::CellId;
 use sightlines_formats::quake::visibility::{VisibilityError, read_visibility};
 use sightlines_formats::quake::{Bsp, BspError, BspFormat, Prt, graph_of_prt, prt::parse_prt};
-use sightlines_pvs::{BitMatrix, Table};
+use sightlines_progress::Units;
+use sightlines_pvs::Table;
 use sightlines_scenes::{TowerOptions, tower};
-use sightlines_stabtree::{ConvexCounters, ConvexOptions, ConvexSearch, ConvexState, ConvexVisibility};
-use sightlines_testkit::mutate::{SplitMix, flipped_bits, mutate};
+use sightlines_stabtree::{ConvexOptions, ConvexVisibility};
+use sightlines_testkit::mutate::SplitMix;
+use sightlines_testkit::units::Memory;
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 #[path = "../../../formats/tests/formats/common/quake.rs"]
 #[expect(dead_code, reason = "other tests use the rest")]
@@ -157,15 +158,18 @@ fn leafs_under_another_lump_are_found_before_the_search() {
         if bsp.format().has_clusters() {
             continue;
         }
-        let mut n_steps = 0;
-        let mut run = |bytes: &[u8]| {
-            let mut count = |_: &ConvexSearch| n_steps += 1;
-            let options = PrtOptions { after_step: Some(&mut count), ..PrtOptions::default() };
+        let n_reports = AtomicUsize::new(0);
+        let run = |bytes: &[u8]| {
+            let count = |_| {
+                n_reports.fetch_add(1, Relaxed);
+                ControlFlow::Continue(())
+            };
+            let options = PrtOptions { progress: Some(&count), ..PrtOptions::default() };
             let done = vis_map(&Bsp::parse(bytes.to_vec()).unwrap(), &prt, options);
-            (done, n_steps)
+            (done, n_reports.load(Relaxed))
         };
         let (done, n_before) = run(&bytes);
-        assert!(done.is_ok() && n_before > 0);
+        assert!(done.is_ok() && n_before > 1);
         // The entities begin in the second leaf.
         let start = bsp.lumps()[bsp.format().leaf_lump()].start as u32 + 50;
         bytes[4..8].copy_from_slice(&start.to_le_bytes());
@@ -184,167 +188,32 @@ fn several_clusters_without_portals_are_refused() {
     assert!(bake_prt(&Prt::new(1).unwrap(), PrtOptions::default()).is_ok());
 }
 
-/// Stopped after any number of steps, kept as bytes, read and taken up again with another number of threads, a
-/// search gives the same answer, counts included.
+/// Stopped after any number of units and taken up again with another number of threads, a search gives the same answer, counts included; and what it
+/// finds is what a search finds that keeps nothing.
 #[test]
 fn a_search_can_be_stopped_anywhere() {
     let prt = grid(7, 6);
-    let graph = graph_of_prt(&prt);
     let mut n_stops = 0;
     for fast in [false, true] {
-        let key = StateKey::new(b"grid", fast);
-        let options = |threads| ConvexOptions { fast, threads };
-        let whole = search(&prt, 1, fast);
-        assert_eq!(search(&prt, 2, fast), whole);
-        assert_eq!(search(&prt, 8, fast), whole);
-        let mut one = ConvexSearch::new(&graph, options(1));
-        loop {
-            let bytes = encode(&key, one.state());
-            let state = decode(&key, &graph, &bytes).unwrap();
-            assert_eq!(&state, one.state());
-            let options = PrtOptions { search: options(1 + n_stops % 3), from: Some(state), ..PrtOptions::default() };
-            assert_eq!(bake_prt(&prt, options).unwrap().report.seen, whole, "stopped after {n_stops}");
-            // Through bytes after every step.
+        let with = |memory: &Memory, threads| {
+            let search = ConvexOptions { fast, threads };
+            let options = PrtOptions { search, units: Units(Some(memory)), ..PrtOptions::default() };
+            bake_prt(&prt, options).map(|baked| baked.report.seen)
+        };
+        let without = search(&prt, 1, fast);
+        assert_eq!([search(&prt, 2, fast), search(&prt, 8, fast)], [without.clone(), without.clone()]);
+        let memory = Memory::default();
+        let whole = with(&memory, 1).unwrap();
+        assert_eq!((&whole.cells, &whole.undecided), (&without.cells, &without.undecided));
+        let results = memory.into_results();
+        for n in 1..results.len() {
+            let stopping = Memory::default().stopping_after(n);
+            let stopped = with(&stopping, 1).unwrap_err();
+            assert!(matches!(stopped, PrtBakeError::Cancelled(_) | PrtBakeError::Halted(_)), "{stopped}");
+            assert_eq!(with(&Memory::with(&stopping.into_results()), 1 + n % 3).unwrap(), whole, "{n} results");
             n_stops += 1;
-            let state = decode(&key, &graph, &bytes).unwrap();
-            one = ConvexSearch::resume(&graph, self::options(fast), state).unwrap();
-            if !one.advance() {
-                break;
-            }
         }
-        assert_eq!(one.finish(), whole);
+        assert_eq!(with(&Memory::with(&results), 2).unwrap(), whole);
     }
     assert!(n_stops >= 5, "{n_stops}");
-}
-
-fn options(fast: bool) -> ConvexOptions {
-    ConvexOptions { fast, threads: 2 }
-}
-
-#[test]
-fn a_state_of_something_else_is_refused() {
-    let graph = graph_of_prt(&grid(3, 3));
-    let state = started(&graph);
-    let key = StateKey::new(b"text", false);
-    let bytes = encode(&key, &state);
-    let error = |key: &StateKey, bytes: &[u8]| decode(key, &graph, bytes).unwrap_err().to_string();
-    let other = "the state is of another portal file, or the file has changed since";
-    assert_eq!(error(&StateKey::new(b"texts", false), &bytes), other);
-    assert_eq!(error(&StateKey::new(b"text", true), &bytes), "the state is of a full search, which this is not");
-    assert!(
-        decode(&key, &graph_of_prt(&grid(4, 2)), &bytes)
-            .unwrap_err()
-            .to_string()
-            .ends_with("it is for another number of cells")
-    );
-    assert_eq!(error(&key, b"PRT1\n3\n"), "this is no state of a search");
-    assert_eq!(error(&key, b""), "this is no state of a search");
-    let mut newer = bytes.clone();
-    newer[8] += 1;
-    assert_eq!(error(&key, &newer), "the state is of version 2, this program continues version 1");
-    let cut = error(&key, &bytes[..bytes.len() - 1]);
-    assert!(cut.contains("cut off"), "{cut}");
-    let options = PrtOptions { from: Some(state), ..PrtOptions::default() };
-    let error = bake_prt(&grid(3, 2), options).unwrap_err();
-    assert_eq!(error, PrtBakeError::State(StateError::Unfit));
-}
-
-/// Some state of a search of this graph.
-fn started(graph: &CellGraph<Convex>) -> ConvexState {
-    let mut search = ConvexSearch::new(graph, ConvexOptions::default());
-    search.advance();
-    search.state().clone()
-}
-
-/// No byte of a state can be lost or changed.
-#[test]
-fn damaged_states_are_refused() {
-    let key = StateKey::new(b"text", true);
-    let graph = graph_of_prt(&grid(3, 2));
-    let bytes = encode(&key, &started(&graph));
-    assert!(decode(&key, &graph, &bytes).is_ok());
-    (0..bytes.len()).for_each(|len| assert!(decode(&key, &graph, &bytes[..len]).is_err(), "{len} bytes"));
-    let n_flips = flipped_bits(&bytes).map(|b| assert!(decode(&key, &graph, &b).is_err())).count();
-    assert_eq!(n_flips, 8 * bytes.len());
-    assert!(decode(&key, &graph, &[&bytes[..], &[0]].concat()).is_err());
-}
-
-/// The same bytes with a length and a hash that are right, so that what is inside is looked at.
-fn hashed(mut bytes: Vec<u8>) -> Vec<u8> {
-    bytes.truncate(bytes.len().saturating_sub(HASH_LEN));
-    with_hash(&bytes)
-}
-
-/// Cells in a row, and some state of a search of them.
-fn state_of(n: usize, pairs: &[(usize, usize, u8)], numbers: [u64; 3]) -> (CellGraph<Convex>, ConvexState) {
-    let corners = [[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    let door = Portal3::around(&corners).unwrap();
-    let doors = (1..n as u32).map(|b| ([CellId(b - 1), CellId(b)], door.clone()));
-    let graph = CellGraph::of_portals(n, doors.collect());
-    let (mut visible, mut possible) = (BitMatrix::identity(n), BitMatrix::identity(n));
-    let mut through = BitMatrix::new(2 * (n - 1), n);
-    let mut undecided = Vec::new();
-    for &(a, b, kind) in pairs {
-        let (a, b) = (a % n, b % n);
-        for (a, b) in [(a, b), (b, a)] {
-            if kind == 0 {
-                visible.set(a, b, true);
-            }
-            possible.set(a, b, true);
-        }
-        if n > 1 {
-            through.set((a * 7 + b) % (2 * (n - 1)), b, true);
-        }
-        if kind == 2 && a != b {
-            undecided.push([a.min(b) as u32, a.max(b) as u32]);
-        }
-    }
-    let [done, clips, lines] = numbers;
-    let counters = ConvexCounters { clips, lines, ..ConvexCounters::default() };
-    let (stage, done) = (done as u32 % 5, done % n as u64);
-    (graph, ConvexState { stage, done, visible, possible, through, undecided, counters })
-}
-
-proptest! {
-    /// States are read as written; broken ones with right hashes are an error or a sound state, and no panic.
-    #[test]
-    fn states_read_as_written(
-        n in 1usize..140,
-        pairs in proptest::collection::vec((0usize..140, 0usize..140, 0u8..3), 0..80),
-        numbers in any::<[u64; 3]>(),
-        seed in any::<u64>(),
-    ) {
-        let (graph, state) = state_of(n, &pairs, numbers);
-        let key = StateKey::new(b"text", false);
-        let bytes = encode(&key, &state);
-        prop_assert_eq!(&decode(&key, &graph, &bytes).unwrap(), &state);
-        let mut random = SplitMix::new(seed);
-        for _ in 0..20 {
-            let broken = hashed(mutate(&bytes, &mut random));
-            if let Ok(read) = decode(&key, &graph, &broken) {
-                prop_assert!(read.visible.is_symmetric() && read.possible.is_symmetric());
-                prop_assert!((0..n).all(|a| read.visible.get(a, a)));
-                let is_part = |a: usize| read.visible.iter_ones(a).all(|b| read.possible.get(a, b));
-                prop_assert!((0..n).all(is_part));
-                prop_assert!(read.undecided.iter().all(|p| p[0] < p[1] && (p[1] as usize) < n));
-            }
-        }
-    }
-}
-
-/// Whatever counts a state claims, memory is taken only for the cells that are there.
-#[test]
-fn claims_of_a_state_are_not_believed() {
-    let key = StateKey::new(b"text", false);
-    let (graph, state) = state_of(5, &[(0, 1, 0)], [1, 2, 3]);
-    let sound = encode(&key, &state);
-    let mut n_refused = 0;
-    for at in (40..sound.len() - 20).step_by(4) {
-        for claim in [u32::MAX, u32::MAX / 8, 1 << 16] {
-            let mut bytes = sound.clone();
-            bytes[at..at + 4].copy_from_slice(&claim.to_le_bytes());
-            n_refused += usize::from(matches!(decode(&key, &graph, &hashed(bytes)), Err(StateError::Unsound { .. })));
-        }
-    }
-    assert!(n_refused > 10, "{n_refused}");
 }

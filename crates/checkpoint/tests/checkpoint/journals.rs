@@ -126,6 +126,9 @@ fn files_of_other_bakes_are_refused_or_replaced() {
     assert!(matches!(open(&path, "a", Opening::Resume), Err(StateError::OtherForm(_))));
     toy([2, 0]).bake(Some(&again())).unwrap();
     assert!(fs::read(&before).unwrap() == bytes);
+    // So is what the program kept of searches before there were units.
+    fs::write(&path, b"\x8ESLVIS\r\n\x01\0\0\0").unwrap();
+    assert!(matches!(open(&path, "a", Opening::Resume), Err(StateError::OtherForm(_))));
     // What is something else is never overwritten.
     fs::write(&path, "a letter").unwrap();
     for opening in [Opening::Anew, Opening::Resume] {

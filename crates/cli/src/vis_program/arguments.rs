@@ -37,18 +37,18 @@ pub(super) struct VisProgramArgs {
     #[arg(long, help_heading = "Method")]
     pub(super) phsonly: bool,
 
-    /// Neither resume an interrupted run nor save the state of this one
+    /// Neither go on from an interrupted run nor keep results of this one
     #[arg(long, help_heading = "Resuming")]
     pub(super) nostate: bool,
-    /// Keep the state after the end, in MAP.vis-state
+    /// Keep the results after the end, in MAP.bsp.state
     #[arg(long, help_heading = "Resuming", overrides_with = "autoclean")]
     pub(super) noautoclean: bool,
-    /// Remove the state at the end, as without this option
+    /// Remove the results at the end, as without this option
     #[arg(long, help_heading = "Resuming", overrides_with = "noautoclean")]
     pub(super) autoclean: bool,
-    /// Seconds between two savings of the state
-    #[arg(long, help_heading = "Resuming", hide = true, value_name = "SECONDS", default_value_t = 30)]
-    pub(super) save_every: u64,
+    /// Seconds after which the file of results is made; a run that is over sooner leaves none
+    #[arg(long, help_heading = "Resuming", hide = true, value_name = "SECONDS", default_value_t = crate::kept::SAVE_AFTER)]
+    pub(super) save_after: u64,
 
     /// Make no part of the map sound of wind, water, slime or lava nearby
     #[arg(long, help_heading = "Ambient sounds")]

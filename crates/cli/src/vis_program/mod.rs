@@ -10,7 +10,7 @@ mod hearing;
 mod priority;
 
 use crate::Answer;
-use crate::commands::vis::{Beginning, Manner, Sound, StateUse, VisArgs, compute};
+use crate::commands::vis::{Beginning, Manner, Sound, VisArgs, compute};
 use crate::kept::Keeping;
 use crate::map_portals::MADE;
 use crate::output::{bytes, count};
@@ -63,7 +63,7 @@ fn run(args: &VisProgramArgs, map: &Path, console: &Console) -> Result<Answer, E
 /// Computes what is visible.
 fn see(args: &VisProgramArgs, map: &Path, console: &Console) -> Result<(), Error> {
     let mut vis = VisArgs::of_map(map.to_owned());
-    (vis.fast, vis.threads, vis.save_every) = (args.fast, args.threads, args.save_every);
+    (vis.fast, vis.threads, vis.resume.save_after) = (args.fast, args.threads, args.save_after);
     vis.silence = args.silenced();
     let how = if args.fast { "a coarse bound of the visibility" } else { "the exact visibility" };
     let mut begin = |&Beginning { bsp, prt, prt_path, resumed }: &Beginning<'_>| {
@@ -82,9 +82,8 @@ fn see(args: &VisProgramArgs, map: &Path, console: &Console) -> Result<(), Error
     };
     let manner = Manner {
         show_progress: !(args.quiet || args.nopercent || args.noprogress),
-        states: if args.nostate { StateUse::Off } else { StateUse::ResumeIfItFits },
-        keep_state: args.noautoclean,
-        keeping: Keeping::Nowhere,
+        keeping: if args.nostate { Keeping::Nowhere } else { Keeping::FileIfItFits(&vis.resume) },
+        keep_after: args.noautoclean,
         begin: &mut begin,
     };
     let outcome = compute(&vis, manner)?;

@@ -66,10 +66,12 @@ fn slanted_scenes_take_line_space_for_given_cells_and_sheets_for_their_own() {
     let own = ["build", "slanted.obj", "--method", "auto", "--n-cells", "4", "-o", "own.pvs", "--json"];
     assert_eq!(method(&folder.run(&own).expect(0).json()), "sightlines and sheets");
     build(&[], "default.pvs");
+    assert!(folder.read("default.pvs") == folder.read("auto.pvs"), "nothing said is auto");
+    build(&["--method", "sightlines"], "lines.pvs");
     build(&["--method", "both"], "both.pvs");
-    let [auto, default, both] = ["auto.pvs", "default.pvs", "both.pvs"].map(|table| objects_seen(&folder, table));
-    assert!(auto <= both && auto < default, "{both} {auto} {default}");
-    assert_eq!((auto, default), (2, 3), "the crate is behind the screen");
+    let [auto, lines, both] = ["auto.pvs", "lines.pvs", "both.pvs"].map(|table| objects_seen(&folder, table));
+    assert!(auto <= both && auto < lines, "{both} {auto} {lines}");
+    assert_eq!((auto, lines), (2, 3), "the crate is behind the screen");
 }
 
 #[test]

@@ -197,7 +197,7 @@ fn wrong_usage_is_refused() {
         ("info tower.glb", "info: only build, vis, reject and tiles build can be shared"),
         ("build tower.glb -o out.pvs --time-limit 5", "--time-limit means nothing for a job"),
         ("build tower.glb -o out.pvs --resume", "--resume or --state means nothing for a job"),
-        ("vis map.bsp --resume", "--resume means nothing for a job"),
+        ("vis map.bsp --resume", "--resume or --state means nothing for a job"),
         ("build tower.glb --no-such -o out.pvs", "the command of the job: unexpected argument '--no-such' found"),
         ("build none.glb -o out.pvs", "none.glb: No such file or directory (os error 2)"),
     ] {
@@ -220,10 +220,11 @@ fn wrong_usage_is_refused() {
     // Scripts without starting anything.
     let files =
         folder.run(&["job", "submit", "job", "--dry-run", "--sbatch=--partition=long", "--json"]).expect(0).json();
-    assert_eq!(files["files"].as_array().unwrap().len(), 3);
+    assert_eq!(files["files"].as_array().unwrap().len(), 2);
     let script = String::from_utf8(folder.read("job/slurm/shards-0-0.sh")).unwrap();
     assert!(script.contains("#SBATCH --array=0-3\n") && script.contains("#SBATCH --partition=long\n"), "{script}");
-    assert!(String::from_utf8(folder.read("job/kubernetes.yaml")).unwrap().contains("completions: 4"));
+    let unknown = folder.run(&["job", "submit", "job", "--engine", "kubernetes"]).expect(2);
+    assert!(unknown.err.contains("invalid value 'kubernetes' for '--engine <WHO>'"), "{}", unknown.err);
     // Several shards to a task; those that are done are no reason for one.
     folder.run(&["job", "submit", "job", "--dry-run", "--shards-per-task", "3"]).expect(0);
     let script = String::from_utf8(folder.read("job/slurm/shards-0-0.sh")).unwrap();

@@ -113,9 +113,9 @@ fn a_full_disk_destroys_nothing() {
         assert_eq!((folder.read("map.bsp"), folder.names()), (map.clone(), names.clone()), "{args:?}");
     }
     // A state that finds no room is reported, and is no reason to stop before the map is written.
-    let run = without_room(&folder, VIS, &["-save-every", "0", "map"]).expect(2);
+    let run = without_room(&folder, VIS, &["-save-after", "0", "map"]).expect(2);
     assert!(
-        run.err.contains("map.vis-state: cannot be written: ") && run.err.contains("cannot be resumed"),
+        run.err.contains("map.bsp.state: cannot be written: ") && run.err.contains("cannot go on from there"),
         "{}",
         run.err
     );

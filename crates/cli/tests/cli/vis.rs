@@ -4,13 +4,10 @@ use crate::common::quake::{Map, Portals, rooms, row_of_leafs, small_maps};
 use crate::common::{Folder, Run};
 use serde_json::{Value, json};
 use sightlines::bake::from_table::convex_graph;
-use sightlines::bake::quake::StateKey;
-use sightlines::bake::quake::state::{encode, is_state};
 use sightlines::formats::quake::prt::{LeafList, parse_prt, write_prt};
 use sightlines::formats::quake::visibility::{VisibilityLump, read_visibility};
-use sightlines::formats::quake::{Bsp, BspFormat, Prt, graph_of_prt};
+use sightlines::formats::quake::{Bsp, BspFormat, Prt};
 use sightlines::pvs::{BitMatrix, CellId, Table};
-use sightlines::stabtree::{ConvexOptions, ConvexSearch};
 
 /// What a map of the folder says that its clusters see.
 fn seen(folder: &Folder, name: &str, portals: &Portals) -> BitMatrix {
@@ -266,16 +263,13 @@ fn tables_of_portals_answer_what_they_can() {
     assert_eq!(error, "office.geojson: --fast is for portal files, and this is a plan");
 }
 
-/// The state of a search of the portals that has come `n_steps` far.
-fn state(map: &Map, text: &str, fast: bool, n_steps: usize) -> Vec<u8> {
-    let graph = graph_of_prt(&parse_prt(map.prt.as_bytes()).unwrap());
-    let mut search = ConvexSearch::new(&graph, ConvexOptions { fast, threads: 1 });
-    for _ in 0..n_steps {
-        if !search.advance() {
-            break;
-        }
-    }
-    encode(&StateKey::new(text.as_bytes(), fast), search.state())
+/// All results of a search of portals, as a run keeps them.
+fn state(map: &Map, portals: &str, fast: bool) -> Vec<u8> {
+    let folder = with(map);
+    folder.write("map.prt", portals);
+    let how = if fast { &["-fast"][..] } else { &[] };
+    folder.run_vis(&[how, &["-noautoclean", "map"]].concat()).expect(0);
+    folder.read("map.bsp.state")
 }
 
 fn vis(folder: &Folder, more: &[&str]) -> Run {
@@ -288,16 +282,29 @@ fn a_run_goes_on_where_another_stopped() {
     let folder = with(&map);
     let whole = vis(&folder, &[]).expect(0).json();
     let bytes = folder.read("out.bsp");
-    for n_steps in [0, 1, 2, 5, 1000] {
-        folder.write("out.vis-state", state(&map, &map.prt, false, n_steps));
+    let state = state(&map, &map.prt, false);
+    let mut n_resumed = 0;
+    for eighths in 0..=8 {
+        // As a run leaves it that was killed, while it wrote for most of these.
+        folder.write("out.bsp.state", &state[..state.len() * eighths / 8]);
         let reply = vis(&folder, &["--resume", "--threads", "2"]).expect(0).json();
-        assert_eq!((&reply["resumed"], &reply["counters"]), (&json!(true), &whole["counters"]), "{n_steps} steps");
+        assert_eq!(reply["counters"], whole["counters"], "{eighths} eighths");
         assert_eq!(folder.read("out.bsp"), bytes);
-        assert_eq!(folder.names(), ["map.bsp", "map.prt", "out.bsp"], "the state is gone");
+        n_resumed += usize::from(reply["resumed"] == json!(true));
+        if eighths > 0 {
+            assert_eq!(folder.names(), ["map.bsp", "map.prt", "out.bsp"], "the state is gone");
+        }
+        let _ = std::fs::remove_file(folder.path("out.bsp.state"));
     }
+    assert!(n_resumed > 2, "{n_resumed}");
+    // A map that was compiled again has other bytes and the same portals.
+    folder.write("out.bsp.state", &state);
+    folder.write("map.bsp", &bytes);
+    assert_eq!(vis(&folder, &["--resume"]).expect(0).json()["resumed"], json!(true));
+    assert_eq!(folder.read("out.bsp"), bytes);
     // Nothing to go on from is no error, but said.
     let run = vis(&folder, &["--resume", "--state", "other"]).expect(0);
-    assert!(run.err.contains("other: there is no state to go on from") && run.json()["resumed"] == json!(false));
+    assert!(run.err.contains("other: there is nothing to go on from") && run.json()["resumed"] == json!(false));
     assert_eq!(folder.read("out.bsp"), bytes);
 }
 
@@ -308,16 +315,26 @@ fn a_state_is_written_and_only_read_when_asked_for() {
     let folder = with(&map);
     vis(&folder, &[]).expect(0);
     let bytes = folder.read("out.bsp");
-    folder.write("out.vis-state", state(&map, "another text", true, 1));
+    let (own, other) = (state(&map, &map.prt, false), state(&map, &map.prt, true));
+    folder.write("out.bsp.state", &other);
     assert_eq!(vis(&folder, &[]).expect(0).json()["resumed"], json!(false));
-    assert!(folder.read("out.bsp") == bytes && !folder.names().contains(&"out.vis-state".to_owned()));
-    // The folder of the output is no folder, so the state is all that is written, after every step.
+    assert!(folder.read("out.bsp") == bytes && folder.read("out.bsp.state") == other);
+    folder.write("out.bsp.state", &own);
+    let run = vis(&folder, &[]).expect(0);
+    assert!(run.err.contains("out.bsp.state: beginning without its "), "{}", run.err);
+    assert!(run.json()["resumed"] == json!(false) && folder.read("out.bsp") == bytes);
+    assert!(!folder.path("out.bsp.state").exists(), "it is of the same search, which is done");
+    // The folder of the output is no folder, so the state is all that would be written.
     folder.write("states", "");
-    let error = folder.refused(&["vis", "map.bsp", "-o", "states/out.bsp", "--state", "kept", "--save-every", "0"]);
+    let error = folder.refused(&["vis", "map.bsp", "-o", "states/out.bsp", "--state", "kept", "--save-after", "0"]);
     assert!(error.starts_with("states/out.bsp: cannot be written: "), "{error}");
     assert!(!folder.names().contains(&"kept".to_owned()), "that is found before the search");
-    let run = folder.run(&["vis", "map.bsp", "-o", "out.bsp", "--state", "no/state", "--save-every", "0"]).expect(0);
-    assert!(run.err.contains("no/state: cannot be written") && run.err.contains("cannot be resumed"), "{}", run.err);
+    let run = folder.run(&["vis", "map.bsp", "-o", "out.bsp", "--state", "no/state", "--save-after", "0"]).expect(0);
+    assert!(
+        run.err.contains("no/state: cannot be written") && run.err.contains("cannot go on from there"),
+        "{}",
+        run.err
+    );
     assert_eq!(folder.read("out.bsp"), bytes, "a state that cannot be kept is no reason to stop");
 }
 
@@ -326,41 +343,69 @@ fn stale_states_are_refused_by_name() {
     let map = rooms(5, 3);
     let folder = with(&map);
     folder.write("out.bsp", "precious");
-    let sound = state(&map, &map.prt, false, 1);
-    assert!(is_state(&sound));
-    let mut flipped = sound.clone();
-    flipped[sound.len() / 2] ^= 4;
+    let sound = state(&map, &map.prt, false);
     let mut newer = sound.clone();
     newer[8] = 200;
     let other = rooms(4, 3);
+    let (of_other, form) = ("the results are of another input or of other options", "the form of another version");
     for (bytes, what) in [
-        (state(&map, &map.prt.replace('\n', "\r\n"), false, 1), "another portal file, or the file has changed since"),
-        (state(&map, &map.prt, true, 1), "the state is of a fast search, which this is not"),
-        (state(&other, &other.prt, false, 1), "another portal file"),
-        (state(&other, &map.prt, false, 1), "it is for another number of cells"),
-        (flipped, "the state is damaged"),
-        (newer, "the state is of version 200"),
-        (sound[..sound.len() - 3].to_vec(), "it is cut off"),
-        (sound[..20].to_vec(), "it is cut off"),
+        (state(&map, &map.prt.replace('\n', "\r\n"), false), of_other),
+        (state(&map, &map.prt, true), of_other),
+        (state(&other, &other.prt, false), of_other),
+        (newer, form),
+        // What `vis` wrote before it kept results of units.
+        (b"\x8ESLVIS\r\n\x01\0\0\0".to_vec(), form),
     ] {
-        folder.write("out.vis-state", &bytes);
-        let error = folder.refused(&["vis", "map.bsp", "-o", "out.bsp", "--resume"]);
-        let end = "; without --resume the search begins anew";
-        assert!(error.starts_with("out.vis-state: ") && error.contains(what) && error.ends_with(end), "{error}");
-        assert_eq!((folder.read("out.bsp"), folder.read("out.vis-state")), (b"precious".to_vec(), bytes));
+        for name in ["out.bsp.state", "named"] {
+            folder.write(name, &bytes);
+            let error = folder.refused(&["vis", "map.bsp", "-o", "out.bsp", "--resume", "--state", name]);
+            let end = "; without --resume the work begins anew";
+            assert!(error.starts_with(&format!("{name}: ")) && error.contains(what) && error.ends_with(end), "{error}");
+            assert_eq!((folder.read("out.bsp"), folder.read(name)), (b"precious".to_vec(), bytes.clone()));
+        }
     }
     // What is no state at all is not overwritten either.
     for more in [&[][..], &["--resume"]] {
-        for name in ["map.bsp", "map.prt", "out.bsp"] {
+        for (name, what) in
+            [("map.bsp", "two outputs"), ("map.prt", "two outputs"), ("out.bsp", "would be overwritten")]
+        {
             let before = folder.read(name);
             let error = folder.refused(&[&["vis", "map.bsp", "-o", "new.bsp", "--state", name][..], more].concat());
-            assert!(error.starts_with(name) && error.contains("would be overwritten"), "{error}");
+            assert!(error.starts_with(name) && error.contains(what), "{error}");
             assert_eq!(folder.read(name), before);
         }
     }
 }
 
-/// Killed again and again while it writes its state after every step, and taken up again each time, a run ends with
+/// A changed byte anywhere in a state costs the record that it is in, or the state is refused; nothing else is found.
+#[test]
+fn damaged_results_are_not_used() {
+    let map = rooms(5, 3);
+    let folder = with(&map);
+    let whole = vis(&folder, &[]).expect(0).json();
+    let (bytes, sound) = (folder.read("out.bsp"), state(&map, &map.prt, false));
+    let (mut n_refused, mut n_passed_over) = (0, 0);
+    for at in (0..sound.len()).step_by(sound.len() / 24) {
+        let mut damaged = sound.clone();
+        damaged[at] ^= 4;
+        folder.write("out.bsp.state", &damaged);
+        folder.write("out.bsp", "precious");
+        let run = vis(&folder, &["--resume"]);
+        if run.code == 2 {
+            assert!(run.err.starts_with("error: out.bsp.state: "), "{}", run.err);
+            assert_eq!((folder.read("out.bsp"), folder.read("out.bsp.state")), (b"precious".to_vec(), damaged));
+            n_refused += 1;
+            continue;
+        }
+        let run = run.expect(0);
+        n_passed_over += usize::from(run.err.contains("damaged; the rest is used"));
+        assert_eq!(folder.read("out.bsp"), bytes, "byte {at}");
+        assert_eq!(run.json()["counters"], whole["counters"], "byte {at}");
+    }
+    assert!(n_refused > 0 && n_passed_over > 5, "{n_refused} {n_passed_over}");
+}
+
+/// Killed again and again while it keeps the results of every unit, and taken up again each time, a run ends with
 /// the same bytes; what is there of the output until then is the old file.
 #[cfg(unix)]
 #[test]
@@ -369,7 +414,7 @@ fn a_killed_run_loses_nothing() {
     let folder = with(&map);
     vis(&folder, &[]).expect(0);
     let bytes = folder.read("out.bsp");
-    let args = ["vis", "map.bsp", "-o", "again.bsp", "--resume", "--save-every", "0", "--quiet"];
+    let args = ["vis", "map.bsp", "-o", "again.bsp", "--resume", "--save-after", "0", "--quiet"];
     folder.write("again.bsp", "precious");
     let mut n_killed = 0;
     for wait in (0..40).map(|k| std::time::Duration::from_millis(2 * k)) {

@@ -2,7 +2,6 @@
 
 use crate::common::Folder;
 use crate::common::quake::{Map, rooms, row_of_leafs, small_maps};
-use sightlines::bake::quake::state::is_state;
 use sightlines::formats::quake::visibility::{VisibilityLump, lump, read_hearing, read_visibility};
 use sightlines::formats::quake::{Bsp, BspFormat, LeafClusters};
 use sightlines::pvs::BitMatrix;
@@ -136,11 +135,15 @@ fn a_log_has_what_is_printed() {
     let run = folder.run_vis(&["-log", "Größe 1.map"]).expect(0);
     assert_eq!(String::from_utf8(folder.read("Größe 1-vis.log")).expect("text"), run.out);
     // Warnings and errors too, after which the log of another run is gone.
-    folder.write("Größe 1.vis-state", "precious");
+    folder.write("Größe 1.bsp.state", "precious");
     let run = folder.run_vis(&["-log", "Größe 1.map"]).expect(0);
-    assert_eq!(folder.read("Größe 1.vis-state"), b"precious");
+    assert_eq!(folder.read("Größe 1.bsp.state"), b"precious");
     let log = String::from_utf8(folder.read("Größe 1-vis.log")).expect("text");
-    assert!(run.err.contains("this is no state of a search; the state of this run is not saved"), "{}", run.err);
+    assert!(
+        run.err.contains("this is no file of results of units; the results of this run are not kept"),
+        "{}",
+        run.err
+    );
     assert!(log.contains(run.err.trim()) && log.contains("elapsed"), "{log}");
     std::fs::remove_file(folder.path("Größe 1.prt")).expect("a file");
     let run = folder.run_vis(&["-log", "Größe 1.map"]).expect(2);
@@ -184,24 +187,24 @@ fn sounds_are_turned_off() {
     folder.run(&["vis", "Größe 1.bsp", "--silence", "thunder"]).expect(2);
 }
 
-/// A state is kept, found and used if it fits, else ignored; without states none is touched.
+/// A state is kept, found and used if it fits, else put aside; without states none is touched.
 #[test]
 fn states_are_used_if_they_fit() {
     let (map, other) = (rooms(4, 3), rooms(3, 3));
     let folder = with(&map);
     folder.run_vis(&["Größe 1"]).expect(0);
     let done = folder.read("Größe 1.bsp");
-    let name = "Größe 1.vis-state";
+    let name = "Größe 1.bsp.state";
     let kept = || folder.path(name).exists().then(|| folder.read(name));
     assert_eq!(kept(), None, "nothing is left of a run that ended");
     folder.run_vis(&["-noautoclean", "Größe 1"]).expect(0);
     let state = kept().expect("it is kept");
-    assert!(is_state(&state));
+    assert!(state.starts_with(b"SLUNITS\n"));
     let again = |args: &[&str]| {
         folder.write("Größe 1.bsp", &map.bsp);
         folder.run_vis(&[args, &["Größe 1"]].concat()).expect(0)
     };
-    // It is the last state of all: another run has nothing left to do.
+    // It has all results: another run has nothing left to do.
     let run = again(&["-noautoclean"]);
     assert!(run.out.contains("resumed    ") && run.err.is_empty() && folder.read("Größe 1.bsp") == done, "{}", run.out);
     assert_eq!(kept(), Some(state.clone()));
@@ -209,25 +212,42 @@ fn states_are_used_if_they_fit() {
     assert!(!run.out.contains("resumed") && run.err.is_empty() && folder.read("Größe 1.bsp") == done);
     assert_eq!(kept(), Some(state.clone()), "it is left alone");
     assert!(again(&[]).out.contains("resumed") && kept().is_none());
-    // Of other portals, of other options, damaged.
+    // Of other portals, of other options, of the kind of another version: not used, and left alone by a run that keeps nothing.
     let with_other = with(&other);
     with_other.run_vis(&["-noautoclean", "Größe 1"]).expect(0);
     again(&["-fast", "-noautoclean"]);
     let fast = kept().expect("it is kept");
+    let (other_form, before) = (b"\x8ESLVIS\r\n\x01\0\0\0".to_vec(), "Größe 1.bsp.state.before");
     for (bytes, what) in [
-        (with_other.read(name), "the state is of another portal file, or the file has changed since"),
-        (fast, "the state is of a fast search, which this is not"),
-        (state[..state.len() - 1].to_vec(), "it is cut off or has something behind it"),
+        (with_other.read(name), "the results are of another input or of other options"),
+        (fast, "the results are of another input or of other options"),
+        (other_form, "the file has the form of another version of the program"),
     ] {
-        folder.write(name, bytes);
+        folder.write(name, &bytes);
         let run = again(&[]);
         assert!(
             run.err.contains(what) && run.err.contains("; beginning anew") && run.err.lines().count() == 1,
             "{}",
             run.err
         );
-        assert!(!run.out.contains("resumed") && folder.read("Größe 1.bsp") == done && kept().is_none());
+        assert!(!run.out.contains("resumed") && folder.read("Größe 1.bsp") == done && kept() == Some(bytes.clone()));
+        // One that keeps results puts it aside.
+        let run = again(&["-save-after", "0"]);
+        assert!(run.err.contains(what) && folder.read("Größe 1.bsp") == done && kept().is_none(), "{}", run.err);
+        assert_eq!(folder.read(before), bytes);
     }
+    // Damaged: the rest is used, and what is lost is computed again.
+    let mut damaged = state.clone();
+    *damaged.last_mut().expect("bytes") ^= 4;
+    folder.write(name, &damaged);
+    let run = again(&["-noautoclean"]);
+    assert!(run.err.contains("1 record damaged; the rest is used") && run.out.contains("resumed"), "{}", run.err);
+    assert!(folder.read("Größe 1.bsp") == done && kept().is_some_and(|kept| kept.len() > damaged.len()));
+    // Cut off, as a run leaves it that is killed while it writes.
+    folder.write(name, &state[..state.len() - 1]);
+    let run = again(&[]);
+    assert!(run.err.is_empty() && run.out.contains("resumed"), "{}", run.err);
+    assert!(folder.read("Größe 1.bsp") == done && kept().is_none());
 }
 
 /// Killed while it works and called again as before, it continues, and ends with the same bytes.
@@ -237,7 +257,7 @@ fn a_killed_run_is_resumed_by_itself() {
     let map = rooms(12, 10);
     let folder = with(&map);
     folder.run(&["vis", "Größe 1.bsp", "-o", "reference.bsp"]).expect(0);
-    let args = ["-save-every", "0", "-quiet", "Größe 1"];
+    let args = ["-save-after", "0", "-quiet", "Größe 1"];
     let (mut n_killed, mut n_kept) = (0, 0);
     for wait in (0..60).map(|k| std::time::Duration::from_millis(2 * k)) {
         let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_sightlines-vis"))
@@ -252,13 +272,13 @@ fn a_killed_run_is_resumed_by_itself() {
         let now = folder.read("Größe 1.bsp");
         assert!(now == map.bsp || now == folder.read("reference.bsp"), "the map is the old one or the new one");
         n_killed += usize::from(!has_ended);
-        n_kept += usize::from(folder.path("Größe 1.vis-state").exists());
+        n_kept += usize::from(folder.path("Größe 1.bsp.state").exists());
         if has_ended {
             break;
         }
     }
     assert!(n_killed > 0);
-    let run = folder.run_vis(&["-save-every", "0", "Größe 1"]).expect(0);
+    let run = folder.run_vis(&["-save-after", "0", "Größe 1"]).expect(0);
     assert!(folder.read("Größe 1.bsp") == folder.read("reference.bsp"));
     eprintln!("{n_killed} killed, {n_kept} times with a state; {}", run.out);
 }
@@ -325,7 +345,7 @@ fn help_and_version_are_printed() {
     for option in ["-h", "-help", "--help", "-?"] {
         let help = folder.run_vis(&[option]).expect(0).out;
         assert!(help.contains("Usage: sightlines-vis [OPTIONS] <MAP>") && help.contains("--noambientsky"), "{help}");
-        assert!(!help.contains("--save-every"), "{help}");
+        assert!(!help.contains("--save-after"), "{help}");
     }
     let version = folder.run_vis(&["-version"]).expect(0).out;
     assert_eq!(version, format!("sightlines-vis {}\n", env!("CARGO_PKG_VERSION")));
@@ -355,13 +375,13 @@ fn warnings_do_not_have_the_word_for_failures() {
     let map = rooms(3, 2);
     folder.write("map.bsp", &map.bsp);
     folder.write("map.prt", &map.prt);
-    std::fs::create_dir(folder.path("map.vis-state")).expect("a folder");
+    std::fs::create_dir(folder.path("map.bsp.state")).expect("a folder");
     let run = folder.run_vis(&["map"]).expect(0);
     let text = (run.out + &run.err).to_lowercase();
-    assert!(text.contains("the state of this run is not saved") && !text.contains("error"), "{text}");
+    assert!(text.contains("the results of this run are not kept") && !text.contains("error"), "{text}");
     // An empty state is none.
-    std::fs::remove_dir(folder.path("map.vis-state")).expect("a folder");
-    folder.write("map.vis-state", b"");
+    std::fs::remove_dir(folder.path("map.bsp.state")).expect("a folder");
+    folder.write("map.bsp.state", b"");
     let run = folder.run_vis(&["map"]).expect(0);
-    assert!(run.err.is_empty() && !folder.names().contains(&"map.vis-state".to_owned()), "{}", run.err);
+    assert!(run.err.is_empty() && !run.out.contains("resumed"), "{}{}", run.out, run.err);
 }

@@ -54,7 +54,7 @@ fn lumps_over_leafs_are_found_before_the_search() {
     folder.write("map.bsp", &bytes);
     let error = refused(&folder);
     assert!(error.contains("lump 10 (leafs)") && error.contains("lump 0 (entities)"), "{error}");
-    let run = folder.run_vis(&["-save-every", "0", "-noautoclean", "map"]).expect(2);
+    let run = folder.run_vis(&["-save-after", "0", "-noautoclean", "map"]).expect(2);
     assert!(!run.out.contains("wrote") && folder.names() == ["map.bsp", "map.prt"], "{}", run.out);
 }
 

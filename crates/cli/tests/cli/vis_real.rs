@@ -122,7 +122,7 @@ fn a_killed_run_of_a_real_map_loses_nothing() {
     let folder = copied(&data, "dm3");
     folder.run(&["vis", "map.bsp", "-o", "whole.bsp"]).expect(0);
     let before = folder.read("map.bsp");
-    let args = ["vis", "map.bsp", "--resume", "--save-every", "0", "--quiet", "--threads", "1"];
+    let args = ["vis", "map.bsp", "--resume", "--save-after", "0", "--quiet", "--threads", "1"];
     let mut n_kept = 0;
     for wait in [50, 100, 200, 400] {
         let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_sightlines"))
@@ -137,15 +137,15 @@ fn a_killed_run_of_a_real_map_loses_nothing() {
             break;
         }
         assert_eq!(folder.read("map.bsp"), before, "the map is as it was");
-        n_kept += usize::from(folder.path("map.vis-state").exists());
+        n_kept += usize::from(folder.path("map.bsp.state").exists());
     }
     let reply = folder.run(&[&args[..], &["--json"]].concat()).expect(0).json();
     eprintln!("states kept: {n_kept}; {reply}");
     assert!(folder.read("map.bsp") == folder.read("whole.bsp"));
-    assert!(!folder.path("map.vis-state").exists());
+    assert!(!folder.path("map.bsp.state").exists());
 }
 
-/// The first Ctrl-C saves the state, however recently it was saved.
+/// The first Ctrl-C keeps what is done, however short the run was.
 #[cfg(unix)]
 #[test]
 fn an_interrupted_run_of_a_real_map_goes_on() {
@@ -170,13 +170,13 @@ fn an_interrupted_run_of_a_real_map_goes_on() {
         assert_eq!(ended.status.code(), Some(130).filter(|_| ended.status.code().is_some()));
         assert_eq!(folder.read("map.bsp"), before, "the map is as it was");
         let text = String::from_utf8(ended.stderr).expect("text");
-        let says = text.ends_with("interrupted; the same command with --resume goes on from map.vis-state\n");
-        assert!(!says || folder.path("map.vis-state").exists(), "{text}");
+        let says = text.ends_with("interrupted; the same command with --resume goes on from map.bsp.state\n");
+        assert!(!says || folder.path("map.bsp.state").exists(), "{text}");
         n_saved += usize::from(says);
     }
     folder.run(&args).expect(0);
     eprintln!("states saved: {n_saved}");
-    assert!(folder.read("map.bsp") == folder.read("whole.bsp") && !folder.path("map.vis-state").exists());
+    assert!(folder.read("map.bsp") == folder.read("whole.bsp") && !folder.path("map.bsp.state").exists());
 }
 
 /// Pairs of a real map that are near to seeing each other, or nearly do: all are proven.

@@ -1,4 +1,4 @@
-//! A search in units whose results are kept, so that several processes share one.
+//! A search in units whose results are kept, so that it goes on after a stop, and that several processes share one.
 //!
 //! The first phase is one unit: bounds, and lines through every portal. Then come beams, [`FEW`] gates to a unit, and then the pairs
 //! in doubt, [`CELLS`] cells to a unit. Unlike the steps of a search in one process, a unit knows only what earlier phases

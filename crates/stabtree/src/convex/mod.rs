@@ -104,35 +104,12 @@ impl ConvexSearch {
         }
     }
 
-    /// Resumes a search of the same graph with the same options (the number of threads may differ). `None` if the state
-    /// cannot belong to this graph.
-    pub fn resume(graph: &CellGraph<Convex>, options: ConvexOptions, state: ConvexState) -> Option<Self> {
-        let mut search = Self::new(graph, options);
-        let size = |m: &BitMatrix| (m.n_rows(), m.n_cols());
-        let fits = [&state.visible, &state.possible].iter().all(|m| size(m) == size(&search.state.visible))
-            && size(&state.through) == size(&search.state.through)
-            && state.undecided.iter().all(|&[a, b]| a < b && (b as usize) < search.gates.n_cells())
-            && state.stage <= N_STAGES
-            && state.done <= search.gates.len().max(search.gates.n_cells()) as u64;
-        if !fits {
-            return None;
-        }
-        if state.stage > 0 {
-            // The order follows from the first stage, which is quick.
-            while search.state.stage == 0 {
-                search.bound();
-            }
-        }
-        search.state = state;
-        Some(search)
-    }
-
     /// The current state of the search.
     pub fn state(&self) -> &ConvexState {
         &self.state
     }
 
-    /// The work of beams and of pairs since this search was made or resumed, where nearly all time goes, and the longest
+    /// The work of beams and of pairs since this search was made, where nearly all time goes, and the longest
     /// chain of it that no number of threads can shorten. Deterministic, with any number of threads.
     pub fn chain(&self) -> WorkChain {
         self.chain
@@ -161,12 +138,11 @@ impl ConvexSearch {
         })
     }
 
-    /// Takes all remaining steps, with a report before the first and after each. `after_step` may store the state
-    /// ([`ConvexSearch::state`]), to resume the search if the process is stopped.
+    /// Takes all remaining steps, with a report before the first and after each. Keeps nothing for a later run, as [`ConvexSearch::run_in_units`] can.
     ///
     /// # Errors
     /// [`Cancelled`] by the observer. The search can continue from its current state.
-    pub fn run(&mut self, observer: Option<&dyn Observer>, mut after_step: impl FnMut(&Self)) -> Result<(), Cancelled> {
+    pub fn run(&mut self, observer: Option<&dyn Observer>) -> Result<(), Cancelled> {
         let report = |search: &Self| match observer.map(|observer| observer.report(search.progress())) {
             Some(ControlFlow::Break(())) => Err(Cancelled),
             Some(ControlFlow::Continue(())) | None => Ok(()),
@@ -175,7 +151,6 @@ impl ConvexSearch {
         let mut more = true;
         while more {
             more = self.advance();
-            after_step(self);
             report(self)?;
         }
         Ok(())

@@ -28,6 +28,12 @@ pub struct ConvexCounters {
 }
 
 impl ConvexCounters {
+    /// Names and values, in a fixed order.
+    pub fn named(&self) -> [(&'static str, u64); 5] {
+        let Self { clips, lines, programs, beams, sequences } = *self;
+        [("clips", clips), ("lines", lines), ("programs", programs), ("beams", beams), ("sequences", sequences)]
+    }
+
     /// All of it as one number, in cuts of a polygon: the other operations count as many as they were found to take time
     /// for, roughly.
     pub const fn work(&self) -> u64 {
@@ -45,7 +51,7 @@ impl std::ops::AddAssign for ConvexCounters {
     }
 }
 
-/// The state of a search: all that is needed to resume it later, for the same graph and options.
+/// The state of a search: what it has found so far.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ConvexState {
     /// The current stage, from 0; 4 when all are done.

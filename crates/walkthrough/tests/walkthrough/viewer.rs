@@ -1,7 +1,7 @@
 //! A viewer answers as the methods do, cell by cell.
 
 use crate::walk::hall_of_mirrors;
-use sightlines_bake::{BakeOptions, PlanBakeOptions, bake, bake_plan};
+use sightlines_bake::{BakeRequest, PlanBakeOptions, bake, bake_plan};
 use sightlines_eye_to_cell::{
     Budget, Doors, Image, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph, follow_reflections,
 };
@@ -94,7 +94,7 @@ fn tables() -> [Arc<Table>; 3] {
     let plan = office(OfficeOptions { rooms_x: 4, rooms_y: 2, furniture: true, ..OfficeOptions::default() }).unwrap();
     let scene = TowerOptions { floors: 1, rooms_x: 2, rooms_y: 1, furniture: 2, ..TowerOptions::default() };
     let plan = bake_plan(&plan, &PlanBakeOptions::default()).unwrap().table;
-    let scene = bake(&tower(scene).unwrap(), &BakeOptions::default()).unwrap().table;
+    let scene = bake(&tower(scene).unwrap(), &BakeRequest::default()).unwrap().table;
     [Arc::new(plan), Arc::new(scene), hall_of_mirrors()]
 }
 

@@ -1,6 +1,6 @@
 //! `job submit`: has all shards done, round by round, and merges them.
 
-use super::engine::{Command, Did, Engine, Local, Round, Slurm, write_kubernetes};
+use super::engine::{Command, Did, Engine, Local, Round, Slurm};
 use super::merge::{Progress, merge, report};
 use super::outcome::{Missing, Submitted};
 use super::task::Task;
@@ -65,7 +65,7 @@ pub(crate) struct SubmitArgs {
     /// How often a shard that failed is tried again; one that ended with exit code 2 is not
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(0..=100))]
     retries: u32,
-    /// Write scripts for Slurm and a manifest for Kubernetes into the folder of the job, and start nothing
+    /// Write scripts for Slurm into the folder of the job, and start nothing
     #[arg(long, help_heading = "Method")]
     dry_run: bool,
     /// The file to write [default: the output of the command that was planned]
@@ -87,8 +87,7 @@ pub(crate) fn run(args: &SubmitArgs, show_progress: bool, verbose: bool) -> Resu
             return Err(Error::Command(format!("{}: the job has no shards", args.job.display())));
         };
         let shards: Vec<usize> = job.manifest().shards_of(phase).collect();
-        let mut files = slurm.write(&Round { job: &job, phase, shards: &shards }, 0)?;
-        files.push(write_kubernetes(&job, phase)?);
+        let files = slurm.write(&Round { job: &job, phase, shards: &shards }, 0)?;
         let files = files.iter().map(|file| file.display().to_string()).collect();
         output::print(args.json, &Submitted { job: args.job.display().to_string(), files })?;
         return Ok(Answer::Yes);

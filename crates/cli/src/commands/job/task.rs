@@ -78,7 +78,7 @@ impl Task {
             Command::Build(args) if args.time_limit.is_some() => refuse("--time-limit"),
             Command::Build(args) if args.resume.is_given() => refuse("--resume or --state"),
             Command::Reject(args) if args.resume.is_given() => refuse("--resume or --state"),
-            Command::Vis(args) if args.resume => refuse("--resume"),
+            Command::Vis(args) if args.resume.is_given() => refuse("--resume or --state"),
             Command::Build(args) => Ok(Self::Build(args)),
             Command::Reject(args) => Ok(Self::Reject(args)),
             Command::Tiles(args) => match args.what {

@@ -4,7 +4,6 @@ use crate::file_error::{FileError, from_file_error};
 use crate::kept::{Interrupted, KeptError};
 use crate::memory::TooLarge;
 use sightlines::bake::PrtBakeError;
-use sightlines::bake::quake::StateError;
 use std::fmt;
 use std::path::PathBuf;
 
@@ -34,26 +33,9 @@ pub(crate) enum Error {
     #[error("{}: clusters {} and {} are listed as {}, but {found}; nothing was written", path.display(), pair[0], pair[1],
             if *is_listed { "visible" } else { "hidden" })]
     Contradiction { path: PathBuf, pair: [u32; 2], is_listed: bool, found: Found },
-    /// A state from which the search cannot be resumed.
-    #[error("{}: {source}; without --resume the search begins anew", path.display())]
-    State { path: PathBuf, source: StateError },
-    /// Something else is where the state of the search would be written.
-    #[error("{}: this is no state of a search, and would be overwritten; name another with --state", .0.display())]
-    NotState(PathBuf),
 }
 
 from_file_error!(Error);
-
-impl Error {
-    /// What is wrong with the file of a state, without what to do about it.
-    pub(super) fn without_advice(&self) -> String {
-        match self {
-            Self::State { path, source } => format!("{}: {source}", path.display()),
-            Self::NotState(path) => format!("{}: this is no state of a search", path.display()),
-            other => other.to_string(),
-        }
-    }
-}
 
 /// What was found about a pair of clusters that is listed otherwise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -3,12 +3,10 @@
 mod certify;
 mod error;
 mod outcome;
-mod saved;
 mod sounds;
 
 pub(crate) use error::Error;
 pub(crate) use outcome::Outcome;
-pub(crate) use saved::StateUse;
 pub(crate) use sounds::Sound;
 
 use crate::Answer;
@@ -16,25 +14,19 @@ use crate::clusters::warn_of_repeats;
 use crate::commands::build::needs::of_clusters;
 use crate::error::{InputError, OutputError};
 use crate::input;
-use crate::interrupt;
-use crate::kept::{Identity, Inputs, Interrupted, Keeping, Kept};
+use crate::kept::{Identity, Inputs, Keeping, Kept, ResumeArgs};
 use crate::map_portals::{MapPortals, portal_file, portals_for};
 use crate::memory::MemoryArgs;
 use crate::output;
 use crate::progress::Bar;
 use certify::certify;
-use saved::Saved;
-use sightlines::bake::quake::StateKey;
 use sightlines::bake::{PrtBakeError, PrtOptions, vis_map};
 use sightlines::formats::InputKind;
 use sightlines::formats::quake::visibility::check_portals;
-use sightlines::formats::quake::{Bsp, Prt, VisibilityError, graph_of_prt, read_bsp};
-use sightlines::progress::{Observer, Progress};
-use sightlines::stabtree::{ConvexOptions, ConvexSearch};
-use std::ops::ControlFlow;
+use sightlines::formats::quake::{Bsp, Prt, VisibilityError, read_bsp};
+use sightlines::stabtree::ConvexOptions;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 /// Arguments of `vis`.
 #[derive(Debug, clap::Args)]
@@ -53,15 +45,8 @@ pub(crate) struct VisArgs {
     pub(crate) threads: usize,
     #[command(flatten)]
     pub(crate) memory: MemoryArgs,
-    /// Resume an interrupted run with the same portals and options
-    #[arg(long, help_heading = "Resuming")]
-    pub(crate) resume: bool,
-    /// File for the state of the run [default: beside the output, with the extension .vis-state]
-    #[arg(long, help_heading = "Resuming", value_name = "FILE")]
-    state: Option<PathBuf>,
-    /// Seconds between two savings of the state
-    #[arg(long, help_heading = "Resuming", hide = true, value_name = "SECONDS", default_value_t = 30)]
-    pub(crate) save_every: u64,
+    #[command(flatten)]
+    pub(crate) resume: ResumeArgs,
     /// Prove this many visible and as many hidden pairs, and check the proofs independently
     #[arg(long, help_heading = "Method", value_name = "N")]
     certify: Option<usize>,
@@ -85,9 +70,7 @@ impl VisArgs {
             fast: false,
             threads: 0,
             memory: MemoryArgs::default(),
-            resume: false,
-            state: None,
-            save_every: 30,
+            resume: ResumeArgs::default(),
             certify: None,
             silence: Vec::new(),
             output: None,
@@ -99,11 +82,10 @@ impl VisArgs {
 /// How to go about it, beside what the arguments say.
 pub(crate) struct Manner<'a, 'k> {
     pub(crate) show_progress: bool,
-    pub(crate) states: StateUse,
-    /// Whether the state is kept after the end.
-    pub(crate) keep_state: bool,
-    /// Where results of units are kept, of a search without states.
+    /// Where results of units are kept.
     pub(crate) keeping: Keeping<'k>,
+    /// Whether they are kept after the end.
+    pub(crate) keep_after: bool,
     /// Called before the search.
     pub(crate) begin: &'a mut dyn FnMut(&Beginning<'_>) -> Result<(), OutputError>,
 }
@@ -118,21 +100,18 @@ pub(crate) struct Beginning<'a> {
 }
 
 pub(crate) fn run(args: &VisArgs, show_progress: bool, verbose: bool) -> Result<Answer, Error> {
-    let states = if args.resume { StateUse::Resume } else { StateUse::Anew };
-    let manner = Manner { show_progress, states, keep_state: false, keeping: Keeping::Nowhere, begin: &mut |_| Ok(()) };
-    let mut outcome = compute(args, manner)?;
+    let mut outcome = make(args, Keeping::File(&args.resume), show_progress)?;
     outcome.verbose = verbose;
     output::print(args.json, &outcome)?;
     Ok(Answer::Yes)
 }
 
-/// Writes the map with results from the store of a job. Prints nothing but progress and warnings.
+/// Writes the map. Prints nothing but progress and warnings.
 pub(crate) fn make(args: &VisArgs, keeping: Keeping<'_>, show_progress: bool) -> Result<Outcome, Error> {
-    let states = StateUse::Off;
-    compute(args, Manner { show_progress, states, keep_state: false, keeping, begin: &mut |_| Ok(()) })
+    compute(args, Manner { show_progress, keeping, keep_after: false, begin: &mut |_| Ok(()) })
 }
 
-/// Writes the map. Prints nothing but progress and warnings.
+/// The same, in a manner.
 pub(crate) fn compute(args: &VisArgs, manner: Manner<'_, '_>) -> Result<Outcome, Error> {
     crate::threads::use_only(args.threads);
     let start = Instant::now();
@@ -142,11 +121,8 @@ pub(crate) fn compute(args: &VisArgs, manner: Manner<'_, '_>) -> Result<Outcome,
     }
     let file = portal_file(&args.map, args.prt.as_deref());
     let out = args.output.as_ref().unwrap_or(&args.map);
-    let state_path = args.state.clone().unwrap_or_else(|| out.with_extension("vis-state"));
-    // The map may be replaced. A state that cannot be written is reported when it is needed: the search goes on
-    // without.
-    let beside = [file.as_ref(), Some(&state_path)];
-    output::check(&beside.into_iter().flatten().map(PathBuf::as_path).collect::<Vec<_>>(), &[out])?;
+    // The map may be replaced.
+    output::check(&file.iter().map(PathBuf::as_path).collect::<Vec<_>>(), &[out])?;
     let inputs =
         Inputs::look(manner.keeping, [Some(&args.map), file.as_ref()].into_iter().flatten().map(PathBuf::as_path))?;
     let bsp = read_bsp(&args.map)?;
@@ -161,43 +137,23 @@ pub(crate) fn compute(args: &VisArgs, manner: Manner<'_, '_>) -> Result<Outcome,
 
     let too_large = |source| Error::Memory { path: args.map.clone(), source };
     let threads = args.memory.threads(args.threads, of_clusters(&prt)).map_err(too_large)?;
-    let key = StateKey::new(&text, args.fast);
-    let kept = Kept::open(manner.keeping, &inputs, &[out], || args.identity(&text, &inputs))?;
+    let kept = Kept::open(manner.keeping, &inputs, &[out], || args.identity(&text, &inputs, manner.keeping))?;
     drop(text);
-    let every = Duration::from_secs(args.save_every);
-    let (mut saved, from) = Saved::open(state_path, every, key, &graph_of_prt(&prt), manner.states)?;
-    if manner.keep_state {
-        saved.keep();
-    }
-    let resumed = from.is_some();
-    let saves = manner.states != StateUse::Off;
+    let resumed = kept.n_taken_up() > 0;
     (manner.begin)(&Beginning { bsp: &bsp, prt: &prt, prt_path: &prt_path, resumed })?;
     let bar = Bar::new("visibility of clusters", manner.show_progress);
-    // The state is written before an interrupted search ends.
-    let is_saved = AtomicBool::new(false);
-    let mut save = |search: &ConvexSearch| {
-        let ends = interrupt::requested();
-        saved.save(search, ends);
-        is_saved.store(ends, Relaxed);
-    };
-    let observer = |progress: Progress| match bar.report(progress) {
-        ControlFlow::Break(()) if is_saved.load(Relaxed) || !saves => ControlFlow::Break(()),
-        _ => ControlFlow::Continue(()),
-    };
     let sounds = sounds::all_but(&args.silence);
     let search = ConvexOptions { fast: args.fast, threads };
-    let units = kept.units();
-    let options = PrtOptions { search, from, progress: Some(&observer), after_step: Some(&mut save), units, sounds };
+    let options = PrtOptions { search, progress: Some(&bar), units: kept.units(), sounds };
     let map = vis_map(&bsp, &prt, options);
     drop(bar);
     let map = match map {
         Ok(map) => map,
         Err(source) => {
-            if let Some(Interrupted { state }) = kept.finish(false) {
-                let state = state.or_else(|| saved.path_if_written());
-                return Err(Error::Interrupted(Interrupted { state }));
+            if let Some(interrupted) = kept.finish(false) {
+                return Err(Error::Interrupted(interrupted));
             }
-            return Err(explained(source, args, &prt_path, &saved));
+            return Err(explained(source, args, &prt_path));
         }
     };
     kept.before_writing()?;
@@ -207,9 +163,15 @@ pub(crate) fn compute(args: &VisArgs, manner: Manner<'_, '_>) -> Result<Outcome,
         certify(&prt_path, &map.graph, &map.clusters.seen, n, args.fast, &bar)
     });
     let certified = certified.transpose()?;
-    output::save(out, &map.bytes)?;
-    saved.remove();
-    kept.finish(true);
+    if let Err(error) = output::save(out, &map.bytes) {
+        kept.finish(false);
+        return Err(error.into());
+    }
+    if manner.keep_after {
+        kept.leave();
+    } else {
+        kept.finish(true);
+    }
     let mut outcome = Outcome::new(out, &bsp, format, &map);
     (outcome.fast, outcome.resumed) = (args.fast, resumed);
     outcome.certified = certified;
@@ -219,12 +181,16 @@ pub(crate) fn compute(args: &VisArgs, manner: Manner<'_, '_>) -> Result<Outcome,
 
 impl VisArgs {
     /// What decides the results of units. A new argument does not compile until it is decided whether it is part of that.
-    fn identity(&self, portals: &[u8], inputs: &Inputs) -> Identity {
+    fn identity(&self, portals: &[u8], inputs: &Inputs, keeping: Keeping<'_>) -> Identity {
         #[rustfmt::skip]
         let Self {
-            map: _, prt: _, fast, threads: _, memory: _, resume: _, state: _, save_every: _, certify: _, silence: _, output: _, json: _,
+            map: _, prt: _, fast, threads: _, memory: _, resume: _, certify: _, silence: _, output: _, json: _,
         } = self;
-        let mut identity = Identity::new("vis", inputs);
+        // The search is of the portals alone: a map that was compiled again, or got its visibility, may have the same. A job is of its files.
+        let mut identity = match keeping {
+            Keeping::Job(_) => Identity::new("vis", inputs),
+            Keeping::File(_) | Keeping::FileIfItFits(_) | Keeping::Nowhere => Identity::apart_from("vis", inputs),
+        };
         identity.debug("portals", &portals);
         identity.debug("options", fast);
         identity
@@ -232,10 +198,9 @@ impl VisArgs {
 }
 
 /// Puts the name of the file before what is wrong with it.
-fn explained(source: PrtBakeError, args: &VisArgs, prt: &Path, saved: &Saved) -> Error {
+fn explained(source: PrtBakeError, args: &VisArgs, prt: &Path) -> Error {
     let about = |path: &Path, source| Error::BakePrt { path: path.to_owned(), source };
     match source {
-        PrtBakeError::State(source) => Error::State { path: saved.path().to_owned(), source },
         PrtBakeError::Bsp(_) | PrtBakeError::Visibility(VisibilityError::Bsp(_) | VisibilityError::TooLarge { .. }) => {
             about(&args.map, source)
         }

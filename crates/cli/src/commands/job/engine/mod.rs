@@ -1,14 +1,12 @@
 //! Who does shards.
 
 mod command;
-mod kubernetes;
 mod local;
 mod pool;
 mod process;
 mod slurm;
 
 pub(super) use command::Command;
-pub(super) use kubernetes::write_kubernetes;
 pub(super) use local::Local;
 pub(super) use slurm::Slurm;
 
