@@ -86,9 +86,30 @@ def test_cells_may_be_chosen():
     given = sl.bake(HALLS, cells=boxes, method="both", progress=False)
     assert (given.cells == boxes).all() and not given.sees(0, 1)
     assert "no portals" in given.explain(0, 1).text and given.explain(0, 1).visible is None
+    one = given.explain(1, 1)
+    assert one.visible is True and one.text == "both are cell 1, and a cell sees itself"
     region = sl.bake(HALLS, view_region=[[1, 1, 1], [3, 3, 2]], progress=False)
     # The other hall cannot be reached from there.
     assert len(region.cells_at(EYE)) and not len(region.cells_at((15, 2, 2)))
+
+
+def test_rays_explain_cells_without_portals(tmp_path):
+    lines, n = [], 1
+    for name, (corners, triangles) in HALLS.items():
+        lines += [f"o {name}", *(f"v {x} {y} {z}" for x, y, z in corners)]
+        lines += [f"f {a} {b} {c}" for a, b, c in triangles + n]
+        n += len(corners)
+    scene = tmp_path / "halls.obj"
+    scene.write_text("\n".join(lines))
+    boxes = np.array([[[1, 1, 1], [3, 3, 2]], [[6, 1, 1], [8, 3, 2]], [[15, 1, 1], [18, 3, 2]]])
+    table = sl.bake(scene, cells=boxes, method="both", progress=False)
+    seen = table.explain(0, 1, scene=scene)
+    assert seen.visible is True and seen.cells == [0, 1] and seen.portals == []
+    assert all((low < p).all() and (p < high).all() for p, (low, high) in zip(seen.line, boxes))
+    hidden = table.explain(0, 2, scene=scene)
+    assert hidden.visible is None and "which proves nothing; hidden by " in hidden.text
+    with pytest.raises(FileNotFoundError):
+        table.explain(0, 2, scene=tmp_path / "absent.obj")
 
 
 #: Walls of the two halls that are not at right angles.

@@ -234,8 +234,6 @@ pub(crate) const GROUPS: [Group; 12] = [
             "progress",
             "pvs",
             "scenes",
-            "sightline",
-            "stabtree",
             "visibility-graph",
         ],
         paths: &["python/", "xtask/src/python.rs"],

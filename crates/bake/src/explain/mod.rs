@@ -1,7 +1,7 @@
 //! Why one cell of a table sees another, or why it does not: one answer for every kind of cells.
 //!
 //! [`explain`] answers for a stored table, an [`Explainer`] for many pairs of one graph, or for a graph without a table. Cells that portals join
-//! get a line through them, or a proof that there is none; both are exact. Cells without portals get a line that nothing in their scene touches,
+//! get a line through them, or a proof that there is none. Cells without portals get a line that nothing in their scene touches,
 //! or the methods that may have hidden them.
 
 mod answer;
@@ -75,9 +75,10 @@ pub enum ExplainError {
 /// cells without portals only: it is the one that the table was made of, along the axes of its file. Points of the answer are along the axes of
 /// the table.
 ///
-/// Never errs: a line and a reason are exact, and what was not found is [`Answer::GivenUp`], [`Answer::Undecided`] or [`Answer::Unknown`].
-/// Portals that are wider than the openings behind them let a line through that walls stop: then a table that hides the pair may be right too.
-/// The same arguments give the same answer.
+/// A line is exact. So is a reason, but for [`Blocking::Behind`](sightlines_stabtree::Blocking::Behind) between clusters, which allows for corners
+/// off their planes. What is neither is [`Answer::GivenUp`], [`Answer::Undecided`] or [`Answer::Unknown`]. A line through portals passes walls that
+/// are borders of cells; it may meet others, by which a from-region method hides the pair: then the table is right too. The same arguments give
+/// the same answer.
 ///
 /// Cost: the graph is made anew, O(size of the table), and the search ends within the options. With a scene, O(n log n) of triangles and the rays;
 /// for a pair that both kinds of methods may have hidden, a bake of the two cells by sightlines too.

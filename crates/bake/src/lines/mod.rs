@@ -52,7 +52,7 @@ impl Default for LineOptions {
 /// Lines of a table.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Lines {
-    /// The lines, in the order in which they were found.
+    /// The lines, in the order in which they were found; with ends in the first portal and the last where the cells have none in doubles.
     pub lines: Vec<SightLine>,
     /// Hidden pairs that were asked for, with the reason.
     pub hidden: Vec<HiddenPair>,
