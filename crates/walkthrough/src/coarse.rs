@@ -47,9 +47,11 @@ pub trait CoarseVisibility {
     }
 }
 
-/// A box of a table along the axes of its scene.
+/// A box of a table along the axes of its scene, around where its corners may have been before they were taken along the table's frame.
 fn in_scene(table: &Table, Ok(b): Result<Aabb<3>, Infallible>) -> Aabb<3> {
-    let (min, max) = table.frame().map_or((b.min, b.max), |frame| frame.around_in_scene(b.min, b.max));
+    let Some(frame) = table.frame() else { return b };
+    let gap = frame.gap();
+    let (min, max) = frame.around_in_scene(b.min.map(|x| x - gap), b.max.map(|x| x + gap));
     Aabb { min, max }
 }
 
