@@ -1,6 +1,7 @@
 //! The part of a table that is available in every frame.
 
-use sightlines_eye_to_cell::TableCells;
+use sightlines_eye_to_cell::{CellSource, TableCells};
+use sightlines_geometry::Aabb;
 use sightlines_pvs::{CellId, ObjectId, Place, PlaceBuffer, Table};
 use std::borrow::Borrow;
 use std::convert::Infallible;
@@ -34,6 +35,24 @@ pub trait CoarseVisibility {
 
     /// Visits a superset of the objects that `cell` may see; `false` if it is unknown.
     fn coarse_objects(&self, cell: CellId, show: &mut dyn FnMut(ObjectId)) -> bool;
+
+    /// A box around a cell, along the axes of the scene; `None` where none is at hand, and the cell counts as in view.
+    fn cell_bounds(&self, _: CellId) -> Option<Aabb<3>> {
+        None
+    }
+
+    /// The same of all places of an object.
+    fn object_bounds(&self, _: ObjectId) -> Option<Aabb<3>> {
+        None
+    }
+}
+
+/// A box of a table along the axes of its scene, around where its corners may have been before they were taken along the table's frame.
+fn in_scene(table: &Table, Ok(b): Result<Aabb<3>, Infallible>) -> Aabb<3> {
+    let Some(frame) = table.frame() else { return b };
+    let gap = frame.gap();
+    let (min, max) = frame.around_in_scene(b.min.map(|x| x - gap), b.max.map(|x| x + gap));
+    Aabb { min, max }
 }
 
 impl<T: Borrow<Table>> CoarseVisibility for TableCells<T> {
@@ -58,6 +77,14 @@ impl<T: Borrow<Table>> CoarseVisibility for TableCells<T> {
     fn coarse_objects(&self, cell: CellId, show: &mut dyn FnMut(ObjectId)) -> bool {
         self.table().visible_objects(cell).into_iter().for_each(show);
         true
+    }
+
+    fn cell_bounds(&self, cell: CellId) -> Option<Aabb<3>> {
+        Some(in_scene(self.table(), self.cell_box(cell)))
+    }
+
+    fn object_bounds(&self, object: ObjectId) -> Option<Aabb<3>> {
+        Some(in_scene(self.table(), self.object_box(object)))
     }
 }
 
@@ -86,5 +113,13 @@ impl<R: CoarseVisibility + ?Sized> CoarseVisibility for Arc<R> {
 
     fn coarse_objects(&self, cell: CellId, show: &mut dyn FnMut(ObjectId)) -> bool {
         (**self).coarse_objects(cell, show)
+    }
+
+    fn cell_bounds(&self, cell: CellId) -> Option<Aabb<3>> {
+        (**self).cell_bounds(cell)
+    }
+
+    fn object_bounds(&self, object: ObjectId) -> Option<Aabb<3>> {
+        (**self).object_bounds(object)
     }
 }

@@ -6,6 +6,7 @@ use crate::prefetch::{Prefetcher, Prepare};
 use sightlines_eye_to_cell::{
     Budget, CellSource, Doors, Image, Method, Scratch, View, VisibleSet, VisibleSubgraph, follow_reflections,
 };
+use sightlines_geometry::Aabb;
 use sightlines_pvs::{CellId, DoorId, DoorRecord, ObjectId, Place, PlaceBuffer, PortalId};
 use std::fmt;
 
@@ -48,8 +49,8 @@ pub enum Answer {
     /// It is the answer of [`Frame::method`], or, where the work of the frame was spent, between that and the answer of the method
     /// that was asked for.
     Full,
-    /// Something was not prepared yet: the cells and objects are a superset of the method's. What is seen in mirrors is
-    /// incomplete.
+    /// Something was not prepared yet: the cells and objects are a superset of the method's, cut by the view where the boxes of cells and
+    /// objects are in memory, and as if all doors were open. What is seen in mirrors is incomplete.
     Late,
     /// The eye is outside every cell: draw everything.
     Outside,
@@ -222,7 +223,8 @@ impl<R: CoarseVisibility, S: CellSource<Error: Send + 'static> + Send + 'static>
                 }
                 None => {
                     answer = Answer::Late;
-                    coarse(&self.resident, cell, &mut self.seen);
+                    let view = (method != Method::CellToCell).then_some(view);
+                    coarse(&self.resident, cell, view, &mut self.seen);
                 }
             }
         }
@@ -409,16 +411,24 @@ where
     }
 }
 
-/// Adds a superset of what a cell may see.
-fn coarse(resident: &impl CoarseVisibility, cell: CellId, seen: &mut VisibleSet) {
-    resident.coarse(cell, &mut |cell| {
-        seen.add_cell(cell);
+/// Adds a superset of what a viewer in a cell may see, in a view if there is one: what is known to be out of it is left out.
+fn coarse(resident: &impl CoarseVisibility, root: CellId, view: Option<&View>, seen: &mut VisibleSet) {
+    let is_in_view = |bounds: Option<Aabb<3>>| match (view, bounds) {
+        (Some(view), Some(bounds)) => bounds.is_empty() || view.may_meet(&bounds),
+        _ => true,
+    };
+    resident.coarse(root, &mut |cell| {
+        if cell == root || is_in_view(resident.cell_bounds(cell)) {
+            seen.add_cell(cell);
+        }
     });
-    let are_known = resident.coarse_objects(cell, &mut |object| {
-        seen.add_object(object);
-    });
-    if !are_known {
-        seen.add_objects((0..resident.n_objects() as u32).map(ObjectId));
+    let mut show = |object| {
+        if is_in_view(resident.object_bounds(object)) {
+            seen.add_object(object);
+        }
+    };
+    if !resident.coarse_objects(root, &mut show) {
+        (0..resident.n_objects() as u32).map(ObjectId).for_each(show);
     }
 }
 

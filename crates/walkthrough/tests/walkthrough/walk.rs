@@ -159,7 +159,7 @@ fn frames_do_not_wait_for_a_source_that_never_comes() {
     full_gate.open();
     let mut twin = Walkthrough::new(TableCells::new(Arc::clone(&table)), full, WalkOptions::default());
     // The gate stays shut: if a frame waited, this would never end.
-    let mut n = 0;
+    let (mut n, mut n_seen, mut n_table) = (0, 0, 0);
     for k in 0..1000 {
         let view = looking_right(0.5 + 0.038 * f64::from(k));
         let (cells, objects) = until_full(&mut twin, &view, Method::Exact);
@@ -168,8 +168,12 @@ fn frames_do_not_wait_for_a_source_that_never_comes() {
         assert!(cells.iter().all(|&c| frame.seen.has_cell(CellId(c))), "late, and less");
         assert!(objects.iter().all(|&o| frame.seen.has_object(ObjectId(o))));
         n += 1;
+        n_seen += frame.seen.cells().len();
+        n_table += table.visible(frame.at[0]).count();
     }
     assert_eq!((n, walk.counters().late), (1000, 1000));
+    // The two rooms behind the eye are out of view.
+    assert!(5 * n_seen < 4 * n_table, "{n_seen} of {n_table}");
     // When it arrives, the answer is the method's.
     gate.open();
     let view = looking_right(0.5);
