@@ -258,12 +258,10 @@ fn set_doors(viewer: &mut Viewer, ids: impl IntoIterator<Item = DoorId>, open: b
     let cells = Arc::clone(viewer.cells());
     let doors = viewer.doors_mut();
     for door in ids {
-        for &portal in &cells.table().doors()[door.idx()].portals {
-            if open {
-                doors.open(portal)
-            } else {
-                doors.close(portal)
-            };
+        if open {
+            doors.open_door(door);
+        } else {
+            doors.close_door(cells.table().doors(), door);
         }
     }
 }

@@ -6,7 +6,7 @@ use sightlines_capi::*;
 use sightlines_eye_to_cell::{
     Doors, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph, follow_reflections,
 };
-use sightlines_pvs::{CellId, ObjectId, Place, PlaceBuffer, PortalId, Table};
+use sightlines_pvs::{CellId, DoorRecord, ObjectId, Place, PlaceBuffer, PortalId, Table};
 use std::collections::BTreeSet;
 use std::ffi::CString;
 use std::ptr;
@@ -407,4 +407,31 @@ fn matrices_are_those_of_rust() {
     // SAFETY: it is owned.
     unsafe { sl_viewer_free(viewer) };
     assert!(n > 20 && n_objects.len() > 5, "{n} views, {n_objects:?}");
+}
+
+/// A portal that two doors close is closed until both stand open, and until it is opened itself if it was closed alone.
+#[test]
+fn doors_that_share_a_portal_are_shut_each_on_its_own() {
+    let table = bake(&towers()[0], &BakeRequest::default()).expect("a scene").table;
+    let door = |name: &str, portals: &[u32]| DoorRecord {
+        name: name.to_owned(),
+        object: None,
+        portals: portals.iter().map(|&portal| PortalId(portal)).collect(),
+    };
+    let table = table.with_doors(vec![door("a", &[0, 1]), door("b", &[1, 2])]).expect("doors");
+    let handle = Handle::of(&table.to_bytes());
+    let mut viewer = ptr::null_mut();
+    // SAFETY: handles live until they are freed; all pointers are to live memory.
+    unsafe {
+        assert_eq!(sl_viewer_new(handle.0, &mut viewer), SL_OK);
+        let closed = || list(|to, size, n| sl_viewer_closed_portals(viewer, to, size, n));
+        let check = |status: SlStatus, expected: &[u32]| assert_eq!((status, &*closed()), (SL_OK, expected));
+        check(sl_viewer_close_door(viewer, 0), &[0, 1]);
+        check(sl_viewer_close_door(viewer, 1), &[0, 1, 2]);
+        check(sl_viewer_open_door(viewer, 0), &[1, 2]);
+        check(sl_viewer_close_portal(viewer, 2), &[1, 2]);
+        check(sl_viewer_open_door(viewer, 1), &[2]);
+        check(sl_viewer_open_portal(viewer, 2), &[]);
+        sl_viewer_free(viewer);
+    }
 }
