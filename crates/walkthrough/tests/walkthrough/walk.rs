@@ -168,11 +168,11 @@ fn frames_do_not_wait_for_a_source_that_never_comes() {
         assert!(cells.iter().all(|&c| frame.seen.has_cell(CellId(c))), "late, and less");
         assert!(objects.iter().all(|&o| frame.seen.has_object(ObjectId(o))));
         n += 1;
-        n_seen += frame.seen.cells().len();
-        n_table += table.visible(frame.at[0]).count();
+        n_seen += frame.seen.objects().len();
+        n_table += table.visible_objects(frame.at[0]).len();
     }
     assert_eq!((n, walk.counters().late), (1000, 1000));
-    // The two rooms behind the eye are out of view.
+    // What stands in the rooms behind the eye is out of view.
     assert!(5 * n_seen < 4 * n_table, "{n_seen} of {n_table}");
     // When it arrives, the answer is the method's.
     gate.open();
