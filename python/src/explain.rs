@@ -139,8 +139,11 @@ fn of_answer([a, b]: [CellId; 2], answer: Answer) -> Explanation {
     }
 }
 
+/// A text, sequences of portals, and rectangles.
+type Said = (String, Vec<Vec<u32>>, Vec<[[f64; 3]; 2]>);
+
 /// In words, with the blocked ways or the walls as boxes.
-fn of_reason(reason: &Reason) -> (String, Vec<Vec<u32>>, Vec<[[f64; 3]; 2]>) {
+fn of_reason(reason: &Reason) -> Said {
     match reason {
         Reason::NotConnected => ("no way through portals joins them".to_owned(), Vec::new(), Vec::new()),
         Reason::Blocked { n_blocked, blocked, .. } => {
