@@ -16,6 +16,34 @@ use sightlines_geometry::Aabb;
 use sightlines_packed::PackReport;
 use std::io::Write;
 
+impl BakeRequest {
+    /// Takes all decisions before the work: what the request means for this input, its frame, its cells and its methods, and why.
+    ///
+    /// Of a scene without a method this measures the scene, which may take seconds for millions of triangles.
+    ///
+    /// # Errors
+    /// [`BakeError::Meaningless`] for an option that means nothing here; [`BakeError::Move`] for a stated gap that cannot be had.
+    pub fn prepare<'i>(
+        &self,
+        input: impl Into<BakeInput<'i>>,
+        runtime: &Runtime<'_>,
+    ) -> Result<Prepared<'i>, BakeError> {
+        let input = input.into();
+        self.check(&input)?;
+        Prepared::new(self, input, runtime)
+    }
+}
+
+impl Runtime<'_> {
+    /// Bakes an input as a request says: [`bake`](fn@crate::bake) on this.
+    ///
+    /// # Errors
+    /// [`BakeError`]
+    pub fn bake<'i>(&self, input: impl Into<BakeInput<'i>>, request: &BakeRequest) -> Result<Baked, BakeError> {
+        request.prepare(input, self)?.run(self)
+    }
+}
+
 /// What was decided of an input, and why: beside what the request said.
 #[derive(Debug, Clone, Default)]
 #[non_exhaustive]

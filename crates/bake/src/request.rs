@@ -1,12 +1,10 @@
 //! What to bake, by the names that every face of the project has for it.
 
-use crate::baked::Baked;
-use crate::error::{BakeError, Meaningless};
+use crate::error::Meaningless;
 use crate::gap::Gap;
 use crate::input::BakeInput;
 use crate::methods::{Backend, BufferOptions};
 use crate::options::{Recipe, SceneMethod};
-use crate::prepared::Prepared;
 use crate::region::CellsFrom;
 use crate::subdivide::Subdivide;
 use sightlines_geometry::Aabb;
@@ -18,7 +16,7 @@ use std::fmt;
 /// What to bake: one request for inputs of every kind. Nothing said means the best that is known for the input.
 ///
 /// What means nothing for an input, or for a method that was named, is refused by name when the request is
-/// [prepared](Self::prepare); nothing is ignored. Everything but the threads and the observer is here, so a request says which table
+/// [prepared](BakeRequest::prepare); nothing is ignored. Everything but the threads and the observer is here, so a request says which table
 /// is made, byte for byte.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct BakeRequest {
@@ -125,16 +123,6 @@ impl Default for Runtime<'_> {
     }
 }
 
-impl Runtime<'_> {
-    /// Bakes an input as a request says: [`bake`](fn@crate::bake) on this.
-    ///
-    /// # Errors
-    /// [`BakeError`]
-    pub fn bake<'i>(&self, input: impl Into<BakeInput<'i>>, request: &BakeRequest) -> Result<Baked, BakeError> {
-        request.prepare(input, self)?.run(self)
-    }
-}
-
 impl fmt::Debug for Runtime<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Runtime").field("threads", &self.threads).finish_non_exhaustive()
@@ -145,22 +133,6 @@ impl fmt::Debug for Runtime<'_> {
 const SCENES: &str = "scenes in space";
 
 impl BakeRequest {
-    /// Takes all decisions before the work: what the request means for this input, its frame, its cells and its methods, and why.
-    ///
-    /// Of a scene without a method this measures the scene, which may take seconds for millions of triangles.
-    ///
-    /// # Errors
-    /// [`BakeError::Meaningless`] for an option that means nothing here; [`BakeError::Move`] for a stated gap that cannot be had.
-    pub fn prepare<'i>(
-        &self,
-        input: impl Into<BakeInput<'i>>,
-        runtime: &Runtime<'_>,
-    ) -> Result<Prepared<'i>, BakeError> {
-        let input = input.into();
-        self.check(&input)?;
-        Prepared::new(self, input, runtime)
-    }
-
     /// What is known without the input.
     pub(crate) fn recipe(&self) -> Recipe {
         let standard = SceneOptions::default();
