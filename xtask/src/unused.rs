@@ -18,7 +18,10 @@ const PACKAGES: [&str; 7] = ["benches", "lab", "manuals", "python", "shaders", "
 const FOLDERS_OF_PACKAGES: [&str; 2] = ["crates", "integrations"];
 
 /// Dependencies that no source names, for a reason: package, dependency, why.
-const UNNAMED: [(&str, &str, &str); 0] = [];
+const UNNAMED: [(&str, &str, &str); 2] = [
+    ("sightlines-tests", "sightlines-eye-to-cell", "the example in the README of the workspace names it"),
+    ("sightlines-tests", "sightlines-walkthrough", "the example in the README of the workspace names it"),
+];
 
 /// The words of a package, by what may use them.
 #[derive(Debug, Default)]
