@@ -21,7 +21,7 @@ use std::time::Instant;
 /// What a bake did: pairs that see each other, pairs assumed to, and those not decided in time.
 pub(crate) type Said = (u64, u64, u64);
 
-/// How to bake a scene in space; what means nothing for an input is refused.
+/// How to bake a scene in space; what means nothing for an input is refused, but for a limit of time, which only scenes heed.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Options<'py> {

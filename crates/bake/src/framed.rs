@@ -37,10 +37,7 @@ impl<'a> Asked<'a> {
             Some(CellsFrom::Boxes(given)) => Some(given),
             _ => None,
         };
-        let sightlines_alone = match request.method {
-            None => request.for_lines,
-            Some(method) => method == SceneMethod::Sightlines,
-        };
+        let sightlines_alone = request.method == Some(SceneMethod::Sightlines) || request.is_by_lines();
         Self { gap: request.gap, cells, sightlines_alone }
     }
 }

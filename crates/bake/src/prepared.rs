@@ -103,7 +103,7 @@ impl<'i> Prepared<'i> {
         }
         match request.method {
             Some(method) if !is_auto => recipe.method = method,
-            None if request.for_lines => {}
+            None if request.is_by_lines() || !recipe.has_given_cells() && !scene.mirrors().is_empty() => {}
             _ => {
                 let choose = || {
                     let mut recipe = recipe.clone();

@@ -16,15 +16,15 @@ use std::fmt;
 /// What to bake: one request for inputs of every kind. Nothing said means the best that is known for the input.
 ///
 /// What means nothing for an input, or for a method that was named, is refused by name when the request is
-/// [prepared](BakeRequest::prepare); nothing is ignored. Everything but the threads and the observer is here, so a request says which table
+/// [prepared](BakeRequest::prepare). Everything but the threads and the observer is here, so a request says which table
 /// is made, byte for byte.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct BakeRequest {
     /// Scenes: the cells. None: those of a k-d tree where nearly all walls are perpendicular to an axis, where there are mirrors, and for
     /// sightlines alone; else [`places`](crate::places).
     pub cells: Option<CellsFrom>,
-    /// Scenes: what decides. None: what the properties of the scene suggest, as for [`SceneMethod::Auto`], or sightlines alone for what has
-    /// [proofs or stab trees](Self::for_lines).
+    /// Scenes: what decides. None: what the properties of the scene suggest, as for [`SceneMethod::Auto`]; sightlines alone for what has
+    /// [proofs or stab trees](Self::for_lines), and for cells of a k-d tree with mirrors, of which they report what does not reflect.
     pub method: Option<SceneMethod>,
     /// Scenes: how precise coordinates are, which decides whether walls that are nearly across an axis, of the file or of the building, are
     /// taken to be so.
@@ -50,7 +50,7 @@ pub struct BakeRequest {
     /// Quake maps and portal files: only the first, coarse bound; quick, and shows much that is hidden.
     pub fast: bool,
     /// Whether proofs or stab trees are to be made, which are of sightlines through portals. Cells that are not named are then those of a k-d
-    /// tree, and a method that is not named is sightlines alone.
+    /// tree, and a method that is not named is sightlines alone, unless the cells that are named have no portals.
     pub for_lines: bool,
 }
 
@@ -133,6 +133,11 @@ impl fmt::Debug for Runtime<'_> {
 const SCENES: &str = "scenes in space";
 
 impl BakeRequest {
+    /// Whether sightlines alone decide because proofs or stab trees are to be made, which are of cells with portals.
+    pub(crate) fn is_by_lines(&self) -> bool {
+        self.method.is_none() && self.for_lines && self.cells.as_ref().is_none_or(CellsFrom::have_portals)
+    }
+
     /// What is known without the input.
     pub(crate) fn recipe(&self) -> Recipe {
         let standard = SceneOptions::default();
@@ -206,7 +211,10 @@ impl BakeRequest {
             refuse(&self.buffers.named(), SCENES, found)?;
             return refuse(&by, SCENES, found);
         }
-        let method = self.method.unwrap_or(SceneMethod::Auto);
+        let are_given = matches!(self.cells, Some(CellsFrom::Boxes(_)));
+        refuse(&[("view_region", self.view_region.is_some() && are_given)], "cells that are cut", "given boxes")?;
+        let method =
+            self.method.unwrap_or(if self.is_by_lines() { SceneMethod::Sightlines } else { SceneMethod::Auto });
         if !method.has_buffers() {
             let found = if method == SceneMethod::Auto { "the method chosen by the scene" } else { method.name() };
             refuse(&self.buffers.named(), "the methods multifocal and both", found)?;

@@ -48,12 +48,12 @@ def bake(
     :param view_region: a box (2, 3) in which viewers are; rooms that cannot be reached from it are no cells. None: the box around the view
         volumes of the file, if it states any, else everywhere
     :param gap: how precise coordinates are, in scene units: openings that are narrower may count as closed. None: as precise as
-        the file's format
+        the file's format; meshes are taken exactly
     :param detail_below: objects smaller than this in every direction hide nothing; None for what suits the scene
     :param keep_solid: whether the insides of solid things are cells too
     :param see_through: names of meshes that are seen and hide nothing; only for trimesh and meshes by name
     :param max_cells: the most cells
-    :param time_limit: seconds, after which what is not decided counts as visible; the table then depends on the machine
+    :param time_limit: of scenes, seconds, after which what is not decided counts as visible; the table then depends on the machine
     :param threads: None for one for each core. The table does not depend on it
     :param progress: a bar, if tqdm is installed, or a function that gets what is done, the units done, and all of them
     :param name: the name that bytes would have as a file, if it is needed to tell what they are: ``"scene.obj"``

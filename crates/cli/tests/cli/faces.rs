@@ -221,7 +221,8 @@ fn given_cells_take_what_suits_the_scene() {
 fn what_means_nothing_is_refused_by_name() {
     let folder = inputs();
     let refused = |name: &str, args: &[&str]| folder.refused(&[&["build", name, "-o", "out.pvs"], args].concat());
-    let cases: [(&str, &[&str], &str); 8] = [
+    folder.write("cells.json", r#"{"cells":[{"id":"a","min":[1,1,1],"max":[2,2,2]}]}"#);
+    let cases: [(&str, &[&str], &str); 10] = [
         (
             "slanted.glb",
             &["--planes", "3"],
@@ -241,6 +242,16 @@ fn what_means_nothing_is_refused_by_name() {
             "slanted.glb",
             &["--method", "sightlines", "--split", "1"],
             "--split is for methods that look from whole cells, and this is sightlines",
+        ),
+        (
+            "slanted.glb",
+            &["--certify", "--split", "1"],
+            "--split is for methods that look from whole cells, and this is sightlines",
+        ),
+        (
+            "slanted.glb",
+            &["--cells", "cells.json", "--view-region", "0,0,0,1,1,1"],
+            "--view-region is for cells that are cut, and this is given boxes",
         ),
         ("plan.geojson", &["--sheets", "1"], "--sheets is for scenes in space, and this is a plan"),
         ("plan.geojson", &["--split", "1"], "--split is for scenes in space, and this is a plan"),

@@ -1,4 +1,4 @@
-//! What `--method auto` chose, and why.
+//! Which methods were chosen for an input, and why.
 
 use serde::Serialize;
 use sightlines::bake::auto::Choice;

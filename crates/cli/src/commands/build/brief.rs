@@ -51,7 +51,7 @@ impl Built {
             Outcome::Regions(outcome) => &outcome.viewer,
             _ => return None,
         };
-        worth::sentence(viewer, self.auto.is_some())
+        worth::sentence(viewer, self.is_chosen)
     }
 
     fn three_lines(&self) -> Brief {

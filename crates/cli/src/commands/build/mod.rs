@@ -39,7 +39,7 @@ use crate::surfaces::{SurfaceArgs, Surfaces};
 use crate::tables::Class;
 use options::BakeArgs;
 use serde::Serialize;
-use sightlines::bake::{BakeInput, BakeRequest, Bakeable, Baked, Recipe, Report, Runtime};
+use sightlines::bake::{BakeInput, BakeRequest, Bakeable, Baked, Recipe, Report, Runtime, SceneMethod};
 use sightlines::formats::{Input, InputKind, SceneFile};
 use source::{Source, bake_announced};
 use std::fmt;
@@ -49,7 +49,7 @@ use std::time::Duration;
 /// Arguments of `build`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct BuildArgs {
-    /// The input: a WAD, a GeoJSON floor plan, a scene as GLB, glTF or OBJ, a Quake map, or its portal file alone
+    /// The input: a WAD, a floor plan as GeoJSON or DXF, a scene as GLB, glTF or OBJ, a Quake map, or its portal file alone
     #[arg(value_name = "IN")]
     input: PathBuf,
     /// The map of the WAD; optional if there is only one
@@ -151,6 +151,7 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
     let prepared = prepared.map_err(|error| source.failed(path, error))?;
     let (recipe, decisions) = (prepared.recipe(), prepared.decisions());
     let auto = decisions.choice.clone().map(auto::Chosen::new);
+    let is_chosen = request.method.is_none_or(|method| method == SceneMethod::Auto) && !request.for_lines;
     let viewers = decisions.viewers.map(viewers::Viewers::from);
     let placed = framed::Placed::of(&prepared);
     args.refuse_for_regions(&source, recipe)?;
@@ -175,6 +176,7 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
                 stab: None,
                 proofs: None,
                 peak_bytes: memory::peak_bytes(),
+                is_chosen,
                 verbose,
             });
         }
@@ -197,7 +199,19 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
             _ => None,
         };
         let peak_bytes = memory::peak_bytes();
-        Ok(Built { auto, outcome, viewers, placed, surfaces, given_doors, stab, proofs, peak_bytes, verbose })
+        Ok(Built {
+            auto,
+            outcome,
+            viewers,
+            placed,
+            surfaces,
+            given_doors,
+            stab,
+            proofs,
+            peak_bytes,
+            is_chosen,
+            verbose,
+        })
     };
     let made = made();
     match kept.finish(made.is_ok()) {
@@ -345,7 +359,7 @@ impl fmt::Display for Outcome {
 /// What was built, and the stab trees and proofs with it.
 #[derive(Debug, Serialize)]
 pub(crate) struct Built {
-    /// What `--method auto` chose.
+    /// What was chosen for the input, and why.
     #[serde(skip_serializing_if = "Option::is_none")]
     auto: Option<auto::Chosen>,
     #[serde(flatten)]
@@ -367,6 +381,9 @@ pub(crate) struct Built {
     proofs: Option<certify::Certified>,
     /// The most memory that was in use at once; null where the system does not report it.
     peak_bytes: Option<u64>,
+    /// Whether the method was chosen for the input, rather than by the user.
+    #[serde(skip)]
+    is_chosen: bool,
     /// Whether people get all facts, rather than a few lines; programs always do.
     #[serde(skip)]
     verbose: bool,
