@@ -37,7 +37,7 @@ impl<'a> Asked<'a> {
             Some(CellsFrom::Boxes(given)) => Some(given),
             _ => None,
         };
-        let sightlines_alone = request.method == Some(SceneMethod::Sightlines) || request.is_by_lines();
+        let sightlines_alone = request.method == Some(SceneMethod::Sightlines) || request.is_for_proofs_alone();
         Self { gap: request.gap, cells, sightlines_alone }
     }
 }

@@ -98,12 +98,12 @@ impl<'i> Prepared<'i> {
         let scene = framed.as_ref().map_or(of_file, |framed| &framed.moved.scene);
         let sightlines = request.method == Some(SceneMethod::Sightlines);
         // Mirrors reflect the cells of a k-d tree.
-        if request.cells.is_none() && !sightlines && !request.for_lines && scene.mirrors().is_empty() {
+        if request.cells.is_none() && !sightlines && !request.for_proofs && scene.mirrors().is_empty() {
             recipe.cells = own_cells(scene);
         }
         match request.method {
             Some(method) if !is_auto => recipe.method = method,
-            None if request.is_by_lines() || !recipe.has_given_cells() && !scene.mirrors().is_empty() => {}
+            None if request.is_for_proofs_alone() || !recipe.has_given_cells() && !scene.mirrors().is_empty() => {}
             _ => {
                 let choose = || {
                     let mut recipe = recipe.clone();

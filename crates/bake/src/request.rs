@@ -24,7 +24,7 @@ pub struct BakeRequest {
     /// sightlines alone; else [`places`](crate::places).
     pub cells: Option<CellsFrom>,
     /// Scenes: what decides. None: what the properties of the scene suggest, as for [`SceneMethod::Auto`]; sightlines alone for what has
-    /// [proofs or stab trees](Self::for_lines), and for cells of a k-d tree with mirrors, of which they report what does not reflect.
+    /// [proofs or stab trees](Self::for_proofs), and for cells of a k-d tree with mirrors, of which they report what does not reflect.
     pub method: Option<SceneMethod>,
     /// Scenes: how precise coordinates are, which decides whether walls that are nearly across an axis, of the file or of the building, are
     /// taken to be so.
@@ -51,10 +51,10 @@ pub struct BakeRequest {
     pub fast: bool,
     /// Whether proofs or stab trees are to be made, which are of sightlines through portals. Cells that are not named are then those of a k-d
     /// tree, and a method that is not named is sightlines alone, unless the cells that are named have no portals.
-    pub for_lines: bool,
+    pub for_proofs: bool,
 }
 
-/// How multifocal buffers and sheets are made; none of each for the default of [`BufferOptions`].
+/// How multifocal buffers and sheets are made. `None` takes the default of [`BufferOptions`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BufferRequest {
     /// Planes on each side of a cell; 0 for no buffers.
@@ -72,7 +72,7 @@ pub struct BufferRequest {
 }
 
 impl BufferRequest {
-    /// The same with every default filled in; nobody is warned.
+    /// These options with every default filled in.
     pub fn options(&self) -> BufferOptions {
         let standard = BufferOptions::default();
         let Self { planes, texels, occluders, carry, sheets, backend } = *self;
@@ -134,8 +134,8 @@ const SCENES: &str = "scenes in space";
 
 impl BakeRequest {
     /// Whether sightlines alone decide because proofs or stab trees are to be made, which are of cells with portals.
-    pub(crate) fn is_by_lines(&self) -> bool {
-        self.method.is_none() && self.for_lines && self.cells.as_ref().is_none_or(CellsFrom::have_portals)
+    pub(crate) fn is_for_proofs_alone(&self) -> bool {
+        self.method.is_none() && self.for_proofs && self.cells.as_ref().is_none_or(CellsFrom::have_portals)
     }
 
     /// What is known without the input.
@@ -214,7 +214,7 @@ impl BakeRequest {
         let are_given = matches!(self.cells, Some(CellsFrom::Boxes(_)));
         refuse(&[("view_region", self.view_region.is_some() && are_given)], "cells that are cut", "given boxes")?;
         let method =
-            self.method.unwrap_or(if self.is_by_lines() { SceneMethod::Sightlines } else { SceneMethod::Auto });
+            self.method.unwrap_or(if self.is_for_proofs_alone() { SceneMethod::Sightlines } else { SceneMethod::Auto });
         if !method.has_buffers() {
             let found = if method == SceneMethod::Auto { "the method chosen by the scene" } else { method.name() };
             refuse(&self.buffers.named(), "the methods multifocal and both", found)?;

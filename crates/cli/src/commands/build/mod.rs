@@ -151,7 +151,7 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
     let prepared = prepared.map_err(|error| source.failed(path, error))?;
     let (recipe, decisions) = (prepared.recipe(), prepared.decisions());
     let auto = decisions.choice.clone().map(auto::Chosen::new);
-    let is_chosen = request.method.is_none_or(|method| method == SceneMethod::Auto) && !request.for_lines;
+    let is_chosen = request.method.is_none_or(|method| method == SceneMethod::Auto) && !request.for_proofs;
     let viewers = decisions.viewers.map(viewers::Viewers::from);
     let placed = framed::Placed::of(&prepared);
     args.refuse_for_regions(&source, recipe)?;
@@ -232,7 +232,7 @@ impl BuildArgs {
     fn request(&self) -> Result<BakeRequest, Error> {
         let mut request = self.bake.request();
         self.region.put_into(&mut request)?;
-        request.for_lines = self.certify.is_given() || self.stab_trees.is_some();
+        request.for_proofs = self.certify.is_given() || self.stab_trees.is_some();
         Ok(request)
     }
 
