@@ -175,21 +175,13 @@ fn decided(
     runtime: &Runtime<'_>,
 ) -> Result<Decided, BakeError> {
     request.check(&tile.scene.into())?;
-    threads::on(runtime.threads, || decided_here(tile, wanted, request, runtime))
-}
-
-/// The same, on the threads that call it.
-fn decided_here(
-    tile: &Tile<'_>,
-    wanted: Wanted,
-    request: &BakeRequest,
-    runtime: &Runtime<'_>,
-) -> Result<Decided, BakeError> {
     let scene = merged(tile);
     let cells = CellsFrom::Boxes(ViewCells { cells: tile.cells.to_vec(), axes: None });
-    let recipe = recipe_of_tile(request, &scene, cells, runtime);
     let near: Vec<Aabb<3>> = tile.near.iter().flat_map(|near| near.cells.iter().map(|cell| cell.bounds)).collect();
-    with_regions(&scene, &recipe, runtime, tile.file, |how| decide(&scene, &[&near, tile.far], wanted, how))
+    threads::on(runtime.threads, || {
+        let recipe = recipe_of_tile(request, &scene, cells, runtime);
+        with_regions(&scene, &recipe, runtime, tile.file, |how| decide(&scene, &[&near, tile.far], wanted, how))
+    })
 }
 
 /// The scene of a tile and those nearby: its objects come first, those of each other follow in their order, without names.
