@@ -1,25 +1,19 @@
 //! Multifocal buffers and sheets as arguments.
 
+use crate::error::anyhow;
 use crate::named::one_of;
 use sightlines::bake::BufferRequest;
 use sightlines::bake::methods::{Backend, BufferOptions, MethodError};
-use std::path::PathBuf;
+use std::path::Path;
 
 /// A from-region method that cannot be prepared for the scene of a file.
-#[derive(Debug, thiserror::Error)]
-#[error("{}: {source}{}", path.display(), remedy(source))]
-pub(crate) struct MethodFailed {
-    pub(crate) path: PathBuf,
-    pub(crate) source: MethodError,
-}
-
-/// The command that installs what this build of the program lacks.
-fn remedy(error: &MethodError) -> &'static str {
+pub(crate) fn method_failed(path: &Path, error: MethodError) -> anyhow::Error {
     match error {
-        MethodError::NotBuiltIn(_) => {
-            "; from the project's folder, `cargo install --path crates/cli --features gpu` installs a program that has it"
-        }
-        _ => "",
+        MethodError::NotBuiltIn(_) => anyhow!(
+            "{}: {error}; from the project's folder, `cargo install --path crates/cli --features gpu` installs a program that has it",
+            path.display()
+        ),
+        error => anyhow!("{}: {error}", path.display()),
     }
 }
 

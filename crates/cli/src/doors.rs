@@ -1,27 +1,18 @@
 //! Doors and closed portals as arguments.
 
+use crate::error::{Result, bail};
+use crate::numbers::coordinates;
+use crate::region::refuse_reversed;
 use sightlines::eye_to_cell::Doors;
-use sightlines::geometry::{CoordinateError, check_coordinate};
 use sightlines::pvs::{DoorId, DoorRecord, PortalId, doors_named};
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::str::FromStr;
 
 /// What makes the rest a name, whatever it looks like.
 const PREFIX: &str = "door:";
 /// How many names an error lists.
 const MOST_NEAR: usize = 3;
-
-/// Why a portal or door cannot be closed.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum ClosedError {
-    /// A portal that the table does not have.
-    #[error("{}: there is no portal {portal}: the table has {n_portals} portals", path.display())]
-    NoSuchPortal { path: PathBuf, portal: u32, n_portals: usize },
-    /// A door that the table does not have.
-    #[error("{}: there is no door called {name:?}: {}", path.display(), listed(near))]
-    NoSuchDoor { path: PathBuf, name: String, near: Vec<String> },
-}
 
 fn listed(near: &[String]) -> String {
     if near.is_empty() {
@@ -33,13 +24,7 @@ fn listed(near: &[String]) -> String {
 
 /// Closes what a text names: portals by their numbers and doors by their names, separated by commas. All doors of a name are shut. A
 /// text that is the name of a door as a whole is that door, commas or not; what follows `door:` is a name, even if it is a number.
-pub(crate) fn close(
-    text: &str,
-    doors: &[DoorRecord],
-    n_portals: usize,
-    path: &Path,
-    closed: &mut Doors,
-) -> Result<(), ClosedError> {
+pub(crate) fn close(text: &str, doors: &[DoorRecord], n_portals: usize, path: &Path, closed: &mut Doors) -> Result<()> {
     let is_number = text.parse::<u32>().is_ok();
     let whole = text.strip_prefix(PREFIX).filter(|name| doors_named(doors, name).next().is_some());
     let whole = whole.or_else(|| Some(text).filter(|name| !is_number && doors_named(doors, name).next().is_some()));
@@ -50,7 +35,7 @@ pub(crate) fn close(
         match (part.strip_prefix(PREFIX), part.trim().parse::<u32>()) {
             (Some(name), _) => shut(name, doors, path, closed)?,
             (None, Ok(portal)) if portal as usize >= n_portals => {
-                return Err(ClosedError::NoSuchPortal { path: path.to_owned(), portal, n_portals });
+                bail!("{}: there is no portal {portal}: the table has {n_portals} portals", path.display());
             }
             (None, Ok(portal)) => _ = closed.close(PortalId(portal)),
             (None, Err(_)) => shut(part, doors, path, closed)?,
@@ -59,11 +44,11 @@ pub(crate) fn close(
     Ok(())
 }
 
-fn shut(name: &str, doors: &[DoorRecord], path: &Path, closed: &mut Doors) -> Result<(), ClosedError> {
+fn shut(name: &str, doors: &[DoorRecord], path: &Path, closed: &mut Doors) -> Result<()> {
     let ids: Vec<DoorId> = doors_named(doors, name).collect();
     if ids.is_empty() {
         let near = nearest(name, doors.iter().map(|door| door.name.as_str()));
-        return Err(ClosedError::NoSuchDoor { path: path.to_owned(), name: name.to_owned(), near });
+        bail!("{}: there is no door called {name:?}: {}", path.display(), listed(&near));
     }
     ids.into_iter().for_each(|door| _ = closed.close_door(doors, door));
     Ok(())
@@ -101,43 +86,23 @@ pub(crate) struct DoorBox {
     max: Vec<f64>,
 }
 
-/// Why a text is no door.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub(crate) enum DoorBoxError {
-    #[error("a door is a name and a box, such as front=0,0,0,1,2,0.1")]
-    Form,
-    #[error("a door needs a name before the '='")]
-    Name,
-    #[error("'{0}' is not a number")]
-    Number(String),
-    #[error(transparent)]
-    Coordinate(#[from] CoordinateError),
-    #[error("the lower corner is above the upper one: {low} is more than {high}")]
-    Reversed { low: f64, high: f64 },
-}
-
 impl FromStr for DoorBox {
-    type Err = DoorBoxError;
+    type Err = anyhow::Error;
 
     /// The name is all before the last `=`.
-    fn from_str(text: &str) -> Result<Self, DoorBoxError> {
-        let (name, corners) = text.rsplit_once('=').ok_or(DoorBoxError::Form)?;
+    fn from_str(text: &str) -> Result<Self> {
+        let form = "a door is a name and a box, such as front=0,0,0,1,2,0.1";
+        let Some((name, corners)) = text.rsplit_once('=') else { bail!("{form}") };
         if name.trim().is_empty() || name.chars().any(char::is_control) {
-            return Err(DoorBoxError::Name);
+            bail!("a door needs a name before the '='");
         }
-        let number = |part: &str| -> Result<f64, DoorBoxError> {
-            let x: f64 = part.trim().parse().map_err(|_| DoorBoxError::Number(part.trim().to_owned()))?;
-            Ok(check_coordinate(x)?)
-        };
-        let mut min: Vec<f64> = corners.split(',').map(number).collect::<Result<_, _>>()?;
+        let mut min = coordinates(corners)?;
         if !matches!(min.len(), 4 | 6) {
-            return Err(DoorBoxError::Form);
+            bail!("{form}");
         }
         let max = min.split_off(min.len() / 2);
-        match min.iter().zip(&max).find(|(low, high)| low > high) {
-            Some((&low, &high)) => Err(DoorBoxError::Reversed { low, high }),
-            None => Ok(Self { name: name.to_owned(), min, max }),
-        }
+        refuse_reversed(&min, &max)?;
+        Ok(Self { name: name.to_owned(), min, max })
     }
 }
 
@@ -159,7 +124,7 @@ mod tests {
 
     #[test]
     fn doors_are_parsed() {
-        let door = |text: &str| text.parse::<DoorBox>();
+        let door = |text: &str| text.parse::<DoorBox>().map_err(|error| error.to_string());
         let front = door("front=0,0,0,1,2.5,0").unwrap();
         assert_eq!((front.name.as_str(), front.n_dimensions()), ("front", 3));
         assert_eq!(front.corners(), [[0.0; 3], [1.0, 2.5, 0.0]]);
@@ -167,15 +132,16 @@ mod tests {
             door("a=b=-1,2,3,4").map(|d| (d.name.clone(), d.corners()[0])),
             Ok(("a=b".into(), [-1.0, 2.0, 0.0]))
         );
+        let refused = |text: &str, error: &str| assert!(door(text).is_err_and(|e| e.starts_with(error)), "{text}");
         for bad in ["front", "front=1,2,3", "front=1,2,3,4,5"] {
-            assert_eq!(door(bad), Err(DoorBoxError::Form), "{bad}");
+            refused(bad, "a door is a name and a box");
         }
         for bad in ["=0,0,1,1", " =0,0,1,1", "a\nb=0,0,1,1"] {
-            assert_eq!(door(bad), Err(DoorBoxError::Name), "{bad}");
+            refused(bad, "a door needs a name");
         }
-        assert_eq!(door("a=0,x,1,1"), Err(DoorBoxError::Number("x".into())));
-        assert_eq!(door("a=0,5,1,4"), Err(DoorBoxError::Reversed { low: 5.0, high: 4.0 }));
-        assert!(matches!(door("a=0,NaN,1,4"), Err(DoorBoxError::Coordinate(_))));
+        refused("a=0,x,1,1", "'x' is not a number");
+        refused("a=0,5,1,4", "the lower corner is above the upper one: 5 is more than 4");
+        refused("a=0,NaN,1,4", "");
     }
 
     #[test]

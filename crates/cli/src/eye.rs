@@ -1,16 +1,10 @@
 //! The eye and its picture as arguments.
 
+use crate::error::{Result, anyhow};
+use crate::numbers::coordinates;
 use crate::view::Up;
-use sightlines::geometry::{Point3, check_coordinate};
+use sightlines::geometry::Point3;
 use sightlines::visible_surface::{Camera, CameraError};
-
-/// Why there is no camera.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum EyeError {
-    /// A camera that shows nothing.
-    #[error("{option}: {source}")]
-    Camera { option: &'static str, source: CameraError },
-}
 
 /// Where the eye is, where it looks, and through what.
 #[derive(Debug, clap::Args)]
@@ -45,10 +39,10 @@ impl EyeArgs {
     }
 
     /// The camera.
-    pub(crate) fn camera(&self, up: Point3) -> Result<Camera, EyeError> {
+    pub(crate) fn camera(&self, up: Point3) -> Result<Camera> {
         let camera = Camera::look_at(self.eye, self.look_at, up, self.fov, self.size);
-        camera.and_then(|camera| camera.with_depths(self.near, self.far)).map_err(|source| {
-            let option = match source {
+        camera.and_then(|camera| camera.with_depths(self.near, self.far)).map_err(|error| {
+            let option = match error {
                 CameraError::Eye => "--eye",
                 CameraError::Direction => "--look-at",
                 CameraError::Angle => "--fov",
@@ -56,18 +50,14 @@ impl EyeArgs {
                 // The one that is left.
                 _ => "--near, --far",
             };
-            EyeError::Camera { option, source }
+            anyhow!("{option}: {error}")
         })
     }
 }
 
-fn point(text: &str) -> Result<Point3, String> {
-    let number = |part: &str| -> Result<f64, String> {
-        let x: f64 = part.trim().parse().map_err(|_| format!("'{}' is not a number", part.trim()))?;
-        check_coordinate(x).map_err(|error| error.to_string())
-    };
-    let numbers: Vec<f64> = text.split(',').map(number).collect::<Result<_, _>>()?;
-    numbers.try_into().map_err(|_| "a point in space is three comma-separated numbers, such as 9,1.7,-5".to_owned())
+fn point(text: &str) -> Result<Point3> {
+    let numbers = coordinates(text)?;
+    numbers.try_into().map_err(|_| anyhow!("a point in space is three comma-separated numbers, such as 9,1.7,-5"))
 }
 
 fn size(text: &str) -> Result<[u32; 2], String> {
@@ -83,7 +73,7 @@ mod tests {
 
     #[test]
     fn points_and_sizes_are_parsed() {
-        assert_eq!(point("1, -2.5,3e2"), Ok([1.0, -2.5, 300.0]));
+        assert_eq!(point("1, -2.5,3e2").unwrap(), [1.0, -2.5, 300.0]);
         for bad in ["", "1,2", "1,2,3,4", "1,2,x", "1,2,NaN", "inf,0,0", "1e300,0,0"] {
             assert!(point(bad).is_err(), "{bad}");
         }

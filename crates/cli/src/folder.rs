@@ -1,6 +1,6 @@
 //! A folder of results that appears whole or not at all.
 
-use crate::error::OutputError;
+use crate::error::{Result, anyhow, bail};
 use sightlines::formats::{Hidden, atomic_write, remove_left};
 use std::cell::OnceCell;
 use std::fs;
@@ -17,8 +17,8 @@ pub(crate) struct NewFolder {
 
 impl NewFolder {
     /// Expects a folder that will replace `target`, which must not exist or contain only files whose names are `ours`.
-    pub(crate) fn new(target: &Path, ours: impl Fn(&str) -> bool) -> Result<Self, OutputError> {
-        let failed = |source| OutputError::Folder { path: target.to_owned(), source };
+    pub(crate) fn new(target: &Path, ours: impl Fn(&str) -> bool) -> Result<Self> {
+        let failed = |error| cannot_be_made(target, error);
         // Resolves names that end in a dot or a slash.
         let target = match target.canonicalize() {
             Ok(found) => found,
@@ -32,7 +32,10 @@ impl NewFolder {
                 let entry = entry.map_err(failed)?;
                 let name = entry.file_name().to_string_lossy().into_owned();
                 if !ours(&name) || !entry.file_type().map_err(failed)?.is_file() {
-                    return Err(OutputError::NotLevels { path: target, name });
+                    bail!(
+                        "{}: the folder has {name:?} in it, which is no level: name a new folder, or one that only holds levels",
+                        target.display()
+                    );
                 }
             }
         }
@@ -41,23 +44,23 @@ impl NewFolder {
         Ok(Self { target, beside: OnceCell::new() })
     }
 
-    fn beside(&self) -> Result<&Path, OutputError> {
+    fn beside(&self) -> Result<&Path> {
         if self.beside.get().is_none() {
             let made = create_beside(&self.target);
-            let made = made.map_err(|source| OutputError::Folder { path: self.target.clone(), source })?;
+            let made = made.map_err(|error| cannot_be_made(&self.target, error))?;
             return Ok(self.beside.get_or_init(|| made));
         }
         Ok(self.beside.get().map_or(&self.target, |beside| beside))
     }
 
     /// Writes a file into it.
-    pub(crate) fn save(&self, name: &str, bytes: &[u8]) -> Result<(), OutputError> {
+    pub(crate) fn save(&self, name: &str, bytes: &[u8]) -> Result<()> {
         Ok(atomic_write(self.beside()?.join(name), bytes)?)
     }
 
     /// Puts it in its place.
-    pub(crate) fn finish(self) -> Result<(), OutputError> {
-        let failed = |source| OutputError::Folder { path: self.target.clone(), source };
+    pub(crate) fn finish(self) -> Result<()> {
+        let failed = |error| cannot_be_made(&self.target, error);
         let beside = self.beside()?;
         if !self.target.exists() {
             return fs::rename(beside, &self.target).map_err(failed);
@@ -74,6 +77,11 @@ impl NewFolder {
         }
         Ok(())
     }
+}
+
+/// A folder that cannot be made.
+pub(crate) fn cannot_be_made(path: &Path, error: io::Error) -> anyhow::Error {
+    anyhow!("{}: cannot be made: {error}", path.display())
 }
 
 /// What a link leads to that leads nowhere; anything else as it is.

@@ -3,7 +3,8 @@
 
 pub(crate) use crate::refuse::refuse;
 
-use crate::error::InputError;
+use crate::error::{ErrorAbout, Result, anyhow, bail};
+use crate::map_portals::cannot_be_made;
 use crate::{plans, surfaces};
 use sightlines::bake::{Bakeable, BakeableError};
 use sightlines::formats::doom::{DoomMap, MapChoiceError, choose_map, list_maps};
@@ -17,31 +18,32 @@ use std::io::Read;
 use std::path::Path;
 
 /// What a file holds, as [`formats::input`](sightlines::formats::input) recognises it; `None` if no format does.
-pub(crate) fn kind_of(path: &Path) -> Result<Option<InputKind>, InputError> {
+pub(crate) fn kind_of(path: &Path) -> Result<Option<InputKind>> {
     Ok(detect_file(path)?.map(|format| format.kind))
 }
 
 /// Reads a table. Anything else is refused by its first bytes, however large it is.
-pub(crate) fn table(path: &Path) -> Result<Table, InputError> {
+pub(crate) fn table(path: &Path) -> Result<Table> {
     let kind = kind_of(path)?;
     if kind == Some(InputKind::Packed) {
-        return Err(InputError::IsPacked { path: path.to_owned() });
+        bail!(
+            "{}: the table is packed; `sightlines unpack` makes it a plain one, which this command takes",
+            path.display()
+        );
     }
     refuse_source(path)?;
     let limit = if kind == Some(InputKind::Table) { u64::MAX } else { HEAD as u64 };
     let mut bytes = Vec::new();
-    let read = File::open(path).and_then(|file| file.take(limit).read_to_end(&mut bytes));
-    read.map_err(|source| InputError::Open { path: path.to_owned(), source })?;
-    Table::from_bytes(&bytes).map_err(|source| InputError::Table { path: path.to_owned(), source })
+    File::open(path).and_then(|file| file.take(limit).read_to_end(&mut bytes)).in_file(path)?;
+    Table::from_bytes(&bytes).in_file(path)
 }
 
 /// Refuses what tables are built from, where a table is needed.
-pub(crate) fn refuse_source(path: &Path) -> Result<(), InputError> {
-    let found = match detect_file(path)? {
-        Some(format) if is_source(format.kind) => format.noun,
-        _ => return Ok(()),
-    };
-    Err(InputError::NotTable { path: path.to_owned(), found })
+pub(crate) fn refuse_source(path: &Path) -> Result<()> {
+    let Some(format) = detect_file(path)?.filter(|format| is_source(format.kind)) else { return Ok(()) };
+    let map = if format.kind == InputKind::Wad { " --map NAME" } else { "" };
+    let (name, out) = (path.display(), path.with_extension("pvs"));
+    bail!("{name}: is {}, not a table: build one first: sightlines build {name}{map} -o {}", format.noun, out.display())
 }
 
 /// Whether a table can be built from such a file.
@@ -56,8 +58,18 @@ pub(crate) fn is_of_portals(table: &Table) -> bool {
 }
 
 /// Refuses a table that does not store where its cells are; `what` names what cannot be done without.
-pub(crate) fn refuse_without_places(table: &Table, path: &Path, what: &'static str) -> Result<(), InputError> {
-    if !table.has_places() { Err(InputError::NoPlaces { path: path.to_owned(), what }) } else { Ok(()) }
+pub(crate) fn refuse_without_places(table: &Table, path: &Path, what: &str) -> Result<()> {
+    if table.has_places() { Ok(()) } else { Err(no_places(path, what)) }
+}
+
+/// A table that does not store where its cells are.
+pub(crate) fn no_places(path: &Path, what: &str) -> anyhow::Error {
+    anyhow!("{}: the table is of a portal file, which does not say where its cells are: {what}", path.display())
+}
+
+/// A file of no kind that a command takes.
+pub(crate) fn neither(path: &Path, expected: &str) -> anyhow::Error {
+    anyhow!("{}: neither {expected}", path.display())
 }
 
 /// What `build` takes, in the words of errors.
@@ -73,11 +85,11 @@ pub(crate) fn read(
     map: Option<&str>,
     options: &SceneReadOptions,
     plan: &PlanReadOptions,
-) -> Result<Input, InputError> {
+) -> Result<Input> {
     let format = detect_file(path)?.filter(|format| is_source(format.kind));
-    let format = format.ok_or_else(|| InputError::Kind { path: path.to_owned(), expected: BUILDABLE })?;
+    let format = format.ok_or_else(|| neither(path, BUILDABLE))?;
     if map.is_some() && format.kind != InputKind::Wad {
-        return Err(InputError::MapOfPlan(path.to_owned()));
+        bail!("{}: --map is for WADs, and this is none", path.display());
     }
     if format.kind == InputKind::Scene {
         return Ok(Input::Scene(scene(path, options)?));
@@ -89,57 +101,58 @@ pub(crate) fn read(
 }
 
 /// Makes of a file, and what belongs to it, what can be baked.
-pub(crate) fn bakeable(
-    path: &Path,
-    input: Input,
-    map: Option<&str>,
-    portals: Option<Prt>,
-) -> Result<Bakeable, InputError> {
+pub(crate) fn bakeable(path: &Path, input: Input, map: Option<&str>, portals: Option<Prt>) -> Result<Bakeable> {
     Bakeable::new(input, map, portals).map_err(|error| match error {
         BakeableError::Read(error) => error.into(),
         BakeableError::Choice(error) => which_map(path, error),
         BakeableError::Doom(error) => ReadError::new(path, error).into(),
-        BakeableError::Plan { map, source } => {
-            InputError::Plan { path: path.to_owned(), map: Some(map.to_string()), source }
-        }
-        BakeableError::Moved => InputError::NoOccluder(path.to_owned()),
-        BakeableError::Portals(source) => InputError::MadePortals { path: path.to_owned(), source: Box::new(source) },
-        _ => InputError::Kind { path: path.to_owned(), expected: BUILDABLE },
+        BakeableError::Plan { map, source } => anyhow!("{}: map {map}: {source}", path.display()),
+        BakeableError::Moved => no_occluder(path),
+        BakeableError::Portals(source) => cannot_be_made(path, &source),
+        _ => neither(path, BUILDABLE),
     })
 }
 
 /// Refuses a file that is not a scene in space.
-pub(crate) fn check_is_scene(path: &Path) -> Result<(), InputError> {
+pub(crate) fn check_is_scene(path: &Path) -> Result<()> {
     match kind_of(path)? {
         Some(InputKind::Scene) => Ok(()),
-        _ => Err(InputError::Kind { path: path.to_owned(), expected: "a GLB nor a glTF nor an OBJ scene" }),
+        _ => Err(neither(path, "a GLB nor a glTF nor an OBJ scene")),
     }
 }
 
 /// Reads a scene whose triangles are used as occluders, and refuses one that might hide what can be seen.
-pub(crate) fn occluders(path: &Path, options: &SceneReadOptions) -> Result<SceneFile, InputError> {
+pub(crate) fn occluders(path: &Path, options: &SceneReadOptions) -> Result<SceneFile> {
     let file = scene(path, options)?;
     check_occluder(path, &file)?;
     Ok(file)
 }
 
 /// Reads a scene in space, and warns of what a user should hear of it.
-pub(crate) fn scene(path: &Path, options: &SceneReadOptions) -> Result<SceneFile, ReadError> {
+pub(crate) fn scene(path: &Path, options: &SceneReadOptions) -> Result<SceneFile> {
     let file = read_scene_with(path, options)?;
     surfaces::warn(path, &file);
     Ok(file)
 }
 
 /// Refuses a scene whose triangles were moved by simplification.
-pub(crate) fn check_occluder(path: &Path, file: &SceneFile) -> Result<(), InputError> {
+pub(crate) fn check_occluder(path: &Path, file: &SceneFile) -> Result<()> {
     match file.info.simplified {
-        Some(Simplified { occluder: false }) => Err(InputError::NoOccluder(path.to_owned())),
+        Some(Simplified { occluder: false }) => Err(no_occluder(path)),
         _ => Ok(()),
     }
 }
 
+/// A scene whose triangles were moved, where occluders are needed.
+fn no_occluder(path: &Path) -> anyhow::Error {
+    anyhow!(
+        "{}: the scene was simplified and its triangles were moved, so that it may hide what can be seen: use the original that it was made from",
+        path.display()
+    )
+}
+
 /// Reads a map of a WAD; without a name, its only one.
-pub(crate) fn doom(path: &Path, name: Option<&str>) -> Result<DoomMap, InputError> {
+pub(crate) fn doom(path: &Path, name: Option<&str>) -> Result<DoomMap> {
     let wad = Wad::read(path)?;
     let maps = list_maps(&wad);
     let lumps = choose_map(&maps, name).map_err(|error| which_map(path, error))?;
@@ -147,11 +160,27 @@ pub(crate) fn doom(path: &Path, name: Option<&str>) -> Result<DoomMap, InputErro
 }
 
 /// Names the WAD in which no map was chosen.
-fn which_map(path: &Path, error: MapChoiceError) -> InputError {
-    let path = path.to_owned();
+fn which_map(path: &Path, error: MapChoiceError) -> anyhow::Error {
+    let file = path.display();
     match error {
-        MapChoiceError::Which { names } => InputError::WhichMap { path, names },
-        MapChoiceError::NoSuchMap { name, names } => InputError::NoSuchMap { path, name, names },
-        _ => InputError::NoMaps(path),
+        MapChoiceError::Which { names } => {
+            anyhow!("{file}: there are {} maps in the file; choose one with --map: {}", names.len(), list(&names))
+        }
+        MapChoiceError::NoSuchMap { name, names } => {
+            anyhow!("{file}: there is no map {name} in the file; there are {}", list(&names))
+        }
+        _ => anyhow!("{file}: there are no maps in the file"),
     }
+}
+
+/// Names, of many the first.
+fn list(names: &[String]) -> String {
+    const MOST: usize = 40;
+    let shown = names.iter().take(MOST).map(String::as_str).collect::<Vec<_>>().join(", ");
+    if names.len() > MOST { format!("{shown} and {} more", names.len() - MOST) } else { shown }
+}
+
+/// Names the map of a file in front of an error, if it has one.
+pub(crate) fn of_map(map: Option<&String>) -> String {
+    map.map_or(String::new(), |name| format!("map {name}: "))
 }

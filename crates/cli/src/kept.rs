@@ -1,11 +1,11 @@
 //! Results of units that outlive the program: so that a bake that was stopped goes on, or is shared.
 
-use crate::error::{InputError, OutputError};
+use crate::error::{ErrorAbout, Result, anyhow, bail};
 use crate::interrupt;
 use crate::output::{self, count};
 use crate::plain::plain;
-use sightlines::checkpoint::{InputFile, Job, JobError, JobStore, Journal, Key, KeyHasher, Opening, StateError};
-use sightlines::progress::{Halt, UnitStore, Units};
+use sightlines::checkpoint::{InputFile, Job, JobStore, Journal, Key, KeyHasher, Opening, StateError};
+use sightlines::progress::{UnitStore, Units};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::time::{Duration, SystemTime};
@@ -58,14 +58,15 @@ impl ResumeArgs {
 }
 
 impl ResumeArgs {
-    fn open(&self, inputs: &Inputs, outputs: &[&Path], key: Key) -> Result<Journal, KeptError> {
+    fn open(&self, inputs: &Inputs, outputs: &[&Path], key: Key) -> Result<Journal> {
         let path = self.path(outputs.first().copied().unwrap_or(Path::new("out")));
         if inputs.paths().chain(outputs.iter().copied()).any(|other| output::is_one_place(other, &path)) {
-            return Err(OutputError::TwoOutputs(path).into());
+            return Err(output::two_outputs(&path));
         }
         let opening = if self.resume { Opening::Resume } else { Opening::Anew };
         let after = Duration::from_secs(self.save_after);
-        let journal = Journal::open(&path, key, PROGRAM, opening, after)?.or_in_memory();
+        let journal = Journal::open(&path, key, PROGRAM, opening, after);
+        let journal = journal.map_err(|error| anyhow!("{error}{}", advice(&error)))?.or_in_memory();
         match (self.resume, journal.n_taken_up()) {
             (true, 0) => tracing::warn!("{}: there is nothing to go on from; beginning anew", path.display()),
             (true, n) => tracing::info!("{}: going on from {n} results", path.display()),
@@ -115,38 +116,7 @@ fn warn_of_damage(journal: &Journal) {
     }
 }
 
-/// Why results cannot be kept, or taken up.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum KeptError {
-    /// A file of results that cannot be used.
-    #[error("{source}{}", advice(source))]
-    State {
-        #[from]
-        source: StateError,
-    },
-    /// A job that cannot be used.
-    #[error(transparent)]
-    Job(#[from] JobError),
-    /// An input that is not the one that a job was planned for.
-    #[error("{}: the file is not what it was when the job in {} was planned", path.display(), job.display())]
-    OtherInput { path: PathBuf, job: PathBuf },
-    /// A job whose key cannot be that of the command.
-    #[error("{}: the command and what it reads are not what they were when the job was planned", .0.display())]
-    OtherKey(PathBuf),
-    /// An input that cannot be read.
-    #[error(transparent)]
-    Input(#[from] InputError),
-    /// An input that is not what was read.
-    #[error("{}: the file has changed while it was read; run the command again", .0.display())]
-    Changed(PathBuf),
-    /// A state that would replace something.
-    #[error(transparent)]
-    Output(#[from] OutputError),
-    /// Another worker of the job has written what the command makes, or this one was stopped before it could.
-    #[error(transparent)]
-    Halted(#[from] Halt),
-}
-
+/// What to do about results that cannot be kept, or taken up.
 fn advice(error: &StateError) -> &'static str {
     match error {
         StateError::NotState(_) => ", and would be overwritten; name another with --state",
@@ -177,29 +147,26 @@ const COARSE: Duration = Duration::from_secs(3);
 
 impl Inputs {
     /// Looks at files before they are read: at all of their content, if results of units are kept.
-    pub(crate) fn look<'p>(
-        keeping: Keeping<'_>,
-        paths: impl IntoIterator<Item = &'p Path>,
-    ) -> Result<Self, InputError> {
+    pub(crate) fn look<'p>(keeping: Keeping<'_>, paths: impl IntoIterator<Item = &'p Path>) -> Result<Self> {
         let looked = paths.into_iter().map(|path| match keeping {
             Keeping::Nowhere => Ok(Looked::without_content(path)),
-            Keeping::File(_) | Keeping::FileIfItFits(_) | Keeping::Job(_) => {
-                Looked::new(path).map_err(|source| InputError::Open { path: path.to_owned(), source })
-            }
+            Keeping::File(_) | Keeping::FileIfItFits(_) | Keeping::Job(_) => Looked::new(path).in_file(path),
         });
-        Ok(Self(looked.collect::<Result<_, _>>()?))
+        Ok(Self(looked.collect::<Result<_>>()?))
     }
 
     /// Refuses files that are not what was looked at: what was read is something else.
-    fn check(&self) -> Result<(), KeptError> {
+    fn check(&self) -> Result<()> {
         (0..self.0.len()).try_for_each(|nth| self.check_file(nth))
     }
 
     /// Refuses one of them if it is not what was looked at.
-    pub(crate) fn check_file(&self, nth: usize) -> Result<(), KeptError> {
+    pub(crate) fn check_file(&self, nth: usize) -> Result<()> {
         let Some(looked) = self.0.get(nth) else { return Ok(()) };
-        let is_same = looked.is_same().map_err(|source| InputError::Open { path: looked.path.clone(), source })?;
-        if is_same { Ok(()) } else { Err(KeptError::Changed(looked.path.clone())) }
+        if !looked.is_same().in_file(&looked.path)? {
+            bail!("{}: the file has changed while it was read; run the command again", looked.path.display());
+        }
+        Ok(())
     }
 
     fn paths(&self) -> impl Iterator<Item = &Path> {
@@ -268,7 +235,7 @@ impl Identity {
 }
 
 /// Opens the store of a job for work with an identity.
-pub(crate) type OpenJob<'a> = &'a dyn Fn(&Identity) -> Result<&'a JobStore, KeptError>;
+pub(crate) type OpenJob<'a> = &'a dyn Fn(&Identity) -> Result<&'a JobStore>;
 
 /// Where the results of units are kept.
 #[derive(Clone, Copy)]
@@ -299,7 +266,7 @@ impl<'a> Kept<'a> {
         inputs: &Inputs,
         outputs: &[&Path],
         identify: impl FnOnce() -> Identity,
-    ) -> Result<Self, KeptError> {
+    ) -> Result<Self> {
         let (journal, job) = match keeping {
             Keeping::File(args) => {
                 inputs.check()?;
@@ -331,12 +298,12 @@ impl<'a> Kept<'a> {
     }
 
     /// Before anything is written that the command makes: an error if another worker of the job has written it.
-    pub(crate) fn before_writing(&self) -> Result<(), KeptError> {
+    pub(crate) fn before_writing(&self) -> Result<()> {
         self.before_writing_files(&self.outputs)
     }
 
     /// The same where it is known only now which files that are.
-    pub(crate) fn before_writing_files(&self, files: &[PathBuf]) -> Result<(), KeptError> {
+    pub(crate) fn before_writing_files(&self, files: &[PathBuf]) -> Result<()> {
         Ok(self.job.map_or(Ok(()), |job| job.begin_writing(files))?)
     }
 
@@ -418,15 +385,12 @@ impl JobSlot {
     }
 
     /// Takes the store that `open` opens, of a job with the key of `identity`.
-    pub(crate) fn open(
-        &self,
-        identity: &Identity,
-        open: impl FnOnce() -> Result<JobStore, KeptError>,
-    ) -> Result<&JobStore, KeptError> {
+    pub(crate) fn open(&self, identity: &Identity, open: impl FnOnce() -> Result<JobStore>) -> Result<&JobStore> {
         let store = open()?;
         let job: Job = store.job();
         if job.key() != identity.key() {
-            return Err(KeptError::OtherKey(job.folder().to_owned()));
+            let folder = job.folder().display();
+            bail!("{folder}: the command and what it reads are not what they were when the job was planned");
         }
         Ok(self.0.get_or_init(|| store))
     }

@@ -16,7 +16,6 @@ mod doors;
 mod error;
 mod eye;
 mod facts;
-mod file_error;
 mod folder;
 mod glb;
 mod input;
@@ -48,8 +47,7 @@ mod walk_path;
 
 use args::{Arguments, Command};
 use clap::{CommandFactory, Parser};
-use error::StdoutError;
-use std::error::Error;
+use error::{Result, StdoutError};
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::process::ExitCode;
 use tracing_subscriber::filter::LevelFilter;
@@ -90,12 +88,12 @@ pub fn vis_command() -> clap::Command {
 }
 
 /// The exit code of a program, which prints what went wrong.
-fn exit_code(result: Result<Answer, Box<dyn Error>>) -> ExitCode {
+fn exit_code(result: Result<Answer>) -> ExitCode {
     match result {
         Ok(Answer::Yes) => ExitCode::SUCCESS,
         Ok(Answer::No) => ExitCode::FAILURE,
         Ok(Answer::Incomplete) => ExitCode::from(3),
-        Err(error) if is_closed_pipe(&*error) => ExitCode::SUCCESS,
+        Err(error) if is_closed_pipe(&error) => ExitCode::SUCCESS,
         Err(error) if interrupt::requested() => {
             let _ = writeln!(std::io::stderr(), "{error}");
             ExitCode::from(interrupt::exit_code())
@@ -108,8 +106,8 @@ fn exit_code(result: Result<Answer, Box<dyn Error>>) -> ExitCode {
     }
 }
 
-/// Runs a command. Each has its own error; all that is needed here is its text, and whether a pipe was closed.
-fn run(arguments: &Arguments) -> Result<Answer, Box<dyn Error>> {
+/// Runs a command.
+fn run(arguments: &Arguments) -> Result<Answer> {
     let show_progress = !arguments.quiet;
     Ok(match &arguments.command {
         Command::Build(args) => commands::build::run(args, show_progress, arguments.verbose > 0)?,
@@ -142,11 +140,9 @@ fn run(arguments: &Arguments) -> Result<Answer, Box<dyn Error>> {
 }
 
 /// Whether standard output was closed by its reader, which has read enough.
-fn is_closed_pipe(error: &(dyn Error + 'static)) -> bool {
-    match error.downcast_ref::<StdoutError>() {
-        Some(error) => error.0.kind() == ErrorKind::BrokenPipe,
-        None => error.source().is_some_and(is_closed_pipe),
-    }
+fn is_closed_pipe(error: &anyhow::Error) -> bool {
+    let closed = |error: &StdoutError| error.0.kind() == ErrorKind::BrokenPipe;
+    error.chain().any(|error| error.downcast_ref().is_some_and(closed))
 }
 
 fn log_to_stderr(arguments: &Arguments) {

@@ -1,11 +1,11 @@
 //! The portals of a Quake map: those that its compiler wrote, or those that its tree of planes has.
 
-use crate::error::InputError;
+use crate::error::{Result, anyhow};
 use crate::output::count;
-use sightlines::bake::quake::portals_of_map;
+use sightlines::bake::quake::{PortalsError, portals_of_map};
 use sightlines::formats::ReadError;
-use sightlines::formats::quake::prt::{parse_prt, write_prt};
-use sightlines::formats::quake::{Bsp, Prt, portals_beside};
+use sightlines::formats::quake::prt::{line_of_portal, parse_prt, write_prt};
+use sightlines::formats::quake::{Bsp, Prt, VisibilityError, portals_beside};
 use std::path::{Path, PathBuf};
 
 /// Portals of a map, and where they come from.
@@ -25,7 +25,7 @@ pub(crate) fn portal_file(map: &Path, named: Option<&Path>) -> Option<PathBuf> {
 }
 
 /// Reads the portal file of a map; makes the portals where there is none.
-pub(crate) fn portals_for(bsp: &Bsp, map: &Path, named: Option<&Path>) -> Result<MapPortals, InputError> {
+pub(crate) fn portals_for(bsp: &Bsp, map: &Path, named: Option<&Path>) -> Result<MapPortals> {
     let Some(path) = portal_file(map, named) else { return made(bsp, map) };
     let text = std::fs::read(&path).map_err(|error| ReadError::new(&path, error))?;
     let prt = parse_prt(&text).map_err(|error| ReadError::new(&path, error))?;
@@ -33,11 +33,27 @@ pub(crate) fn portals_for(bsp: &Bsp, map: &Path, named: Option<&Path>) -> Result
 }
 
 /// Makes the portals of a map.
-pub(crate) fn made(bsp: &Bsp, map: &Path) -> Result<MapPortals, InputError> {
-    let made = portals_of_map(bsp);
-    let made = made.map_err(|source| InputError::MadePortals { path: map.to_owned(), source: Box::new(source) })?;
+pub(crate) fn made(bsp: &Bsp, map: &Path) -> Result<MapPortals> {
+    let made = portals_of_map(bsp).map_err(|error| cannot_be_made(map, &error))?;
     let text = write_prt(&made.prt).into_bytes();
     Ok(MapPortals { prt: made.prt, path: map.to_owned(), text, is_made: true })
+}
+
+/// A map without a portal file beside it, of which no portals can be made either.
+pub(crate) fn cannot_be_made(map: &Path, error: &PortalsError) -> anyhow::Error {
+    let beside = map.with_extension("prt");
+    let name = beside.file_name().unwrap_or_default().display();
+    anyhow!("{}: there is no {name} beside it, and no portals can be made from the map: {error}", map.display())
+}
+
+/// Portals that do not go with a map.
+pub(crate) fn do_not_fit(prt: &Path, bsp: &Path, error: &VisibilityError) -> anyhow::Error {
+    if let VisibilityError::InsideOut { portal, .. } = error
+        && let Some(line) = std::fs::read(prt).ok().and_then(|text| line_of_portal(&text, *portal))
+    {
+        return anyhow!("{}: line {line}: {error}", prt.display());
+    }
+    anyhow!("{}: does not go with {}: {error}", prt.display(), bsp.display())
 }
 
 impl MapPortals {

@@ -1,5 +1,6 @@
 //! How much memory the program uses, and may use.
 
+use crate::error::Result;
 use crate::interrupt;
 use crate::output::bytes;
 use std::fmt;

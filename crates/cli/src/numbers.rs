@@ -1,5 +1,7 @@
 //! Numbers as arguments.
 
+use crate::error::{Result, anyhow};
+use sightlines::geometry::check_coordinate;
 use std::time::Duration;
 
 /// Number of threads of a command; 0 stands for one for each core.
@@ -9,6 +11,15 @@ pub(crate) fn threads(text: &str) -> Result<usize, String> {
         Ok(n) if n <= MOST => Ok(n),
         _ => Err(format!("not a whole number from 0 to {MOST}")),
     }
+}
+
+/// Coordinates, separated by commas.
+pub(crate) fn coordinates(text: &str) -> Result<Vec<f64>> {
+    let coordinate = |part: &str| -> Result<f64> {
+        let x: f64 = part.trim().parse().map_err(|_| anyhow!("'{}' is not a number", part.trim()))?;
+        Ok(check_coordinate(x)?)
+    };
+    text.split(',').map(coordinate).collect()
 }
 
 /// A share of a whole.

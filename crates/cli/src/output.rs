@@ -1,6 +1,6 @@
 //! Results: standard output, and files that are written as a whole.
 
-use crate::error::{OutputError, StdoutError};
+use crate::error::{Result, StdoutError, anyhow, bail};
 use serde::Serialize;
 use sightlines::formats::{Hidden, WriteError, atomic_write, remove_left};
 use std::fmt;
@@ -21,7 +21,7 @@ struct Versioned<'a, T> {
 }
 
 /// Prints a result: as one line of JSON if `json`, with its version, otherwise as it is displayed.
-pub(crate) fn print(json: bool, result: &(impl Serialize + fmt::Display)) -> Result<(), OutputError> {
+pub(crate) fn print(json: bool, result: &(impl Serialize + fmt::Display)) -> Result<()> {
     stdout(|out| {
         if json {
             serde_json::to_writer(&mut *out, &Versioned { version: JSON_VERSION, result })?;
@@ -35,37 +35,45 @@ pub(crate) fn print(json: bool, result: &(impl Serialize + fmt::Display)) -> Res
 /// Lets `write` write to standard output.
 pub(crate) fn stdout(
     write: impl FnOnce(&mut BufWriter<std::io::StdoutLock<'static>>) -> std::io::Result<()>,
-) -> Result<(), OutputError> {
+) -> Result<()> {
     let mut out = BufWriter::new(std::io::stdout().lock());
-    write(&mut out).and_then(|()| out.flush()).map_err(|error| OutputError::Print(StdoutError(error)))
+    write(&mut out).and_then(|()| out.flush()).map_err(|error| StdoutError(error).into())
 }
 
 /// Writes a file as a whole.
-pub(crate) fn save(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
+pub(crate) fn save(path: &Path, bytes: &[u8]) -> Result<()> {
     tracing::debug!("writing {} bytes to {}", bytes.len(), path.display());
     Ok(atomic_write(path, bytes)?)
 }
 
 /// Refuses an output that is the input: a slip that would destroy the input.
-pub(crate) fn refuse_same(input: &Path, output: &Path) -> Result<(), OutputError> {
+pub(crate) fn refuse_same(input: &Path, output: &Path) -> Result<()> {
     let same = match (input.canonicalize(), output.canonicalize()) {
         (Ok(a), Ok(b)) => a == b && a.is_file(),
         _ => false,
     };
-    if same { Err(OutputError::SameFile(output.to_owned())) } else { Ok(()) }
+    if same {
+        bail!("{}: the output would replace the input", output.display());
+    }
+    Ok(())
 }
 
 /// Refuses, before anything is read or computed, outputs that would fail at the end: one that is an input, two that are the same file,
 /// and one that cannot be written. Leaves nothing behind.
-pub(crate) fn check(inputs: &[&Path], outputs: &[&Path]) -> Result<(), OutputError> {
+pub(crate) fn check(inputs: &[&Path], outputs: &[&Path]) -> Result<()> {
     for (k, output) in outputs.iter().enumerate() {
         inputs.iter().try_for_each(|input| refuse_same(input, output))?;
         if outputs[..k].iter().any(|other| is_one_file(other, output)) {
-            return Err(OutputError::TwoOutputs((*output).to_owned()));
+            return Err(two_outputs(output));
         }
         check_writable(output)?;
     }
     Ok(())
+}
+
+/// Two outputs for one file.
+pub(crate) fn two_outputs(path: &Path) -> anyhow::Error {
+    anyhow!("{}: two outputs would be written to this file", path.display())
 }
 
 /// Whether two names are the same file. Special files such as `/dev/null` may be written to twice.
@@ -88,7 +96,7 @@ pub(crate) fn is_one_place(a: &Path, b: &Path) -> bool {
 ///
 /// A file is written under another name in the same folder and renamed, so an empty one is created there and removed. What
 /// changes before the output is written is reported then.
-pub(crate) fn check_writable(path: &Path) -> Result<(), OutputError> {
+pub(crate) fn check_writable(path: &Path) -> Result<()> {
     let try_beside = || -> io::Result<()> {
         let target = match fs::metadata(path) {
             Ok(found) if found.is_dir() => return Err(io::ErrorKind::IsADirectory.into()),

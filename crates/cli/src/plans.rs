@@ -1,10 +1,10 @@
 //! How floor plans are read: arguments, warnings, and what a table states of it.
 
-use crate::error::InputError;
+use crate::error::Result;
 use crate::refuse::refuse;
 use sightlines::bake::Baked;
 use sightlines::formats::input::read_plan_file;
-use sightlines::formats::{PlanFile, PlanReadOptions, ReadError, detect_file};
+use sightlines::formats::{PlanFile, PlanReadOptions, detect_file};
 use sightlines::pvs::Table;
 use std::path::Path;
 
@@ -25,7 +25,7 @@ pub(crate) struct PlanArgs {
 
 impl PlanArgs {
     /// These arguments as options of readers. Refuses them for anything but DXF.
-    pub(crate) fn options(&self, path: &Path) -> Result<PlanReadOptions, InputError> {
+    pub(crate) fn options(&self, path: &Path) -> Result<PlanReadOptions> {
         if detect_file(path)?.is_none_or(|format| format.name != "dxf") {
             let given = [("--layers", !self.layers.is_empty()), ("--curve-deviation", self.curve_deviation.is_some())];
             refuse(path, &given, "DXF", "none")?;
@@ -35,7 +35,7 @@ impl PlanArgs {
     }
 
     /// The same, and what the plan of a table was read with, by the information of that table, where nothing else is said.
-    pub(crate) fn options_with(&self, path: &Path, table: &Table) -> Result<PlanReadOptions, InputError> {
+    pub(crate) fn options_with(&self, path: &Path, table: &Table) -> Result<PlanReadOptions> {
         let PlanReadOptions { layers, deviation } = self.options(path)?;
         let [stated_layers, stated_deviation] = KEYS.map(|key| table.info_value(key));
         Ok(PlanReadOptions {
@@ -46,7 +46,7 @@ impl PlanArgs {
 }
 
 /// Reads a plan, and says on standard error what a user should hear of its file.
-pub(crate) fn read(path: &Path, options: &PlanReadOptions) -> Result<PlanFile, ReadError> {
+pub(crate) fn read(path: &Path, options: &PlanReadOptions) -> Result<PlanFile> {
     let file = read_plan_file(path, options)?;
     for warning in &file.warnings {
         tracing::warn!("{}: {warning}", path.display());

@@ -1,6 +1,6 @@
 //! Options that mean nothing for a file.
 
-use crate::error::InputError;
+use crate::error::{Result, anyhow};
 use sightlines::bake::Meaningless;
 use std::path::Path;
 
@@ -10,20 +10,23 @@ pub(crate) fn refuse(
     given: &[(&'static str, bool)],
     meant: &'static str,
     found: &'static str,
-) -> Result<(), InputError> {
+) -> Result<()> {
     match given.iter().find(|(_, is_given)| *is_given) {
-        Some((option, _)) => {
-            Err(InputError::Option { path: path.to_owned(), option: (*option).to_owned(), meant, found })
-        }
+        Some((option, _)) => Err(is_for(path, option, meant, found)),
         None => Ok(()),
     }
 }
 
 /// The same of an option of a request, by the name that the program has for it.
-pub(crate) fn meaningless(path: &Path, Meaningless { option, meant, found }: Meaningless) -> InputError {
+pub(crate) fn meaningless(path: &Path, Meaningless { option, meant, found }: Meaningless) -> anyhow::Error {
     let option = match option {
         "carry" => "--no-carry".to_owned(),
         option => format!("--{}", option.replace('_', "-")),
     };
-    InputError::Option { path: path.to_owned(), option, meant, found }
+    is_for(path, &option, meant, found)
+}
+
+/// An option that means nothing for what a file holds.
+pub(crate) fn is_for(path: &Path, option: &str, meant: &str, found: &str) -> anyhow::Error {
+    anyhow!("{}: {option} is for {meant}, and this is {found}", path.display())
 }

@@ -1,33 +1,13 @@
 //! What a viewer sees, as arguments: in a direction, by a method, with doors closed.
 
-use crate::doors::{ClosedError, close};
-use crate::error::InputError;
-use crate::place::{LookupError, Point};
+use crate::doors::close;
+use crate::error::{ErrorAbout, Result, anyhow};
+use crate::place::Point;
 use crate::tables::Cells;
 use crate::view::{LensArgs, Methods, lifted, method_help};
-use sightlines::eye_to_cell::{Doors, View, ViewError};
+use sightlines::eye_to_cell::{Doors, View};
 use sightlines::walkthrough::CameraPose;
 use std::path::Path;
-
-/// Why there is no view.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum SightError {
-    /// An option that means nothing for the table.
-    #[error(transparent)]
-    Input(#[from] InputError),
-    /// A direction with the wrong number of coordinates.
-    #[error(transparent)]
-    Lookup(#[from] LookupError),
-    /// An invalid direction, angle or aspect ratio of the view.
-    #[error("{option}: {source}")]
-    View { option: &'static str, source: ViewError },
-    /// An angle of view without a direction.
-    #[error("{0} need --dir: without it the viewer looks all round")]
-    LensWithoutDirection(&'static str),
-    /// A portal or a door that the table does not have.
-    #[error(transparent)]
-    Closed(#[from] ClosedError),
-}
 
 /// The view, as arguments.
 #[derive(Debug, clap::Args)]
@@ -54,22 +34,27 @@ pub(crate) struct Sight {
     pub(crate) looks: Option<(Vec<f64>, f64)>,
 }
 
+/// Angles of view without a direction.
+pub(crate) fn without_direction(options: &str) -> anyhow::Error {
+    anyhow!("{options} need --dir: without it the viewer looks all round")
+}
+
 impl SightArgs {
     /// The view of an eye. The caller has refused a lens without a direction, if it means nothing to them.
-    pub(crate) fn sight<C: Cells>(&self, cells: &C, path: &Path, eye: &[f64]) -> Result<Sight, SightError> {
+    pub(crate) fn sight<C: Cells>(&self, cells: &C, path: &Path, eye: &[f64]) -> Result<Sight> {
         let lens = self.lens.lens(cells, path)?;
         let Some(dir) = &self.dir else {
-            let view = View::all_round(lifted(eye)).map_err(|source| SightError::View { option: "--eye", source })?;
+            let view = View::all_round(lifted(eye)).about("--eye")?;
             return Ok(Sight { view, looks: None });
         };
         let given = dir.coordinates(cells.n_dimensions(), path)?;
         let view = lens.view(CameraPose { eye: lifted(eye), dir: lifted(given) });
-        let view = view.map_err(|source| SightError::View { option: "--dir", source })?;
+        let view = view.about("--dir")?;
         Ok(Sight { view, looks: Some((given.to_vec(), lens.fov)) })
     }
 
     /// The doors that are shut.
-    pub(crate) fn doors<C: Cells>(&self, cells: &C, path: &Path) -> Result<Doors, SightError> {
+    pub(crate) fn doors<C: Cells>(&self, cells: &C, path: &Path) -> Result<Doors> {
         let mut doors = Doors::all_open();
         for text in &self.closed {
             close(text, cells.doors(), cells.n_portals(), path, &mut doors)?;

@@ -1,7 +1,7 @@
 //! Simplifying scenes: how, as arguments; what is read, and what is written.
 
-use crate::buffers::{BufferArgs, MethodFailed};
-use crate::error::InputError;
+use crate::buffers::{BufferArgs, method_failed};
+use crate::error::{ErrorAbout, Result, bail};
 use crate::input;
 use crate::named::one_of;
 use crate::numbers::share;
@@ -10,18 +10,16 @@ use crate::surfaces::{self, SurfaceArgs};
 use serde::Serialize;
 use sightlines::bake::methods::{OcclusionMethod, OcclusionMethodFactory};
 use sightlines::cells::{MovingObject, Scene, SceneObject, Unlike};
-use sightlines::formats::ReadError;
 use sightlines::formats::scene::{
     self, Rounding, SceneReadOptions, read_scene_with_source_and, write_rounded_glb, write_simplified_obj,
 };
-use sightlines::formats::scene::{RewriteError, SceneWriteError};
 use sightlines::formats::{GltfSource, SceneFile};
 use sightlines::pvs::Table;
 use sightlines::simplify::SimplifyError;
 use sightlines::simplify::{Simplified, SimplifyOptions};
-use sightlines::verify::{VerifyError, along_frame};
+use sightlines::verify::along_frame;
 use std::fmt;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Whether a scene has faces of which engines draw the fronts only: a table takes their backs to be unseen. Displayed behind a promise
 /// for every eye, as what that leaves out.
@@ -39,38 +37,6 @@ impl fmt::Display for SingleSided {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(if self.0 { " that sees the back of no single-sided face" } else { "" })
     }
-}
-
-/// Why a scene was not simplified.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum SimplificationError {
-    /// A file that the command cannot use.
-    #[error(transparent)]
-    Input(#[from] InputError),
-    /// A WAD, a plan or a scene cannot be read.
-    #[error(transparent)]
-    Read(#[from] ReadError),
-    /// A scene that cannot be written as GLB or OBJ.
-    #[error("{}: {source}", path.display())]
-    Write { path: PathBuf, source: SceneWriteError },
-    /// The name of an output ends otherwise than a scene can be written.
-    #[error("{}: the scene is written as GLB or, if it was read from one, as OBJ; give a name that ends in .glb or .obj", path.display())]
-    NotScene { path: PathBuf },
-    /// A glTF is not written as OBJ.
-    #[error("{}: a glTF is written as GLB, which keeps its materials; give a name that ends in .glb", path.display())]
-    GltfAsObj { path: PathBuf },
-    /// A from-region method cannot be prepared.
-    #[error(transparent)]
-    Method(#[from] MethodFailed),
-    /// A scene that cannot be written again.
-    #[error("{}: {source}", path.display())]
-    Rewrite { path: PathBuf, source: RewriteError },
-    /// A scene that cannot be taken along the frame of its table.
-    #[error("{}: {source}", path.display())]
-    Frame { path: PathBuf, source: VerifyError },
-    /// A scene that cannot be simplified.
-    #[error("{}: {source}", path.display())]
-    Simplify { path: PathBuf, source: SimplifyError },
 }
 
 /// How to simplify, as arguments.
@@ -125,14 +91,10 @@ impl HowArgs {
     }
 
     /// The name of the method, and the method prepared for a scene that came from `path`; none if only the table is used.
-    pub(crate) fn prepare(
-        &self,
-        path: &Path,
-        scene: &Scene,
-    ) -> Result<(&'static str, Option<OcclusionMethodFactory>), SimplificationError> {
+    pub(crate) fn prepare(&self, path: &Path, scene: &Scene) -> Result<(&'static str, Option<OcclusionMethodFactory>)> {
         let options = self.buffers.options();
-        let failed = |source| MethodFailed { path: path.to_owned(), source };
-        options.check().map_err(|source| failed(source.into()))?;
+        let failed = |error| method_failed(path, error);
+        options.check().map_err(|error| failed(error.into()))?;
         let prepare = |method| OcclusionMethodFactory::new(method, scene, &options).map_err(failed);
         Ok((choice_name(self.method), self.method.map(prepare).transpose()?))
     }
@@ -159,7 +121,7 @@ pub(crate) struct ReadScene {
 }
 
 /// Reads a scene to simplify. A scene whose triangles were moved is refused, because its own surfaces are used as occluders.
-pub(crate) fn read(path: &Path, options: &SceneReadOptions) -> Result<ReadScene, SimplificationError> {
+pub(crate) fn read(path: &Path, options: &SceneReadOptions) -> Result<ReadScene> {
     input::check_is_scene(path)?;
     let (file, source) = read_scene_with_source_and(path, options)?;
     surfaces::warn(path, &file);
@@ -178,12 +140,10 @@ pub(crate) fn along(
     [scene_path, table_path]: [&Path; 2],
     table: &Table,
     scene: &Scene,
-) -> Result<Option<(Table, Scene)>, SimplificationError> {
-    let along = along_frame(table, scene)
-        .map_err(|source| SimplificationError::Frame { path: scene_path.to_owned(), source })?;
+) -> Result<Option<(Table, Scene)>> {
+    let along = along_frame(table, scene).in_file(scene_path)?;
     if along.is_some() && table.digest().is_some_and(|digest| digest != scene.digest()) {
-        let source = SimplifyError::OtherScene(Unlike::Changed);
-        return Err(SimplificationError::Simplify { path: table_path.to_owned(), source });
+        return Err(SimplifyError::OtherScene(Unlike::Changed)).in_file(table_path);
     }
     Ok(along)
 }
@@ -203,18 +163,26 @@ pub(crate) enum OutFormat {
 
 impl OutFormat {
     /// By the end of the name of the output.
-    pub(crate) fn of(path: &Path) -> Result<Self, SimplificationError> {
+    pub(crate) fn of(path: &Path) -> Result<Self> {
         match path.extension().and_then(|end| end.to_str()).map(str::to_ascii_lowercase).as_deref() {
             Some("glb") => Ok(Self::Glb),
             Some("obj") => Ok(Self::Obj),
-            _ => Err(SimplificationError::NotScene { path: path.to_owned() }),
+            _ => bail!(
+                "{}: the scene is written as GLB or, if it was read from one, as OBJ; give a name that ends in .glb or .obj",
+                path.display()
+            ),
         }
     }
 
     /// Refuses to write a glTF as OBJ.
-    pub(crate) fn check(self, path: &Path, source: Option<&GltfSource>) -> Result<(), SimplificationError> {
+    pub(crate) fn check(self, path: &Path, source: Option<&GltfSource>) -> Result<()> {
         match (self, source) {
-            (Self::Obj, Some(_)) => Err(SimplificationError::GltfAsObj { path: path.to_owned() }),
+            (Self::Obj, Some(_)) => {
+                bail!(
+                    "{}: a glTF is written as GLB, which keeps its materials; give a name that ends in .glb",
+                    path.display()
+                )
+            }
             _ => Ok(()),
         }
     }
@@ -268,22 +236,20 @@ pub(crate) fn written(
     simplified: &Simplified,
     is_framed: bool,
     format: OutFormat,
-) -> Result<Written, SimplificationError> {
+) -> Result<Written> {
     let occluder = is_occluder(simplified, is_framed);
     let said = scene::Simplified { occluder };
     let exact = |bytes| Written { bytes, rounding: Rounding::default(), occluder };
     if let Some(source) = source {
         let change = |(k, list): (usize, &Vec<[u32; 3]>)| simplified.changes(scene, k).then(|| list.clone());
         let changes: Vec<_> = simplified.triangles.iter().enumerate().map(change).collect();
-        let bytes = source.rewrite(&changes, Some(said));
-        return Ok(exact(bytes.map_err(|source| SimplificationError::Rewrite { path: path.to_owned(), source })?));
+        return Ok(exact(source.rewrite(&changes, Some(said)).in_file(path)?));
     }
     let left = left(scene, simplified);
-    let failed = |source| SimplificationError::Write { path: path.to_owned(), source };
     match format {
-        OutFormat::Obj => Ok(exact(write_simplified_obj(&left, said).map_err(failed)?)),
+        OutFormat::Obj => Ok(exact(write_simplified_obj(&left, said).in_file(path)?)),
         OutFormat::Glb => {
-            let (bytes, rounding) = write_rounded_glb(&left, &scene.bounds(), said).map_err(failed)?;
+            let (bytes, rounding) = write_rounded_glb(&left, &scene.bounds(), said).in_file(path)?;
             Ok(Written { bytes, rounding, occluder: occluder && rounding.n_coordinates == 0 })
         }
     }

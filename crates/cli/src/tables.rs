@@ -1,6 +1,6 @@
 //! Tables of both kinds, plain and packed, for the commands that follow a viewer.
 
-use crate::error::InputError;
+use crate::error::{ErrorAbout, Result};
 use crate::input;
 use serde::Serialize;
 use sightlines::eye_to_cell::{CellSource, TableCells};
@@ -9,6 +9,7 @@ use sightlines::packed::{Packed, PackedError, SizeClass};
 use sightlines::pvs::{Axis, CellId, DoorRecord, ObjectId, ObjectSource, Table};
 use sightlines::walkthrough::{CoarseVisibility, PackedCells};
 use std::convert::Infallible;
+use std::error::Error;
 use std::fs::File;
 use std::path::Path;
 use std::sync::Arc;
@@ -31,7 +32,7 @@ impl Opened {
 }
 
 /// Opens a table. Of a packed one, at most `cache_bytes` of unpacked blocks are kept.
-pub(crate) fn open(path: &Path, cache_bytes: usize) -> Result<Opened, InputError> {
+pub(crate) fn open(path: &Path, cache_bytes: usize) -> Result<Opened> {
     if input::kind_of(path)? == Some(InputKind::Packed) {
         return Ok(Opened::Packed(PackedCells::new(packed(path, cache_bytes)?)));
     }
@@ -39,9 +40,9 @@ pub(crate) fn open(path: &Path, cache_bytes: usize) -> Result<Opened, InputError
 }
 
 /// Opens a packed table.
-pub(crate) fn packed(path: &Path, cache_bytes: usize) -> Result<Packed<File>, InputError> {
-    let file = File::open(path).map_err(|source| InputError::Open { path: path.to_owned(), source })?;
-    Packed::open(file, cache_bytes).map_err(|source| InputError::Packed { path: path.to_owned(), source })
+pub(crate) fn packed(path: &Path, cache_bytes: usize) -> Result<Packed<File>> {
+    let file = File::open(path).in_file(path)?;
+    Packed::open(file, cache_bytes).in_file(path)
 }
 
 /// The class of a file, on a command line and in answers.
@@ -70,11 +71,12 @@ impl Class {
 
 /// A table of either kind. Clones share it.
 pub(crate) trait Cells:
-    CellSource<Error: Send + 'static> + CoarseVisibility<PlaceError = <Self as CellSource>::Error> + Clone + Send + 'static
+    CellSource<Error: Error + Send + Sync + 'static>
+    + CoarseVisibility<PlaceError = <Self as CellSource>::Error>
+    + Clone
+    + Send
+    + 'static
 {
-    /// What went wrong, with the file's name.
-    fn fail(path: &Path, error: Self::Error) -> InputError;
-
     /// The axis that points up, if it is known.
     fn up(&self) -> Option<Axis>;
 
@@ -99,11 +101,8 @@ pub(crate) trait Cells:
     fn bytes_in_memory(&self) -> Option<(usize, usize)>;
 
     /// Refuses a table that does not store where its cells are.
-    fn refuse_without_places(&self, path: &Path) -> Result<(), InputError> {
-        if !self.has_places() {
-            return Err(InputError::NoPlaces { path: path.to_owned(), what: "no cell can be found at a point" });
-        }
-        Ok(())
+    fn refuse_without_places(&self, path: &Path) -> Result<()> {
+        if self.has_places() { Ok(()) } else { Err(input::no_places(path, "no cell can be found at a point")) }
     }
 
     /// 2 or 3.
@@ -118,10 +117,6 @@ pub(crate) trait Cells:
 }
 
 impl Cells for TableCells<Arc<Table>> {
-    fn fail(_: &Path, error: Infallible) -> InputError {
-        match error {}
-    }
-
     fn up(&self) -> Option<Axis> {
         self.table().up()
     }
@@ -160,10 +155,6 @@ impl Cells for TableCells<Arc<Table>> {
 }
 
 impl Cells for PackedCells<File> {
-    fn fail(path: &Path, source: PackedError) -> InputError {
-        InputError::Packed { path: path.to_owned(), source }
-    }
-
     fn up(&self) -> Option<Axis> {
         self.packed().up()
     }

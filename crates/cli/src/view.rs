@@ -1,6 +1,6 @@
 //! The view of a viewer as arguments: the method and the lens.
 
-use crate::error::InputError;
+use crate::error::Result;
 use crate::input::refuse;
 use crate::tables::Cells;
 use sightlines::eye_to_cell::{Method, UnknownMethod, View, ViewError};
@@ -86,7 +86,7 @@ impl LensArgs {
     }
 
     /// The lens for a table; refuses what means nothing in a plane.
-    pub(crate) fn lens(&self, cells: &impl Cells, path: &Path) -> Result<Lens, InputError> {
+    pub(crate) fn lens(&self, cells: &impl Cells, path: &Path) -> Result<Lens> {
         let fov = self.fov.unwrap_or(FOV);
         if cells.n_dimensions() == 2 {
             let given = [("--aspect", self.aspect.is_some()), ("--up", self.up.is_some())];

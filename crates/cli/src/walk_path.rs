@@ -1,28 +1,10 @@
 //! Walks in files.
 
-use crate::error::InputError;
+use crate::error::{ErrorAbout, Result, bail};
 use serde::Deserialize;
-use sightlines::eye_to_cell::ViewError;
-use sightlines::geometry::{CoordinateError, check_coordinate};
+use sightlines::geometry::check_coordinate;
 use sightlines::walkthrough::CameraPose;
 use std::path::Path;
-
-/// Why a file is not a walk. Frames count from 0.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum PathError {
-    #[error("{0}")]
-    Text(serde_json::Error),
-    #[error("there are no frames in the walk")]
-    Empty,
-    #[error("frame {frame}: {source}")]
-    Frame { frame: usize, source: serde_json::Error },
-    #[error("frame {frame}: {what} has {found} numbers, but the table has {dimension} dimensions")]
-    Count { frame: usize, what: &'static str, found: usize, dimension: u8 },
-    #[error("frame {frame}: {what}: {source}")]
-    Coordinate { frame: usize, what: &'static str, source: CoordinateError },
-    #[error("frame {frame}: {source}")]
-    View { frame: usize, source: ViewError },
-}
 
 /// The file.
 #[derive(Debug, Deserialize)]
@@ -38,34 +20,29 @@ struct FrameText {
     dir: Vec<f64>,
 }
 
-/// Reads a walk for a table with so many dimensions. The outer error is that of reading, the inner one of what was read.
-pub(crate) fn read(path: &Path, dimension: u8) -> Result<Result<Vec<CameraPose>, PathError>, InputError> {
-    let bytes = std::fs::read(path).map_err(|source| InputError::Open { path: path.to_owned(), source })?;
-    Ok(parse(&bytes, dimension))
+/// Reads a walk for a table with so many dimensions. Frames count from 0 in errors.
+pub(crate) fn read(path: &Path, dimension: u8) -> Result<Vec<CameraPose>> {
+    parse(&std::fs::read(path).in_file(path)?, dimension).in_file(path)
 }
 
-fn parse(bytes: &[u8], dimension: u8) -> Result<Vec<CameraPose>, PathError> {
-    let Text { frames } = serde_json::from_slice(bytes).map_err(PathError::Text)?;
+fn parse(bytes: &[u8], dimension: u8) -> Result<Vec<CameraPose>> {
+    let Text { frames } = serde_json::from_slice(bytes)?;
     if frames.is_empty() {
-        return Err(PathError::Empty);
+        bail!("there are no frames in the walk");
     }
-    let stand = |(frame, value): (usize, serde_json::Value)| {
-        let text: FrameText = serde_json::from_value(value).map_err(|source| PathError::Frame { frame, source })?;
-        Ok(CameraPose {
-            eye: point(&text.eye, frame, "eye", dimension)?,
-            dir: point(&text.dir, frame, "dir", dimension)?,
-        })
+    let pose = |value: serde_json::Value| -> Result<CameraPose> {
+        let FrameText { eye, dir } = serde_json::from_value(value)?;
+        Ok(CameraPose { eye: point(&eye, "eye", dimension)?, dir: point(&dir, "dir", dimension)? })
     };
-    frames.into_iter().enumerate().map(stand).collect()
+    (0..).zip(frames).map(|(frame, value)| pose(value).about(format_args!("frame {frame}"))).collect()
 }
 
-fn point(numbers: &[f64], frame: usize, what: &'static str, dimension: u8) -> Result<[f64; 3], PathError> {
+fn point(numbers: &[f64], what: &str, dimension: u8) -> Result<[f64; 3]> {
     if numbers.len() != usize::from(dimension) {
-        return Err(PathError::Count { frame, what, found: numbers.len(), dimension });
+        bail!("{what} has {} numbers, but the table has {dimension} dimensions", numbers.len());
     }
-    let check = |&x: &f64| check_coordinate(x).map_err(|source| PathError::Coordinate { frame, what, source });
-    let numbers = numbers.iter().map(check).collect::<Result<Vec<_>, _>>()?;
-    Ok(crate::view::lifted(&numbers))
+    numbers.iter().try_for_each(|&x| check_coordinate(x).map(drop)).about(what)?;
+    Ok(crate::view::lifted(numbers))
 }
 
 #[cfg(test)]

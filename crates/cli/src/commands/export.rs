@@ -1,21 +1,11 @@
 //! `export`: a table as JSON.
 
 use crate::Answer;
-use crate::file_error::{FileError, from_file_error};
+use crate::error::Result;
 use crate::{input, output};
 use sightlines::report::{export_json, write_json};
 use std::io::Write;
 use std::path::PathBuf;
-
-/// Why `export` fails; exit code 2.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum Error {
-    /// A file cannot be read, used or written.
-    #[error(transparent)]
-    File(FileError),
-}
-
-from_file_error!(Error);
 
 /// Arguments of `export`.
 #[derive(Debug, clap::Args)]
@@ -28,7 +18,7 @@ pub(crate) struct ExportArgs {
     output: Option<PathBuf>,
 }
 
-pub(crate) fn run(args: &ExportArgs) -> Result<Answer, Error> {
+pub(crate) fn run(args: &ExportArgs) -> Result<Answer> {
     if let Some(path) = &args.output {
         output::check(&[&args.table], &[path])?;
     }

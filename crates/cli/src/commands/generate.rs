@@ -1,34 +1,17 @@
 //! `generate`: scenes to try things on.
 
 use crate::Answer;
-use crate::error::OutputError;
-use crate::file_error::{FileError, from_file_error};
-use crate::glb::{self, GlbError, save_glb};
+use crate::error::Result;
+use crate::folder::cannot_be_made;
+use crate::glb::{self, save_glb};
 use crate::output::{self, bytes, count};
 use serde::Serialize;
 use sightlines::geometry::Aabb;
-use sightlines::scenes::SceneError;
 use sightlines::scenes::{CityOptions, CityTile, TowerOptions, city_tiles, tower, tower_rooms};
 use sightlines::tiles::{TilePlan, WorldPlan};
 use std::fmt;
 use std::fs;
 use std::path::PathBuf;
-
-/// Why `generate` fails; exit code 2.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum Error {
-    /// A file cannot be read, used or written.
-    #[error(transparent)]
-    File(FileError),
-    /// A scene that cannot be written as GLB.
-    #[error(transparent)]
-    Glb(#[from] GlbError),
-    /// A scene cannot be generated.
-    #[error(transparent)]
-    Generate(#[from] SceneError),
-}
-
-from_file_error!(Error);
 
 /// Arguments of `generate`.
 #[derive(Debug, clap::Args)]
@@ -105,18 +88,18 @@ struct TowerArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &GenerateArgs) -> Result<Answer, Error> {
+pub(crate) fn run(args: &GenerateArgs) -> Result<Answer> {
     match &args.what {
         What::Tower(args) => write_tower(args),
         What::World(args) => write_world(args),
     }
 }
 
-fn write_world(args: &WorldArgs) -> Result<Answer, Error> {
+fn write_world(args: &WorldArgs) -> Result<Answer> {
     let WorldArgs { seed, blocks, per_tile, detail, border, ref output, json } = *args;
     let options = CityOptions { seed, blocks_x: blocks, blocks_z: blocks, detail };
     let tiles = city_tiles(options, per_tile)?;
-    fs::create_dir_all(output).map_err(|source| OutputError::Folder { path: output.clone(), source })?;
+    fs::create_dir_all(output).map_err(|error| cannot_be_made(output, error))?;
     let mut plan = WorldPlan { border, reach: None, tiles: Vec::new() };
     let mut outcome =
         WorldOutcome { out: output.display().to_string(), seed, n_tiles: tiles.len(), ..WorldOutcome::default() };
@@ -158,7 +141,7 @@ impl fmt::Display for WorldOutcome {
     }
 }
 
-fn write_tower(args: &TowerArgs) -> Result<Answer, Error> {
+fn write_tower(args: &TowerArgs) -> Result<Answer> {
     glb::check_name(&args.output)?;
     output::check(&[], &[&args.output])?;
     let options = TowerOptions {

@@ -1,13 +1,11 @@
 //! `pack` and `unpack`: tables as small files for programs that read them piece by piece, and back.
 
 use crate::Answer;
-use crate::error::InputError;
-use crate::file_error::{FileError, from_file_error};
+use crate::error::{ErrorAbout, Result, anyhow};
 use crate::output::{self, bytes, count, percent};
 use crate::tables::Class;
 use crate::{input, tables};
 use serde::Serialize;
-use sightlines::packed::PackError;
 use sightlines::packed::{PackOptions, Packed, pack_report};
 use sightlines::pvs::Table;
 use std::fmt;
@@ -15,19 +13,6 @@ use std::path::PathBuf;
 
 /// Bytes of blocks that are kept while a table is unpacked: each is read many times in a row.
 const CACHE: usize = 64 << 20;
-
-/// Why `pack` fails; exit code 2.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum Error {
-    /// A file cannot be read, used or written.
-    #[error(transparent)]
-    File(FileError),
-    /// A table cannot be packed.
-    #[error("{}: {source}", path.display())]
-    Pack { path: PathBuf, source: PackError },
-}
-
-from_file_error!(Error);
 
 /// Arguments of `pack`.
 #[derive(Debug, clap::Args)]
@@ -65,12 +50,12 @@ pub(crate) struct UnpackArgs {
     json: bool,
 }
 
-pub(crate) fn pack(args: &PackArgs) -> Result<Answer, Error> {
+pub(crate) fn pack(args: &PackArgs) -> Result<Answer> {
     output::check(&[&args.table], &[&args.output])?;
     let table = input::table(&args.table)?;
     let (packed, report) =
         pack_report(&table, &PackOptions { max_bytes: args.max_bytes, class: args.class.map(Class::size_class) })
-            .map_err(|source| Error::Pack { path: args.table.clone(), source })?;
+            .in_file(&args.table)?;
     let n_visible = table.parts().rows.count_ones();
     let n_packed_bytes = packed.len() as u64;
     let mut outcome = Outcome {
@@ -85,7 +70,7 @@ pub(crate) fn pack(args: &PackArgs) -> Result<Answer, Error> {
         over_estimation: 1.0,
     };
     if report.n_merges > 0 {
-        let fail = |source| InputError::Packed { path: args.output.clone(), source };
+        let fail = |source| anyhow!("{}: {source}", args.output.display());
         let back: Table = Packed::open(packed.clone(), CACHE).and_then(|p| p.to_table()).map_err(fail)?;
         outcome.over_estimation = back.parts().rows.count_ones() as f64 / n_visible.max(1) as f64;
     }
@@ -94,11 +79,11 @@ pub(crate) fn pack(args: &PackArgs) -> Result<Answer, Error> {
     Ok(Answer::Yes)
 }
 
-pub(crate) fn unpack(args: &UnpackArgs) -> Result<Answer, Error> {
+pub(crate) fn unpack(args: &UnpackArgs) -> Result<Answer> {
     output::check(&[&args.packed], &[&args.output])?;
     input::refuse_source(&args.packed)?;
     let packed = tables::packed(&args.packed, CACHE)?;
-    let table = packed.to_table().map_err(|source| InputError::Packed { path: args.packed.clone(), source })?;
+    let table = packed.to_table().in_file(&args.packed)?;
     let plain = table.to_bytes();
     output::save(&args.output, &plain)?;
     let out = args.output.display().to_string();

@@ -1,35 +1,18 @@
 //! `plan`: a floor plan as GeoJSON, cut from a scene at a height, or from a file of another format.
 
 use crate::Answer;
-use crate::error::InputError;
-use crate::file_error::{FileError, from_file_error};
+use crate::error::{ErrorAbout, Result, anyhow};
 use crate::input::{self, refuse};
 use crate::output::{self, bytes};
 use crate::plans::PlanArgs;
 use crate::surfaces::SurfaceArgs;
 use serde::Serialize;
-use sightlines::bake::{Bakeable, FloorCut, FloorCutError, floor_cut};
+use sightlines::bake::{Bakeable, FloorCut, floor_cut};
 use sightlines::cells::Plan;
 use sightlines::formats::geojson::{write_plan, write_plan_file};
 use sightlines::formats::{Input, InputKind, SceneFile};
 use std::fmt;
 use std::path::{Path, PathBuf};
-
-/// Why `plan` fails; exit code 2.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum Error {
-    /// A file cannot be read, used or written.
-    #[error(transparent)]
-    File(FileError),
-    /// A scene without a height.
-    #[error("{}: --height is missing: at which height is the scene cut? It is from {} to {}", path.display(), extent[0], extent[1])]
-    NoHeight { path: PathBuf, extent: [f64; 2] },
-    /// A scene that has no plan at a height.
-    #[error("{}: {source}", path.display())]
-    Cut { path: PathBuf, source: FloorCutError },
-}
-
-from_file_error!(Error);
 
 /// Arguments of `plan`.
 #[derive(Debug, clap::Args)]
@@ -56,7 +39,7 @@ pub(crate) struct PlanCommandArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &PlanCommandArgs) -> Result<Answer, Error> {
+pub(crate) fn run(args: &PlanCommandArgs) -> Result<Answer> {
     let (path, out) = (&args.input, &args.output);
     output::check(&[path], &[out])?;
     let map = args.map.as_deref();
@@ -75,7 +58,7 @@ pub(crate) fn run(args: &PlanCommandArgs) -> Result<Answer, Error> {
             Bakeable::Plan { plan, .. } => (write_plan(&plan), Outcome::new(out, &plan, None)),
             _ => {
                 let expected = "a scene in space nor a plan nor a WAD";
-                return Err(InputError::Kind { path: path.clone(), expected }.into());
+                return Err(input::neither(path, expected));
             }
         },
     };
@@ -84,14 +67,18 @@ pub(crate) fn run(args: &PlanCommandArgs) -> Result<Answer, Error> {
     Ok(Answer::Yes)
 }
 
-fn cut(path: &Path, file: &SceneFile, height: Option<f64>) -> Result<FloorCut, Error> {
+fn cut(path: &Path, file: &SceneFile, height: Option<f64>) -> Result<FloorCut> {
     input::check_occluder(path, file)?;
     let (bounds, up) = (file.scene.bounds(), file.info.up as usize);
-    let height = height.ok_or_else(|| Error::NoHeight {
-        path: path.to_owned(),
-        extent: [bounds.min, bounds.max].map(|corner| corner[up]),
+    let height = height.ok_or_else(|| {
+        anyhow!(
+            "{}: --height is missing: at which height is the scene cut? It is from {} to {}",
+            path.display(),
+            [bounds.min, bounds.max].map(|corner| corner[up])[0],
+            [bounds.min, bounds.max].map(|corner| corner[up])[1]
+        )
     })?;
-    floor_cut(&file.scene, file.info.up, height).map_err(|source| Error::Cut { path: path.to_owned(), source })
+    floor_cut(&file.scene, file.info.up, height).in_file(path)
 }
 
 /// What was written.

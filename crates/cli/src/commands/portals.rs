@@ -1,23 +1,13 @@
 //! `portals`: the portal file of a Quake map that has none.
 
 use crate::Answer;
-use crate::file_error::{FileError, from_file_error};
+use crate::error::Result;
 use crate::map_portals::{MapPortals, made};
 use crate::output::{self, bytes, count};
 use serde::Serialize;
 use sightlines::formats::quake::{LeafClusters, read_bsp};
 use std::fmt;
 use std::path::PathBuf;
-
-/// Why `portals` fails; exit code 2.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum Error {
-    /// A file cannot be read, used or written.
-    #[error(transparent)]
-    File(FileError),
-}
-
-from_file_error!(Error);
 
 /// Arguments of `portals`.
 #[derive(Debug, clap::Args)]
@@ -33,7 +23,7 @@ pub(crate) struct PortalsArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &PortalsArgs) -> Result<Answer, Error> {
+pub(crate) fn run(args: &PortalsArgs) -> Result<Answer> {
     output::check(&[&args.map], &[&args.output])?;
     let bsp = read_bsp(&args.map)?;
     let MapPortals { prt, text, .. } = made(&bsp, &args.map)?;

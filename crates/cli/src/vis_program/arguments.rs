@@ -1,5 +1,6 @@
 //! The arguments of `sightlines-vis`: those of the compilers' `vis`, which have any number of dashes.
 
+use crate::error::Result;
 use clap::error::ErrorKind;
 use clap::{ArgAction, CommandFactory, FromArgMatches, Parser};
 use std::ffi::{OsStr, OsString};

@@ -1,8 +1,7 @@
 //! What `sightlines-vis` prints, and the log of it.
 
 use super::arguments::VisProgramArgs;
-use super::error::Error;
-use crate::error::OutputError;
+use crate::error::{Result, anyhow};
 use crate::output;
 use std::fs::File;
 use std::io::{self, IsTerminal, Write};
@@ -33,7 +32,7 @@ pub(super) struct Console {
 
 impl Console {
     /// As the options say, for a map. A log that is there is replaced.
-    pub(super) fn new(args: &VisProgramArgs, map: &Path) -> Result<Self, Error> {
+    pub(super) fn new(args: &VisProgramArgs, map: &Path) -> Result<Self> {
         let log = if args.log { Some(Log::beside(map)?) } else { None };
         Ok(Self {
             progress: !(args.quiet || args.noprogress),
@@ -45,7 +44,7 @@ impl Console {
     }
 
     /// Prints a line, or several, if it is of a kind that the options ask for.
-    pub(super) fn say(&self, kind: Kind, line: &str) -> Result<(), OutputError> {
+    pub(super) fn say(&self, kind: Kind, line: &str) -> Result<()> {
         let is_said = match kind {
             Kind::Always => true,
             Kind::Progress => self.progress,
@@ -78,7 +77,7 @@ impl Console {
     }
 
     /// Writes what went wrong to the log.
-    pub(super) fn log_error(&self, error: &Error) {
+    pub(super) fn log_error(&self, error: &anyhow::Error) {
         if let Some(log) = &self.log {
             log.line(&format!("error: {error}"));
         }
@@ -91,13 +90,13 @@ struct Log(Arc<Mutex<File>>);
 
 impl Log {
     /// The log of a map: `MAP-vis.log`.
-    fn beside(map: &Path) -> Result<Self, Error> {
+    fn beside(map: &Path) -> Result<Self> {
         let mut name = map.file_stem().unwrap_or_default().to_owned();
         name.push("-vis.log");
         let path = map.with_file_name(name);
         match File::create(&path) {
             Ok(file) => Ok(Self(Arc::new(Mutex::new(file)))),
-            Err(source) => Err(Error::Log { path, source }),
+            Err(source) => Err(anyhow!("{}: the log cannot be written: {source}", path.display())),
         }
     }
 

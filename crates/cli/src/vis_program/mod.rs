@@ -5,19 +5,18 @@
 
 mod arguments;
 mod console;
-mod error;
 mod hearing;
 mod priority;
 
 use crate::Answer;
 use crate::commands::vis::{Beginning, Manner, Sound, VisArgs, compute};
+use crate::error::Result;
 use crate::kept::Keeping;
 use crate::map_portals::MADE;
 use crate::output::{bytes, count};
 use arguments::VisProgramArgs;
 use clap::CommandFactory;
 use console::{Console, Kind};
-use error::Error;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -37,10 +36,10 @@ pub(crate) fn main(line: impl IntoIterator<Item = OsString>) -> ExitCode {
         console.log_warnings();
         run(&args, &map, &console).inspect_err(|error| console.log_error(error))
     });
-    crate::exit_code(result.map_err(Into::into))
+    crate::exit_code(result)
 }
 
-fn run(args: &VisProgramArgs, map: &Path, console: &Console) -> Result<Answer, Error> {
+fn run(args: &VisProgramArgs, map: &Path, console: &Console) -> Result<Answer> {
     let start = Instant::now();
     console.say(Kind::Always, &format!("---- sightlines-vis {} ----", env!("CARGO_PKG_VERSION")))?;
     for note in args.without_effect() {
@@ -61,7 +60,7 @@ fn run(args: &VisProgramArgs, map: &Path, console: &Console) -> Result<Answer, E
 }
 
 /// Computes what is visible.
-fn see(args: &VisProgramArgs, map: &Path, console: &Console) -> Result<(), Error> {
+fn see(args: &VisProgramArgs, map: &Path, console: &Console) -> Result<()> {
     let mut vis = VisArgs::of_map(map.to_owned());
     (vis.fast, vis.threads, vis.resume.save_after) = (args.fast, args.threads, args.save_after);
     vis.silence = args.silenced();
@@ -93,7 +92,7 @@ fn see(args: &VisProgramArgs, map: &Path, console: &Console) -> Result<(), Error
         let pairs = outcome.clusters.undecided_pairs().to_string();
         pairs.lines().try_for_each(|line| console.say(Kind::Statistics, line))?;
     }
-    Ok(console.say(Kind::Always, &format!("wrote      {}, {}", map.display(), bytes(outcome.n_bytes as u64)))?)
+    console.say(Kind::Always, &format!("wrote      {}, {}", map.display(), bytes(outcome.n_bytes as u64)))
 }
 
 /// The map that a name stands for: editors name the source of the map, or leave the extension out.

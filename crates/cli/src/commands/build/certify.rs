@@ -1,7 +1,6 @@
 //! Proofs that are to be written beside a table.
 
-use super::Error;
-use crate::error::OutputError;
+use crate::error::{ErrorAbout, Result, anyhow};
 use crate::kept::Kept;
 use crate::output::{self, bytes, count, seconds};
 use crate::progress::Bar;
@@ -9,7 +8,7 @@ use crate::unproven::Unproven;
 use serde::Serialize;
 use sightlines::bake::Baked;
 use sightlines::stabtree::CertifyOptions;
-use sightlines::verify::{ProofFindings, can_be_proven, check_proofs};
+use sightlines::verify::{ProofError, ProofFindings, ProofViolation, can_be_proven, check_proofs};
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -33,10 +32,10 @@ impl CertifyArgs {
     }
 
     /// Refuses a file of proofs that is the input or the table.
-    pub(super) fn check(&self, input: &Path, table: &Path) -> Result<(), Error> {
+    pub(super) fn check(&self, input: &Path, table: &Path) -> Result<()> {
         let Some(file) = self.file(table) else { return Ok(()) };
         output::check(&[input], &[&file])?;
-        if file == table { Err(OutputError::SameFile(file).into()) } else { Ok(()) }
+        if file == table { Err(anyhow!("{}: the output would replace the input", file.display())) } else { Ok(()) }
     }
 
     /// The file of proofs, if they are wanted.
@@ -55,7 +54,7 @@ impl CertifyArgs {
         threads: usize,
         kept: &Kept<'_>,
         show_progress: bool,
-    ) -> Result<Option<Certified>, Error> {
+    ) -> Result<Option<Certified>> {
         let Some(file) = self.file(out) else { return Ok(None) };
         if !can_be_proven(&baked.table) {
             tracing::warn!("{}: no proofs are written: there are none about cells without portals", path.display());
@@ -70,13 +69,11 @@ impl CertifyArgs {
             ..CertifyOptions::default()
         });
         drop(bar);
-        let made = made.map_err(|source| Error::Certify { path: path.to_owned(), source })?;
+        let made = made.in_file(path)?;
         let content = made.proofs.to_bytes();
-        let incomparable = |source| Error::Incomparable { path: path.to_owned(), source };
-        let found = check_proofs(&baked.table, &content).map_err(incomparable)?;
+        let found = check_proofs(&baked.table, &content).map_err(|error| incomparable(path, &error))?;
         if let Some(first) = found.violations.first() {
-            let (n_violations, first) = (found.n_violations, first.clone());
-            return Err(Error::Contradiction { path: path.to_owned(), n_violations, first });
+            return Err(contradiction(path, first, found.n_violations));
         }
         kept.before_writing()?;
         output::save(&file, &content)?;
@@ -121,5 +118,39 @@ impl fmt::Display for Certified {
             None => writeln!(f, "proofs         none: there are none about cells without portals")?,
         }
         write!(f, "{}", self.unproven)
+    }
+}
+
+/// Proofs that were made are none of the table: our bug.
+fn incomparable(path: &Path, error: &ProofError) -> anyhow::Error {
+    anyhow!(
+        "{}: the proofs that were made cannot be compared with the table: {error}; nothing was written",
+        path.display()
+    )
+}
+
+/// What is proven is not what the table states: our bug.
+fn contradiction(path: &Path, first: &ProofViolation, n_violations: u64) -> anyhow::Error {
+    let more = if n_violations > 1 { format!("; and {} more", n_violations - 1) } else { String::new() };
+    anyhow!("{}: the proofs contradict the table: {first}{more}; nothing was written", path.display())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sightlines::pvs::CellId;
+
+    #[test]
+    fn proofs_that_contradict_are_named() {
+        let first = ProofViolation::Joined([CellId(1), CellId(2)]);
+        let error = |n_violations: u64| contradiction(Path::new("a.glb"), &first, n_violations).to_string();
+        let text = "a.glb: the proofs contradict the table: cells 1 and 2 are hidden from each other, but a proven line joins them";
+        assert_eq!(
+            [1, 3].map(error),
+            [format!("{text}; nothing was written"), format!("{text}; and 2 more; nothing was written")]
+        );
+        let other = incomparable(Path::new("a.glb"), &ProofError::Portal(3)).to_string();
+        let text = "cannot be compared with the table: portal 3 of the table is no rectangle across an axis; nothing was written";
+        assert_eq!(other, format!("a.glb: the proofs that were made {text}"));
     }
 }

@@ -1,7 +1,7 @@
 //! Doors that are given as boxes, and what they close.
 
-use super::Error;
 use crate::doors::DoorBox;
+use crate::error::{Result, anyhow};
 use crate::output::count;
 use serde::Serialize;
 use sightlines::bake::{Bakeable, Baked};
@@ -10,13 +10,18 @@ use std::fmt;
 use std::path::Path;
 
 /// Refuses doors whose boxes have another dimension than what is baked.
-pub(super) fn check(path: &Path, content: &Bakeable, given: &[DoorBox]) -> Result<(), Error> {
+pub(super) fn check(path: &Path, content: &Bakeable, given: &[DoorBox]) -> Result<()> {
     let dimension = if matches!(content, Bakeable::Plan { .. }) { 2 } else { 3 };
     match given.iter().find(|door| door.n_dimensions() != dimension) {
         None => Ok(()),
         Some(door) => {
             let (path, name) = (path.to_owned(), door.name.clone());
-            Err(Error::DoorDimension { path, name, found: 2 * door.n_dimensions(), needed: 2 * dimension })
+            Err(anyhow!(
+                "{}: the box of the door {name:?} has {found} numbers: here it needs {needed}",
+                path.display(),
+                found = 2 * door.n_dimensions(),
+                needed = 2 * dimension
+            ))
         }
     }
 }

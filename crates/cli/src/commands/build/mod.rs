@@ -5,7 +5,6 @@ mod auto;
 mod brief;
 mod certify;
 mod doors;
-mod error;
 mod framed;
 mod limit;
 pub(crate) mod needs;
@@ -22,11 +21,11 @@ mod view_cells;
 mod viewers;
 mod worth;
 
-pub(crate) use error::Error;
 pub(crate) use source::bake_visibly;
 
 use crate::Answer;
 use crate::doors::DoorBox;
+use crate::error::{Result, anyhow, bail};
 use crate::input::{self, refuse};
 use crate::kept::{Identity, Inputs, Keeping, Kept, ResumeArgs};
 use crate::map_portals::{MADE, portal_file};
@@ -101,7 +100,7 @@ pub(crate) struct BuildArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Result<Answer, Error> {
+pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Result<Answer> {
     // What is not decided in time is decided anew when there is more of it.
     let keeping = if args.time_limit.is_some() { Keeping::Nowhere } else { Keeping::File(&args.resume) };
     let built = make(args, keeping, show_progress, verbose)?;
@@ -110,15 +109,21 @@ pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Resul
 }
 
 /// Reads, bakes and writes. Prints nothing but progress and warnings.
-pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, verbose: bool) -> Result<Built, Error> {
+pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, verbose: bool) -> Result<Built> {
     let BuildArgs { input: path, output: out, .. } = args;
     crate::threads::use_only(args.bake.threads);
     let clock = limit::Clock::new(args.time_limit);
     if out.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) {
-        return Err(Error::Json { out: out.clone() });
+        bail!(
+            "{}: `build` writes a table, which is not JSON: name it {}, and then: sightlines export {} -o {}",
+            out.display(),
+            out.with_extension("pvs").display(),
+            out.with_extension("pvs").display(),
+            out.display()
+        );
     }
     if args.class.is_some() && !packed::is_packed(out) {
-        return Err(Error::Class { out: out.clone() });
+        bail!("{}: --class is for packed tables, whose names end in .pvz", out.display());
     }
     args.memory.watch();
     output::check(&[path], &[out])?;
@@ -161,7 +166,7 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
     let proofs = args.certify.file(out);
     let outputs: Vec<&Path> = std::iter::once(out).chain(&proofs).map(PathBuf::as_path).collect();
     let kept = Kept::open(keeping, &inputs, &outputs, || args.identity(&inputs, &source, recipe))?;
-    let made = || -> Result<Built, Error> {
+    let made = || -> Result<Built> {
         let runtime = Runtime { units: kept.units(), ..runtime };
         let plan = announce::Plan::new(&source.content, recipe, auto.as_ref(), args.time_limit);
         if let Some(file) = args.by_rows(&source, recipe, class) {
@@ -215,7 +220,7 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
     };
     let made = made();
     match kept.finish(made.is_ok()) {
-        Some(interrupted) => Err(Error::Interrupted(interrupted)),
+        Some(interrupted) => Err(anyhow!("{interrupted}")),
         None => made,
     }
 }
@@ -229,7 +234,7 @@ impl BuildArgs {
     ///
     /// # Errors
     /// Those of the file of view cells.
-    fn request(&self) -> Result<BakeRequest, Error> {
+    fn request(&self) -> Result<BakeRequest> {
         let mut request = self.bake.request();
         self.region.put_into(&mut request)?;
         request.for_proofs = self.certify.is_given() || self.stab_trees.is_some();
@@ -265,7 +270,7 @@ impl BuildArgs {
     }
 
     /// Chooses what fits into the memory that may be used: for a packed table the layout that is written row by row, and the number of threads.
-    fn fit(&self, source: &Source, recipe: &Recipe) -> Result<(Option<Class>, usize), Error> {
+    fn fit(&self, source: &Source, recipe: &Recipe) -> Result<(Option<Class>, usize)> {
         let by_rows = |class| self.by_rows(source, recipe, class).is_some();
         let mut class = self.class;
         let all = needs::of(source, recipe, by_rows(class));
@@ -276,13 +281,13 @@ impl BuildArgs {
         let needs = needs::of(source, recipe, by_rows(class));
         let threads = self.memory.threads(self.bake.threads, needs).map_err(|source| {
             let advice = if packed::is_packed(&self.output) { FEWER_CELLS } else { BY_ROWS };
-            Error::Memory { path: self.input.clone(), source, advice }
+            anyhow!("{}: {source}; {advice}", self.input.display())
         })?;
         Ok((class, threads))
     }
 
     /// Refuses options that mean nothing for an input.
-    fn refuse_meaningless(&self, input: &Input) -> Result<(), Error> {
+    fn refuse_meaningless(&self, input: &Input) -> Result<()> {
         if !matches!(input, Input::Bsp(_)) {
             refuse(&self.input, &[("--prt", self.prt.is_some())], "Quake maps", "none")?;
         }
@@ -294,7 +299,7 @@ impl BuildArgs {
     }
 
     /// Refuses what tables by from-region queries cannot have.
-    fn refuse_for_regions(&self, source: &Source, recipe: &Recipe) -> Result<(), Error> {
+    fn refuse_for_regions(&self, source: &Source, recipe: &Recipe) -> Result<()> {
         if !matches!(source.content, Bakeable::Scene(_)) || !recipe.takes_regions() {
             return Ok(());
         }

@@ -1,9 +1,10 @@
 //! A table in packed form, as `build` writes it under a name that ends in `.pvz`.
 
+use super::announce;
 use super::brief::{Brief, of_cells};
 use super::source::Source;
-use super::{Error, announce};
-use crate::buffers::MethodFailed;
+use crate::buffers::method_failed;
+use crate::error::{ErrorAbout, Result, anyhow};
 use crate::facts::Stated;
 use crate::kept::Kept;
 use crate::output::{self, count};
@@ -25,12 +26,12 @@ pub(super) fn is_packed(out: &Path) -> bool {
 }
 
 /// The bytes of a table under a name.
-pub(super) fn bytes_of(table: &Table, path: &Path, out: &Path, class: Option<Class>) -> Result<Vec<u8>, Error> {
+pub(super) fn bytes_of(table: &Table, path: &Path, out: &Path, class: Option<Class>) -> Result<Vec<u8>> {
     if !is_packed(out) {
         return Ok(table.to_bytes());
     }
     let options = PackOptions { class: class.map(Class::size_class), ..PackOptions::default() };
-    pack(table, &options).map_err(|source| Error::Pack { path: path.to_owned(), source })
+    pack(table, &options).in_file(path)
 }
 
 /// The scene, if its table is large and can be written row by row.
@@ -55,7 +56,7 @@ pub(super) fn write_rows(
     plan: announce::Plan,
     (out, show_progress): (&Path, bool),
     kept: &Kept<'_>,
-) -> Result<Outcome, Error> {
+) -> Result<Outcome> {
     let bar = Bar::new("visibility", show_progress);
     let announcer = announce::Announcer::new(&bar, &plan, show_progress);
     let runtime = Runtime { progress: Some(&announcer), ..*runtime };
@@ -63,9 +64,9 @@ pub(super) fn write_rows(
     let made = prepared.run_packed(Vec::new(), &runtime);
     drop(bar);
     let (bytes, report, packed) = made.map_err(|error| match error {
-        PackRegionsError::Bake(BakeError::Method(source)) => MethodFailed { path: path.to_owned(), source }.into(),
-        PackRegionsError::Bake(source) => Error::Bake { path: path.to_owned(), map: None, source: Box::new(source) },
-        source => Error::Rows { path: path.to_owned(), source: Box::new(source) },
+        PackRegionsError::Bake(BakeError::Method(source)) => method_failed(path, source),
+        PackRegionsError::Bake(source) => anyhow!("{}: {source}", path.display()),
+        source => anyhow!("{}: {source}", path.display()),
     })?;
     kept.before_writing()?;
     output::save(out, &bytes)?;

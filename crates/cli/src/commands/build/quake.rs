@@ -1,11 +1,10 @@
 //! What was built from a Quake map with its portal file.
 
-use super::Error;
 use super::brief::Brief;
 use super::portals::{of_clusters, write_method};
 use crate::clusters::Clusters;
-use crate::error::InputError;
-use crate::map_portals::MADE;
+use crate::error::anyhow;
+use crate::map_portals::{MADE, do_not_fit};
 use crate::output::{bytes, count};
 use serde::Serialize;
 use sightlines::bake::{MapReport, PrtBakeError, WorldSummary};
@@ -14,16 +13,16 @@ use std::fmt;
 use std::path::Path;
 
 /// Names the file that an error is about: the map, its portal file, or both if they do not go together.
-pub(super) fn failed(map: &Path, portals: &Path, source: PrtBakeError) -> Error {
+pub(super) fn failed(map: &Path, portals: &Path, source: PrtBakeError) -> anyhow::Error {
     match source {
-        PrtBakeError::Bsp(_) => Error::BakePrt { path: map.to_owned(), source },
+        PrtBakeError::Bsp(_) => anyhow!("{}: {source}", map.display()),
         PrtBakeError::Visibility(
             source @ (VisibilityError::Leafs { .. }
             | VisibilityError::Clusters { .. }
             | VisibilityError::OtherMap { .. }
             | VisibilityError::InsideOut { .. }),
-        ) => InputError::of_portals(portals, map, Box::new(source)).into(),
-        source => Error::BakePrt { path: portals.to_owned(), source },
+        ) => do_not_fit(portals, map, &source),
+        source => anyhow!("{}: {source}", portals.display()),
     }
 }
 

@@ -5,6 +5,7 @@ use super::limit::{Undecided, brief};
 use super::space::Door;
 use super::view_cells::ViewCellsArgs;
 use crate::buffers::BufferArgs;
+use crate::error::Result;
 use crate::facts::{Facts, Stated};
 use crate::named::one_of;
 use crate::output::{bytes, count, percent, seconds};

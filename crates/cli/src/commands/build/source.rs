@@ -1,10 +1,12 @@
 //! What is built: an input with all files that belong to it.
 
 use super::announce::{Announcer, Plan};
-use super::{Error, plan, quake, space};
-use crate::buffers::MethodFailed;
+use super::{plan, quake, space};
+use crate::buffers::method_failed;
 use crate::clusters::warn_of_repeats;
+use crate::error::{Result, anyhow};
 use crate::input;
+use crate::input::of_map;
 use crate::kept::Identity;
 use crate::map_portals::{portal_file, portals_for};
 use crate::output;
@@ -32,7 +34,7 @@ impl Source {
         input: Input,
         (map, prt): (Option<&str>, Option<&Path>),
         out: &Path,
-    ) -> Result<Self, Error> {
+    ) -> Result<Self> {
         let read = match &input {
             Input::Bsp(bsp) => {
                 portal_file(path, prt).iter().try_for_each(|file| output::refuse_same(file, out))?;
@@ -58,17 +60,17 @@ impl Source {
     }
 
     /// The error, with the name of the file that it is about.
-    pub(super) fn failed(&self, path: &Path, source: BakeError) -> Error {
+    pub(super) fn failed(&self, path: &Path, source: BakeError) -> anyhow::Error {
         let map = match &self.content {
             Bakeable::Plan { map, .. } => map.map(|name| name.to_string()),
             _ => None,
         };
         match (source, &self.portals) {
             (BakeError::Prt(source), Some(portals)) => quake::failed(path, portals, source),
-            (BakeError::Prt(source), None) => Error::BakePrt { path: path.to_owned(), source },
-            (BakeError::Meaningless(option), _) => meaningless(path, option).into(),
-            (BakeError::Method(source), _) => MethodFailed { path: path.to_owned(), source }.into(),
-            (source, _) => Error::Bake { path: path.to_owned(), map, source: Box::new(source) },
+            (BakeError::Prt(source), None) => anyhow!("{}: {source}", path.display()),
+            (BakeError::Meaningless(option), _) => meaningless(path, option),
+            (BakeError::Method(source), _) => method_failed(path, source),
+            (source, _) => anyhow!("{}: {}{source}", path.display(), of_map(map.as_ref())),
         }
     }
 }

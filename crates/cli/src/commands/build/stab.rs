@@ -1,6 +1,6 @@
 //! Stab trees that a table is to have, and what those of a table are.
 
-use super::Error;
+use crate::error::{ErrorAbout, Result};
 use crate::facts::StabFacts;
 use crate::kept::Kept;
 use crate::output::{percent, seconds};
@@ -19,14 +19,14 @@ pub(super) fn add(
     threads: usize,
     kept: &Kept<'_>,
     show_progress: bool,
-) -> Result<(Baked, Option<Added>), Error> {
+) -> Result<(Baked, Option<Added>)> {
     let Some(max_nodes) = wanted else { return Ok((baked, None)) };
     let bar = Bar::new("stab trees", show_progress);
     let max_nodes = max_nodes.map(|n| n as usize);
     let units = kept.units();
     let with = baked.with_stab_trees(&StabOptions { max_nodes, threads, progress: Some(&bar), units });
     drop(bar);
-    let (baked, report) = with.map_err(|source| Error::Stab { path: path.to_owned(), source })?;
+    let (baked, report) = with.in_file(path)?;
     let added = Added::new(&baked.table, &report);
     Ok((baked, Some(added)))
 }

@@ -1,5 +1,6 @@
 //! View cells from a file, as an argument.
 
+use crate::error::Result;
 use sightlines::formats::view_cells::read_view_cells;
 use sightlines::formats::{ReadError, ViewCells};
 use std::path::PathBuf;

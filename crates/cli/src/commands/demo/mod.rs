@@ -1,15 +1,14 @@
 //! `demo`: all steps on a generated scene.
 
-mod error;
 mod office;
 mod tower;
 
 use crate::Answer;
-use crate::error::OutputError;
+use crate::error::{ErrorAbout, Result};
+use crate::folder::cannot_be_made;
 use crate::memory;
 use crate::output::{self, bytes};
 use crate::reasons::reasons;
-use error::Error;
 use serde::Serialize;
 use sightlines::pvs::Table;
 use sightlines::viewer::{Figure, Page};
@@ -41,9 +40,9 @@ enum Example {
     Tower,
 }
 
-pub(crate) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer, Error> {
+pub(crate) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer> {
     let folder = &args.out;
-    std::fs::create_dir_all(folder).map_err(|source| OutputError::Folder { path: folder.clone(), source })?;
+    std::fs::create_dir_all(folder).map_err(|error| cannot_be_made(folder, error))?;
     match args.example {
         Example::Office => office::run(args, show_progress),
         Example::Tower => tower::run(args, show_progress),
@@ -54,11 +53,11 @@ pub(crate) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer, Error>
 const MAX_LINES: usize = 20_000;
 
 /// Writes the page of a table into the folder of the demo; returns its name there.
-fn save_page(args: &DemoArgs, title: &str, table_name: &str, table: &Table, figure: &Figure) -> Result<String, Error> {
+fn save_page(args: &DemoArgs, title: &str, table_name: &str, table: &Table, figure: &Figure) -> Result<String> {
     let name = "view.html".to_owned();
     let reasons = reasons(table, MAX_LINES, false);
     let page = Page { figure: Some(figure), reasons: reasons.as_ref(), ..Page::new(title, table_name, table) };
-    let written = page.html().map_err(|source| Error::Page { path: args.out.join(table_name), source })?;
+    let written = page.html().in_file(args.out.join(table_name))?;
     output::save(&args.out.join(&name), written.html.as_bytes())?;
     Ok(name)
 }

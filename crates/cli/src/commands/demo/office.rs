@@ -1,9 +1,9 @@
 //! The demo in the plane: an office floor.
 
-use super::Error;
 use super::{DemoArgs, Done, save_page};
 use crate::Answer;
 use crate::commands::build::{bake_visibly, plan};
+use crate::error::{ErrorAbout, Result};
 use crate::output::{self, bytes, percent};
 use crate::picture::{PictureKind, draw_plan, save_picture};
 use serde::Serialize;
@@ -16,7 +16,7 @@ use sightlines::viewer::Figure;
 use std::fmt;
 use std::time::Instant;
 
-pub(super) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer, Error> {
+pub(super) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer> {
     let start = Instant::now();
     let folder = &args.out;
     let office = office(OfficeOptions { seed: args.seed, ..OfficeOptions::default() })
@@ -26,7 +26,7 @@ pub(super) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer, Error>
     // The plan is read back from the file, as `build` would do.
     let floor = geojson::read_plan(&plan_path)?;
     let baked = bake_visibly(&plan_path, &floor, &BakeRequest::default(), show_progress);
-    let baked = baked.map_err(|source| Error::Bake { path: plan_path, source: Box::new(source) })?;
+    let baked = baked.in_file(&plan_path)?;
     output::save(&table_path, &baked.table.to_bytes())?;
     let figure = Figure::of_plan(&floor);
     let page = save_page(args, "An office floor", "plan.pvs", &baked.table, &figure)?;

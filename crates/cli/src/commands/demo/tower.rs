@@ -1,12 +1,12 @@
 //! The demo in space: a small furnished tower.
 
-use super::Error;
 use super::{DemoArgs, Done, save_page};
 use crate::Answer;
 use crate::commands::build::{bake_visibly, space};
+use crate::error::{ErrorAbout, Result};
 use crate::glb::save_glb;
 use crate::output::{self, bytes, percent};
-use crate::picture::{self, PictureError, PictureKind, save_picture};
+use crate::picture::{self, PictureKind, save_picture};
 use serde::Serialize;
 use sightlines::bake::{BakeRequest, Report};
 use sightlines::formats::scene::read_scene;
@@ -18,7 +18,7 @@ use std::fmt;
 use std::path::Path;
 use std::time::Instant;
 
-pub(super) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer, Error> {
+pub(super) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer> {
     let start = Instant::now();
     let options = TowerOptions { seed: args.seed, floors: 2, rooms_x: 3, rooms_y: 1, ..TowerOptions::default() };
     let [scene_path, table_path] = ["tower.glb", "tower.pvs"].map(|name| args.out.join(name));
@@ -26,7 +26,7 @@ pub(super) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer, Error>
     // The scene is read back from the file, as `build` would do.
     let file = read_scene(&scene_path)?;
     let baked = bake_visibly(&scene_path, &file, &BakeRequest::default(), show_progress);
-    let baked = baked.map_err(|source| Error::Bake { path: scene_path, source: Box::new(source) })?;
+    let baked = baked.in_file(&scene_path)?;
     output::save(&table_path, &baked.table.to_bytes())?;
     let figure = Figure::of_scene(&file.scene);
     let page = save_page(args, "A small tower", "tower.pvs", &baked.table, &figure)?;
@@ -50,7 +50,7 @@ pub(super) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer, Error>
 
 /// The cells, and what the largest of those that see less than half of the cells sees: a floor plan at its
 /// height, and the boxes.
-fn pictures(path: &Path, table: &Table) -> Result<Vec<(&'static str, String)>, Error> {
+fn pictures(path: &Path, table: &Table) -> Result<Vec<(&'static str, String)>> {
     let up = picture::up_of(table);
     let viewer = viewer(table);
     let view = viewer.map_or(View::Plan, View::Cell);
@@ -61,9 +61,7 @@ fn pictures(path: &Path, table: &Table) -> Result<Vec<(&'static str, String)>, E
         let height = picture::middle(table, cell, up);
         drawn.push(("floor", slice_svg(table, &SliceOptions { view, up, height, ..SliceOptions::default() })));
     }
-    let named = |(name, svg): (&'static str, Result<String, _>)| {
-        Ok((name, svg.map_err(|source| PictureError::Draw { path: path.to_owned(), source })?))
-    };
+    let named = |(name, svg): (&'static str, Result<String, _>)| Ok((name, svg.in_file(path)?));
     drawn.into_iter().map(named).collect()
 }
 

@@ -2,16 +2,15 @@
 
 pub(crate) mod space;
 
-mod error;
 mod scene;
 mod viewer;
 use crate::Answer;
+use crate::error::{Result, anyhow};
 use crate::input::refuse;
-use crate::picture::{PictureError, PictureKind, save_picture};
+use crate::picture::{PictureKind, save_picture};
 use crate::place::{self, Point};
 use crate::sight::SightArgs;
 use crate::{input, output};
-use error::Error;
 use sightlines::geometry::{Point2, check_coordinate};
 use sightlines::pvs::Table;
 use sightlines::report::{DrawError, DrawOptions, Drawing, MAX_SIZE, MIN_SIZE, Surfaces, View, plan_drawing};
@@ -66,7 +65,7 @@ fn height(text: &str) -> Result<f64, String> {
     check_coordinate(height).map_err(|error| error.to_string())
 }
 
-pub(crate) fn run(args: &DrawArgs) -> Result<Answer, Error> {
+pub(crate) fn run(args: &DrawArgs) -> Result<Answer> {
     PictureKind::of(&args.output)?;
     let inputs: Vec<&Path> = std::iter::once(&args.table).chain(&args.scene).map(PathBuf::as_path).collect();
     output::check(&inputs, &[&args.output])?;
@@ -108,7 +107,7 @@ pub(crate) fn run(args: &DrawArgs) -> Result<Answer, Error> {
                 Ok((format!("{}: {}", method.name(), shown.counts()), drawing))
             });
             if has_panels {
-                let drawn = drawn.collect::<Result<Vec<_>, Error>>()?;
+                let drawn = drawn.collect::<Result<Vec<_>>>()?;
                 Drawing::side_by_side("What a viewer sees by each eye-to-cell method", &drawn)
             } else {
                 drawn.next().expect("there is one method at least")?.1.to_svg()
@@ -126,14 +125,14 @@ fn picture(
     shown: Option<&Shown<'_>>,
     surfaces: Option<&Surfaces>,
     legend: bool,
-) -> Result<Drawing, Error> {
+) -> Result<Drawing> {
     match table.dimension() {
         2 => plan(args, table, shown, legend),
         _ => space::draw(args, table, shown, surfaces, legend),
     }
 }
 
-fn plan(args: &DrawArgs, table: &Table, shown: Option<&Shown<'_>>, legend: bool) -> Result<Drawing, Error> {
+fn plan(args: &DrawArgs, table: &Table, shown: Option<&Shown<'_>>, legend: bool) -> Result<Drawing> {
     let view = match (args.cell, &args.eye) {
         (Some(id), _) => View::Cell(place::cell(id, table, &args.table)?),
         (None, Some(eye)) => View::Eye(eye.planar(table, &args.table)?),
@@ -145,6 +144,6 @@ fn plan(args: &DrawArgs, table: &Table, shown: Option<&Shown<'_>>, legend: bool)
 }
 
 /// What becomes of an error of a picture of a table.
-fn failed(path: &Path) -> impl FnOnce(DrawError) -> Error + '_ {
-    move |source| PictureError::Draw { path: path.to_owned(), source }.into()
+fn failed(path: &Path) -> impl FnOnce(DrawError) -> anyhow::Error + '_ {
+    move |source| anyhow!("{}: {source}", path.display())
 }

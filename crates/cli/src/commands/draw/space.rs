@@ -1,7 +1,8 @@
 //! Pictures of tables in space.
 
 use super::viewer::Shown;
-use super::{DrawArgs, Error, failed};
+use super::{DrawArgs, failed};
+use crate::error::{Result, anyhow};
 use crate::picture::{middle, up_of};
 use crate::place;
 use crate::view;
@@ -27,7 +28,7 @@ pub(super) fn draw(
     shown: Option<&Shown<'_>>,
     surfaces: Option<&Surfaces>,
     legend: bool,
-) -> Result<Drawing, Error> {
+) -> Result<Drawing> {
     let path = &args.table;
     let up = up(args, table);
     let view = match (args.cell, &args.eye) {
@@ -68,8 +69,12 @@ fn height_of(table: &Table, view: View<[f64; 3]>, up: Up) -> Option<f64> {
     }
 }
 
-fn nowhere(args: &DrawArgs, table: &Table, up: Up) -> Error {
+fn nowhere(args: &DrawArgs, table: &Table, up: Up) -> anyhow::Error {
     let low = table.cells().iter().map(|cell| cell.min[up.axis()]).fold(f64::INFINITY, f64::min);
     let high = table.cells().iter().map(|cell| cell.max[up.axis()]).fold(f64::NEG_INFINITY, f64::max);
-    Error::WhichHeight { path: args.table.clone(), low, high }
+    anyhow!(
+        "{}: a floor plan of a scene in space needs --height (cells reach from {low} to {high}), --eye or --cell; \
+             without, there is --isometric",
+        args.table.display()
+    )
 }

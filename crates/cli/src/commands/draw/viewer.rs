@@ -1,9 +1,10 @@
 //! What a viewer sees, for a picture.
 
-use super::{DrawArgs, Error};
+use super::DrawArgs;
+use crate::error::{Result, anyhow};
 use crate::output::count;
 use crate::place::Point;
-use crate::sight::{self, Sight, SightError};
+use crate::sight::{self, Sight, without_direction};
 use crate::tables::Cells;
 use crate::view::{Methods, lifted};
 use sightlines::eye_to_cell::{Budget, Method, VisibleSet};
@@ -12,14 +13,10 @@ use sightlines::{report, walkthrough};
 use std::sync::Arc;
 
 /// Refuses options of a view where there is no eye.
-pub(super) fn refuse_without_eye(args: &DrawArgs) -> Result<(), Error> {
+pub(super) fn refuse_without_eye(args: &DrawArgs) -> Result<()> {
     let sight::SightArgs { dir, lens, method, closed } = &args.sight;
     if args.eye.is_some() {
-        return if dir.is_none() && lens.has_angles() {
-            Err(SightError::LensWithoutDirection("--fov and --aspect").into())
-        } else {
-            Ok(())
-        };
+        return if dir.is_none() && lens.has_angles() { Err(without_direction("--fov and --aspect")) } else { Ok(()) };
     }
     let given = [
         ("--dir", dir.is_some()),
@@ -27,7 +24,10 @@ pub(super) fn refuse_without_eye(args: &DrawArgs) -> Result<(), Error> {
         ("--method", method.is_some()),
         ("--closed", !closed.is_empty()),
     ];
-    given.iter().find(|(_, is_given)| *is_given).map_or(Ok(()), |(option, _)| Err(Error::SightWithoutEye(option)))
+    given
+        .iter()
+        .find(|(_, is_given)| *is_given)
+        .map_or(Ok(()), |(option, _)| Err(anyhow!("{option} is of a viewer: give --eye")))
 }
 
 /// The viewer of a picture.
@@ -39,7 +39,7 @@ pub(super) struct Viewer {
 }
 
 impl Viewer {
-    pub(super) fn new(args: &DrawArgs, eye: &Point, table: &Arc<Table>) -> Result<Self, Error> {
+    pub(super) fn new(args: &DrawArgs, eye: &Point, table: &Arc<Table>) -> Result<Self> {
         let (path, mut looks) = (args.table.as_path(), walkthrough::Viewer::new(Arc::clone(table)));
         let cells = Arc::clone(looks.cells());
         let eye = eye.coordinates(cells.n_dimensions(), path)?;

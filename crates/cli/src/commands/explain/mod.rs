@@ -1,18 +1,17 @@
 //! `explain`: the line of sight between two cells, or why there is none.
 
-mod error;
 mod json;
 mod picture;
 mod report;
 mod text;
 
 use crate::Answer;
-use crate::error::InputError;
+use crate::error::{ErrorAbout, Result, anyhow};
 use crate::picture::{PictureKind, save_picture};
 use crate::place::Place;
+use crate::refuse::is_for;
 use crate::surfaces::SurfaceArgs;
 use crate::{input, output};
-use error::Error;
 use report::{Outside, Report};
 use sightlines::bake::GraphKind;
 use sightlines::bake::explain::{ExplainOptions, Explainer, explain};
@@ -60,7 +59,7 @@ pub(crate) struct ExplainArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &ExplainArgs) -> Result<Answer, Error> {
+pub(crate) fn run(args: &ExplainArgs) -> Result<Answer> {
     if let Some(out) = &args.draw {
         PictureKind::of(out)?;
         output::check(&[&args.table], &[out])?;
@@ -71,7 +70,7 @@ pub(crate) fn run(args: &ExplainArgs) -> Result<Answer, Error> {
         let pair = args.clusters(graph.n_cells())?;
         let explainer = Explainer::new(&graph).expect("portals join clusters");
         let explanation = explainer.explain(pair, &args.options(GraphKind::Convex));
-        return Ok(Report::new(None, pair, &explanation, args.proofs).print(args.json)?);
+        return Report::new(None, pair, &explanation, args.proofs).print(args.json);
     }
     let table = input::table(&args.table)?;
     let kind = GraphKind::of(&table);
@@ -81,20 +80,20 @@ pub(crate) fn run(args: &ExplainArgs) -> Result<Answer, Error> {
     let Some(pair) = pair else { return Ok(Answer::No) };
     let read = |path: &PathBuf| input::scene(path, &SurfaceArgs::default().options_with(table.info()));
     let file = args.scene.as_ref().map(read).transpose()?;
-    let explanation = explain(&table, file.as_ref().map(|file| &file.scene), pair, &args.options(kind))
-        .map_err(|source| Error::Explain { table: args.table.clone(), source })?;
+    let explanation =
+        explain(&table, file.as_ref().map(|file| &file.scene), pair, &args.options(kind)).in_file(&args.table)?;
     if table.frame().is_some() && (kind != GraphKind::Boxes || file.is_some()) {
         tracing::warn!("{}: places are along the axes of the table's frame", args.table.display());
     }
     if let Some(out) = &args.draw {
         save_picture(&picture::svg(&args.table, &table, pair, &explanation)?, out)?;
     }
-    Ok(Report::new(Some(&table), pair, &explanation, args.proofs).print(args.json)?)
+    Report::new(Some(&table), pair, &explanation, args.proofs).print(args.json)
 }
 
 impl ExplainArgs {
     /// Refuses options that mean nothing for such a file.
-    fn refuse_meaningless(&self, kind: GraphKind, found: &'static str) -> Result<(), Error> {
+    fn refuse_meaningless(&self, kind: GraphKind, found: &'static str) -> Result<()> {
         let given = [
             (
                 self.draw.is_some() && kind != GraphKind::Axial,
@@ -108,9 +107,7 @@ impl ExplainArgs {
             (self.scene.is_some(), "--scene", GraphKind::Boxes, "cells without portals"),
         ];
         match given.into_iter().find(|&(is_given, _, meant, _)| is_given && meant != kind) {
-            Some((_, option, _, meant)) => {
-                Err(InputError::Option { path: self.table.clone(), option: option.to_owned(), meant, found }.into())
-            }
+            Some((_, option, _, meant)) => Err(is_for(&self.table, option, meant, found)),
             None => Ok(()),
         }
     }
@@ -129,7 +126,7 @@ impl ExplainArgs {
     }
 
     /// The cells of the query; none, with a message, if a point is outside every cell.
-    fn pair(&self, table: &Table) -> Result<Option<[CellId; 2]>, Error> {
+    fn pair(&self, table: &Table) -> Result<Option<[CellId; 2]>> {
         let from = self.from.cells(table, &self.table)?;
         let to = self.to.cells(table, &self.table)?;
         for (place, cells) in [(&self.from, &from), (&self.to, &to)] {
@@ -142,11 +139,16 @@ impl ExplainArgs {
     }
 
     /// The clusters of the query, by their numbers.
-    fn clusters(&self, n_clusters: usize) -> Result<[CellId; 2], Error> {
+    fn clusters(&self, n_clusters: usize) -> Result<[CellId; 2]> {
         let cluster = |place: &Place| match *place {
             Place::Cell(id) if (id as usize) < n_clusters => Ok(CellId(id)),
-            Place::Cell(cluster) => Err(Error::NoSuchCluster { path: self.table.clone(), cluster, n_clusters }),
-            Place::Point(_) => Err(Error::NoPoints(self.table.clone())),
+            Place::Cell(cluster) => {
+                Err(anyhow!("{}: there is no cluster {cluster}: there are {n_clusters}", self.table.display()))
+            }
+            Place::Point(_) => Err(anyhow!(
+                "{}: a portal file does not say where its clusters are: name them by their numbers",
+                self.table.display()
+            )),
         };
         Ok([cluster(&self.from)?, cluster(&self.to)?])
     }

@@ -1,6 +1,7 @@
 //! The picture of an explanation: in a plan, and in space from above and as an isometric view.
 
-use crate::picture::{PictureError, draw_plan, middle, up_of};
+use crate::error::{Result, anyhow};
+use crate::picture::{draw_plan, middle, up_of};
 use sightlines::bake::GraphKind;
 use sightlines::bake::explain::{Answer, Explanation, Reason};
 use sightlines::cells::PortalId;
@@ -15,12 +16,7 @@ use std::path::Path;
 const SIZE: u32 = 1000;
 
 /// What A sees, B, and the line through the portals or what blocks it.
-pub(super) fn svg(
-    path: &Path,
-    table: &Table,
-    pair: [CellId; 2],
-    explanation: &Explanation,
-) -> Result<String, PictureError> {
+pub(super) fn svg(path: &Path, table: &Table, pair: [CellId; 2], explanation: &Explanation) -> Result<String> {
     match explanation.cells {
         GraphKind::Planar => draw_plan(path, table, &in_plan(pair, &explanation.answer)),
         _ => in_space(path, table, pair, explanation),
@@ -47,12 +43,7 @@ fn in_plan([a, b]: [CellId; 2], answer: &Answer) -> DrawOptions<'static> {
 
 /// The line through the portals or the walls that block all lines: from above at the height where the line begins, else of
 /// the middle of A, and as an isometric view that is cut above all that is shown.
-fn in_space(
-    path: &Path,
-    table: &Table,
-    [a, b]: [CellId; 2],
-    explanation: &Explanation,
-) -> Result<String, PictureError> {
+fn in_space(path: &Path, table: &Table, [a, b]: [CellId; 2], explanation: &Explanation) -> Result<String> {
     let up = up_of(table);
     let (line, portals): (_, &[PortalId]) = match &explanation.answer {
         Answer::Visible(line, _) => (line.ends, &line.portals),
@@ -67,7 +58,7 @@ fn in_space(
         }
         _ => Vec::new(),
     };
-    let failed = |source| PictureError::Draw { path: path.to_owned(), source };
+    let failed = |source| anyhow!("{}: {source}", path.display());
     let view = View::Cell(a);
     let options = SliceOptions {
         view,

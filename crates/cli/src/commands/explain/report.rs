@@ -1,7 +1,7 @@
 //! An explanation of a pair of cells: the pair, what the table lists, and the answer. [`json`](super::json) and [`text`](super::text) write it.
 
 use crate::Answer;
-use crate::error::OutputError;
+use crate::error::Result;
 use crate::output;
 use crate::place::Place;
 use serde::Serialize;
@@ -31,7 +31,7 @@ impl<'a> Report<'a> {
     }
 
     /// Prints the report. The answer is that of the engine, else that of the table, and yes without one.
-    pub(super) fn print(&self, json: bool) -> Result<Answer, OutputError> {
+    pub(super) fn print(&self, json: bool) -> Result<Answer> {
         output::print(json, self)?;
         let verdict = self.explanation.answer.verdict();
         // A table may hide what portals let through, past walls that are no borders of cells.

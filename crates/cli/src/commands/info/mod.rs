@@ -7,9 +7,8 @@ mod scene;
 mod wad;
 
 use crate::Answer;
-use crate::error::InputError;
+use crate::error::Result;
 use crate::facts::{DigestFacts, DoorFacts, Facts, FrameFacts, Source, StabFacts, write_doors};
-use crate::file_error::{FileError, from_file_error};
 use crate::input;
 use crate::output::{self, bytes, count};
 use crate::plans::PlanArgs;
@@ -20,16 +19,6 @@ use sightlines::pvs::{ObjectId, Table};
 use sightlines::report::Summary;
 use std::fmt;
 use std::path::{Path, PathBuf};
-
-/// Why `info` fails; exit code 2.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum Error {
-    /// A file cannot be read, used or written.
-    #[error(transparent)]
-    File(FileError),
-}
-
-from_file_error!(Error);
 
 /// Arguments of `info`.
 #[derive(Debug, clap::Args)]
@@ -50,7 +39,7 @@ pub(crate) struct InfoArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &InfoArgs) -> Result<Answer, Error> {
+pub(crate) fn run(args: &InfoArgs) -> Result<Answer> {
     let path = &args.file;
     let kind = input::kind_of(path)?;
     if kind.is_some_and(|kind| kind != InputKind::Scene) {
@@ -73,7 +62,7 @@ pub(crate) fn run(args: &InfoArgs) -> Result<Answer, Error> {
         _ => {
             let expected =
                 "a table nor a WAD nor a GeoJSON or DXF plan nor a GLB, glTF or OBJ nor a Quake map or portal file";
-            return Err(InputError::Kind { path: path.clone(), expected }.into());
+            return Err(input::neither(path, expected));
         }
     }
     Ok(Answer::Yes)

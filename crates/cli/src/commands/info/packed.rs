@@ -1,7 +1,7 @@
 //! What a packed table holds, without unpacking it.
 
-use super::{Error, Object, as_map, write_sources};
-use crate::error::InputError;
+use super::{Object, as_map, write_sources};
+use crate::error::{Result, anyhow};
 use crate::facts::{DigestFacts, DoorFacts, FrameFacts, Source, write_doors};
 use crate::output::{bytes, percent};
 use crate::tables::{self, Class};
@@ -89,9 +89,9 @@ const PARTS: [(&str, &str); 26] = [
 ];
 
 impl PackedInfo {
-    pub(super) fn read(path: &Path, with_objects: bool) -> Result<Self, Error> {
+    pub(super) fn read(path: &Path, with_objects: bool) -> Result<Self> {
         let packed = tables::packed(path, if with_objects { CACHE } else { 0 })?;
-        let failed = |source| Error::from(InputError::Packed { path: path.to_owned(), source });
+        let failed = |source| anyhow!("{}: {source}", path.display());
         let (mut n_objects_with_source, mut objects) = (0, Vec::new());
         for id in (0..packed.n_objects() as u32).map(ObjectId) {
             let source = packed.source_of(id).map_err(failed)?.map(Source::from);
@@ -105,7 +105,7 @@ impl PackedInfo {
             let what = PARTS.iter().find(|(known, _)| *known == name).map_or("unknown", |(_, what)| what);
             Part { name, what, n_bytes: part.bytes, resident: part.resident }
         };
-        let open = |source| InputError::Open { path: path.to_owned(), source };
+        let open = |source| anyhow!("{}: {source}", path.display());
         Ok(Self {
             file: path.display().to_string(),
             kind: "packed",

@@ -1,6 +1,6 @@
 //! What a floor plan holds.
 
-use super::Error;
+use crate::error::Result;
 use crate::plans;
 use serde::Serialize;
 use sightlines::formats::{PlanReadOptions, detect_file};
@@ -30,7 +30,7 @@ pub(super) struct PlanInfo {
 }
 
 impl PlanInfo {
-    pub(super) fn read(path: &Path, options: &PlanReadOptions) -> Result<Self, Error> {
+    pub(super) fn read(path: &Path, options: &PlanReadOptions) -> Result<Self> {
         let file = plans::read(path, options)?;
         let plan = file.plan;
         let n_walls = plan.lines().iter().filter(|line| line.opaque).count();

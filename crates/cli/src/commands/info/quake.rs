@@ -1,6 +1,6 @@
 //! What a Quake map or its portal file holds.
 
-use super::Error;
+use crate::error::Result;
 use crate::output::{count, percent};
 use serde::Serialize;
 use sightlines::formats::Bsp;
@@ -28,7 +28,7 @@ pub(super) struct PrtInfo {
 }
 
 impl PrtInfo {
-    pub(super) fn read(path: &Path) -> Result<Self, Error> {
+    pub(super) fn read(path: &Path) -> Result<Self> {
         let prt = read_prt(path)?;
         let mut is_closed = vec![true; prt.n_clusters() as usize];
         prt.portals().flat_map(|portal| portal.clusters).for_each(|cluster| is_closed[cluster as usize] = false);
@@ -98,7 +98,7 @@ pub(super) struct BspInfo {
 }
 
 impl BspInfo {
-    pub(super) fn read(path: &Path) -> Result<Self, Error> {
+    pub(super) fn read(path: &Path) -> Result<Self> {
         let bsp = read_bsp(path)?;
         let has_clusters = bsp.format().has_clusters();
         let mut info = Self {

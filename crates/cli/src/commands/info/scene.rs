@@ -1,6 +1,6 @@
 //! What a scene in space holds.
 
-use super::Error;
+use crate::error::Result;
 use crate::facts::Stated;
 use crate::input;
 use crate::output::count;
@@ -62,7 +62,7 @@ fn movers(scene: &Scene) -> Vec<Mover> {
 }
 
 impl SceneInfo {
-    pub(super) fn read(path: &Path, options: &SceneReadOptions) -> Result<Self, Error> {
+    pub(super) fn read(path: &Path, options: &SceneReadOptions) -> Result<Self> {
         let file = input::scene(path, options)?;
         let bounds = file.scene.bounds();
         Ok(Self {

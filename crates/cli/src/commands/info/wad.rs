@@ -1,6 +1,6 @@
 //! What a WAD holds.
 
-use super::Error;
+use crate::error::Result;
 use crate::output::{count, percent};
 use serde::Serialize;
 use sightlines::formats::doom::{DoomMap, MapLumps, list_maps};
@@ -36,7 +36,7 @@ struct MapInfo {
 }
 
 impl WadInfo {
-    pub(super) fn read(path: &Path) -> Result<Self, Error> {
+    pub(super) fn read(path: &Path) -> Result<Self> {
         let wad = Wad::read(path)?;
         let kind = if wad.kind() == WadKind::Game { "iwad" } else { "pwad" };
         let maps = list_maps(&wad).iter().map(|lumps| map(&wad, lumps)).collect();

@@ -3,12 +3,11 @@
 mod space;
 
 use crate::Answer;
-use crate::error::InputError;
-use crate::file_error::{FileError, from_file_error};
+use crate::error::{ErrorAbout, Result, anyhow, bail};
 use crate::input::{self, refuse};
 use crate::output::{self, bytes, count};
-use crate::picture::{PictureError, PictureKind, save_picture};
-use crate::place::{LookupError, Point};
+use crate::picture::{PictureKind, save_picture};
+use crate::place::Point;
 use crate::plans::PlanArgs;
 use crate::surfaces::SurfaceArgs;
 use serde::Serialize;
@@ -18,49 +17,10 @@ use sightlines::formats::points::read_points;
 use sightlines::formats::scene::SceneReadOptions;
 use sightlines::formats::{Input, InputKind};
 use sightlines::geometry::{Point2, Segment2};
-use sightlines::isovist::{
-    Boundary, EyeError, Isovist, LimitError, Limits, Measures, MeshError, Sector, Viewer, WallMesh,
-};
+use sightlines::isovist::{Boundary, Isovist, LimitError, Limits, Measures, Sector, Viewer, WallMesh};
 use sightlines::report::{Area, AreaEdge, MAX_SIZE, MIN_SIZE, areas_csv, areas_geojson, areas_svg};
 use std::fmt;
 use std::path::{Path, PathBuf};
-
-/// Why `isovist` fails; exit code 2.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum Error {
-    /// A file cannot be read, used or written.
-    #[error(transparent)]
-    File(FileError),
-    /// A picture cannot be drawn or written.
-    #[error(transparent)]
-    Picture(PictureError),
-    /// A point with the wrong number of coordinates.
-    #[error(transparent)]
-    Lookup(LookupError),
-    /// A plan that blocks no sight.
-    #[error("{}: {source}", path.display())]
-    Mesh { path: PathBuf, source: MeshError },
-    /// A point at which nothing can be seen.
-    #[error("{from}: {source}")]
-    Eye { from: String, source: EyeError },
-    /// Limits that are none.
-    #[error("{option}: {source}")]
-    Limits { option: &'static str, source: LimitError },
-    /// An angle without a direction, or a direction without an angle.
-    #[error("--dir and --fov go together: a direction, and how wide the view around it is")]
-    Sector,
-    /// The isovist of a scene in space as something else than a table.
-    #[error("{}: isovists of scenes in space are written as CSV; give a name that ends in .csv", .0.display())]
-    SpaceKind(PathBuf),
-    /// A table of another scene.
-    #[error("{} is not of {}: {difference}", table.display(), scene.display())]
-    Unlike { table: PathBuf, scene: PathBuf, difference: String },
-    /// A file whose name has no extension of a result.
-    #[error("{}: the name of the result ends in .geojson, .json, .csv, .svg or .png", .0.display())]
-    Kind(PathBuf),
-}
-
-from_file_error!(Error);
 
 /// Arguments of `isovist`.
 #[derive(Debug, clap::Args)]
@@ -125,15 +85,15 @@ enum Kind {
 }
 
 impl Kind {
-    fn of(path: &Path) -> Result<Self, Error> {
+    fn of(path: &Path) -> Result<Self> {
         match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
             Some("geojson" | "json") => Ok(Self::GeoJson),
             Some("csv") => Ok(Self::Csv),
             Some("svg" | "png") => {
-                PictureKind::of(path).map_err(Error::Picture)?;
+                PictureKind::of(path)?;
                 Ok(Self::Picture)
             }
-            _ => Err(Error::Kind(path.to_owned())),
+            _ => bail!("{}: the name of the result ends in .geojson, .json, .csv, .svg or .png", path.display()),
         }
     }
 }
@@ -145,7 +105,7 @@ struct Eye {
     from: String,
 }
 
-pub(crate) fn run(args: &IsovistArgs) -> Result<Answer, Error> {
+pub(crate) fn run(args: &IsovistArgs) -> Result<Answer> {
     let kind = Kind::of(&args.output)?;
     let inputs = std::iter::once(&args.plan).chain(&args.points).chain(&args.table).map(PathBuf::as_path);
     output::check(&inputs.collect::<Vec<_>>(), &[&args.output])?;
@@ -156,7 +116,7 @@ pub(crate) fn run(args: &IsovistArgs) -> Result<Answer, Error> {
     refuse(&args.plan, &args.surfaces.given(), "scenes in space", "a plan")?;
     let limits = limits(args)?;
     let (plan, crs) = plan(args)?;
-    let mesh = WallMesh::new(&plan).map_err(|source| Error::Mesh { path: args.plan.clone(), source })?;
+    let mesh = WallMesh::new(&plan).in_file(&args.plan)?;
     let areas = areas(&mesh, &eyes(args)?, &limits)?;
     let names = Measures::default().named().map(|(name, _)| name);
     let n_bytes = match kind {
@@ -165,7 +125,7 @@ pub(crate) fn run(args: &IsovistArgs) -> Result<Answer, Error> {
         Kind::Picture => {
             let walls: Vec<Segment2> = walls(&plan).collect();
             let svg = areas_svg(&areas, &walls, args.size, &legend(&areas));
-            save_picture(&svg, &args.output).map_err(Error::Picture)?;
+            save_picture(&svg, &args.output)?;
             std::fs::metadata(&args.output).map_or(svg.len() as u64, |found| found.len())
         }
     };
@@ -182,7 +142,7 @@ pub(crate) fn run(args: &IsovistArgs) -> Result<Answer, Error> {
     Ok(Answer::Yes)
 }
 
-fn save(path: &Path, text: &str) -> Result<u64, Error> {
+fn save(path: &Path, text: &str) -> Result<u64> {
     output::save(path, text.as_bytes())?;
     Ok(text.len() as u64)
 }
@@ -199,22 +159,22 @@ fn legend(areas: &[Area]) -> String {
 }
 
 /// The plan, and the member `crs` of its file.
-fn plan(args: &IsovistArgs) -> Result<(Plan, Option<String>), Error> {
+fn plan(args: &IsovistArgs) -> Result<(Plan, Option<String>)> {
     let (path, map) = (&args.plan, args.map.as_deref());
     match input::read(path, map, &SceneReadOptions::default(), &args.plans.options(path)?)? {
         Input::Plan(file) => Ok((file.plan, file.crs)),
         other => match input::bakeable(path, other, map, None)? {
             Bakeable::Plan { plan, .. } => Ok((plan, None)),
-            _ => Err(InputError::Kind { path: path.clone(), expected: "a plan nor a WAD nor a scene in space" }.into()),
+            _ => Err(input::neither(path, "a plan nor a WAD nor a scene in space")),
         },
     }
 }
 
-fn limits(args: &IsovistArgs) -> Result<Limits, Error> {
+fn limits(args: &IsovistArgs) -> Result<Limits> {
     let sector = match (&args.dir, args.fov) {
         (Some(direction), Some(angle)) => Some(Sector { direction: planar(direction, args)?, angle }),
         (None, None) => None,
-        _ => return Err(Error::Sector),
+        _ => return Err(anyhow!("--dir and --fov go together: a direction, and how wide the view around it is")),
     };
     let limits = Limits { radius: args.radius, sector, deviation: None };
     // Checked before the plan is read, with a view that has nothing in it.
@@ -224,18 +184,18 @@ fn limits(args: &IsovistArgs) -> Result<Limits, Error> {
             LimitError::Direction(_) => "--dir",
             _ => "--radius",
         };
-        Error::Limits { option, source }
+        anyhow!("{option}: {source}")
     };
     Isovist::default().limited(&limits).map_err(of)?;
     Ok(limits)
 }
 
-fn planar(point: &Point, args: &IsovistArgs) -> Result<Point2, Error> {
-    let coordinates = point.coordinates(2, &args.plan).map_err(Error::Lookup)?;
+fn planar(point: &Point, args: &IsovistArgs) -> Result<Point2> {
+    let coordinates = point.coordinates(2, &args.plan)?;
     Ok(Point2::new(coordinates[0], coordinates[1]))
 }
 
-fn eyes(args: &IsovistArgs) -> Result<Vec<Eye>, Error> {
+fn eyes(args: &IsovistArgs) -> Result<Vec<Eye>> {
     let mut eyes = Vec::new();
     for point in &args.at {
         eyes.push(Eye { at: planar(point, args)?, name: None, from: "--at".to_owned() });
@@ -251,14 +211,14 @@ fn eyes(args: &IsovistArgs) -> Result<Vec<Eye>, Error> {
     Ok(eyes)
 }
 
-fn areas(mesh: &WallMesh, eyes: &[Eye], limits: &Limits) -> Result<Vec<Area>, Error> {
+fn areas(mesh: &WallMesh, eyes: &[Eye], limits: &Limits) -> Result<Vec<Area>> {
     let mut viewer = Viewer::new(mesh);
     let mut isovist = Isovist::default();
     let is_limited = *limits != Limits::default();
     let mut area = |eye: &Eye| {
-        viewer.look(eye.at, &mut isovist).map_err(|source| Error::Eye { from: eye.from.clone(), source })?;
+        viewer.look(eye.at, &mut isovist).map_err(|source| anyhow!("{from}: {source}", from = eye.from))?;
         if is_limited {
-            isovist = isovist.limited(limits).map_err(|source| Error::Limits { option: "--radius", source })?;
+            isovist = isovist.limited(limits).map_err(|source| anyhow!("{option}: {source}", option = "--radius"))?;
         }
         let measures = isovist.measures();
         let edge = |boundary: &Boundary| match *boundary {

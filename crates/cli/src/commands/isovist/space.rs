@@ -1,7 +1,8 @@
 //! `isovist` of a scene in space: volumes, and how much is seen of each object.
 
-use super::{Error, IsovistArgs, Kind};
+use super::{IsovistArgs, Kind};
 use crate::Answer;
+use crate::error::{Result, bail};
 use crate::input::{self, refuse};
 use crate::output::{self, bytes, count};
 use crate::same_scene::difference;
@@ -16,7 +17,7 @@ struct Seen {
     shares: Vec<Estimate>,
 }
 
-pub(super) fn run(args: &IsovistArgs, kind: Kind) -> Result<Answer, Error> {
+pub(super) fn run(args: &IsovistArgs, kind: Kind) -> Result<Answer> {
     let path = &args.plan;
     let given = [
         ("--points", args.points.is_some()),
@@ -26,19 +27,22 @@ pub(super) fn run(args: &IsovistArgs, kind: Kind) -> Result<Answer, Error> {
     ];
     refuse(path, &given, "plans", "a scene in space")?;
     if kind != Kind::Csv {
-        return Err(Error::SpaceKind(args.output.clone()));
+        bail!(
+            "{}: isovists of scenes in space are written as CSV; give a name that ends in .csv",
+            args.output.display()
+        );
     }
     let file = input::scene(path, &args.surfaces.options())?;
     let table = args.table.as_ref().map(|path| input::table(path)).transpose()?;
     if let (Some(table), Some(table_path)) = (&table, &args.table)
         && let Some(difference) = difference(table, &file.scene)
     {
-        return Err(Error::Unlike { table: table_path.clone(), scene: path.clone(), difference });
+        bail!("{} is not of {}: {difference}", table_path.display(), path.display());
     }
     let around = Surroundings::new(&file.scene);
     let mut all = Vec::new();
     for (seed, point) in (1u64..).zip(&args.at) {
-        let eye = point.coordinates(3, path).map_err(Error::Lookup)?;
+        let eye = point.coordinates(3, path)?;
         let eye = [eye[0], eye[1], eye[2]];
         let volume = around.volume(eye, args.rays, seed);
         let shares = around.visible_shares(eye, table.as_ref(), (args.rays / 16).max(64), seed);

@@ -2,7 +2,8 @@
 
 use super::outcome::{Merged, Missing};
 use super::task::{Made, Task};
-use super::{Error, absolute, open};
+use super::{absolute, open, stopped};
+use crate::error::Result;
 use crate::kept::{Identity, JobSlot, Keeping};
 use crate::output;
 use crate::{Answer, interrupt};
@@ -48,7 +49,7 @@ pub(super) fn merge(
     threads: Option<usize>,
     show_progress: bool,
     verbose: bool,
-) -> Result<Progress, Error> {
+) -> Result<Progress> {
     let adjust = |task: Task| task.with_threads(threads).with_output(output);
     through((folder, Role::Merge, Duration::ZERO), adjust, show_progress, verbose)
 }
@@ -61,7 +62,7 @@ pub(super) fn through(
     adjust: impl FnOnce(Task) -> Task,
     show_progress: bool,
     verbose: bool,
-) -> Result<Progress, Error> {
+) -> Result<Progress> {
     let job = open(folder)?;
     let task = adjust(Task::of(&job)?);
     let slot = JobSlot::default();
@@ -72,7 +73,7 @@ pub(super) fn through(
         Err(error) => error,
     };
     if interrupt::requested() {
-        return Err(interrupt::memory().map_or(Error::Interrupted, Error::Memory));
+        return Err(stopped());
     }
     match slot.store().and_then(|store| Some((store.outcome()?, store.job()))) {
         Some((Outcome::Planned { phase, .. }, job)) => Ok(Progress::Planned(job, phase)),
@@ -85,14 +86,14 @@ pub(super) fn through(
     }
 }
 
-pub(crate) fn run(args: &MergeArgs, show_progress: bool, verbose: bool) -> Result<Answer, Error> {
+pub(crate) fn run(args: &MergeArgs, show_progress: bool, verbose: bool) -> Result<Answer> {
     let (folder, out) = (absolute(&args.job)?, args.output.as_deref().map(absolute).transpose()?);
     let found = merge(&folder, out.as_deref(), args.threads, show_progress, verbose)?;
     report(&args.job, found, args.json)
 }
 
 /// Prints how far a merge came.
-pub(super) fn report(job: &Path, found: Progress, json: bool) -> Result<Answer, Error> {
+pub(super) fn report(job: &Path, found: Progress, json: bool) -> Result<Answer> {
     let name = job.display().to_string();
     let (merged, answer) = match found {
         Progress::Written(made, out) => (Merged::written(name, &out, &made), Answer::Yes),

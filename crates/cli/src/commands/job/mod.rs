@@ -1,7 +1,6 @@
 //! `job`: a build that processes share, on one machine or on many.
 
 mod engine;
-mod error;
 mod merge;
 mod numbers;
 mod outcome;
@@ -12,9 +11,9 @@ mod submit;
 mod task;
 mod work;
 
-pub(crate) use error::Error;
-
 use crate::Answer;
+use crate::error::{ErrorAbout, Result, anyhow};
+use crate::interrupt;
 use clap::Subcommand;
 use sightlines::checkpoint::Job;
 use std::path::{Path, PathBuf};
@@ -47,7 +46,7 @@ enum JobCommand {
     Status(status::StatusArgs),
 }
 
-pub(crate) fn run(args: &JobArgs, show_progress: bool, verbose: bool) -> Result<Answer, Error> {
+pub(crate) fn run(args: &JobArgs, show_progress: bool, verbose: bool) -> Result<Answer> {
     match &args.what {
         JobCommand::Plan(args) => plan::run(args, show_progress),
         JobCommand::Shard(args) => shard::run(args, show_progress),
@@ -58,12 +57,27 @@ pub(crate) fn run(args: &JobArgs, show_progress: bool, verbose: bool) -> Result<
     }
 }
 
+/// The command was interrupted.
+fn interrupted() -> anyhow::Error {
+    anyhow!("interrupted; parts that are written stay: the same command goes on from there")
+}
+
+/// The same, or that it used too much memory.
+fn stopped() -> anyhow::Error {
+    match interrupt::memory() {
+        Some(why) => anyhow!(
+            "stopped: {why}; what is done stays: the same command with a larger --memory or fewer --threads goes on from there"
+        ),
+        None => interrupted(),
+    }
+}
+
 /// Opens a job that this version of the program has planned.
-fn open(folder: &Path) -> Result<Job, Error> {
+fn open(folder: &Path) -> Result<Job> {
     Ok(Job::open(folder, crate::kept::PROGRAM)?)
 }
 
 /// The path of a folder that does not depend on where the program runs.
-fn absolute(path: &Path) -> Result<PathBuf, Error> {
-    std::path::absolute(path).map_err(|source| Error::Folder { path: path.to_owned(), source })
+fn absolute(path: &Path) -> Result<PathBuf> {
+    std::path::absolute(path).in_file(path)
 }

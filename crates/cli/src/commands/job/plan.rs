@@ -1,9 +1,10 @@
 //! `job plan`: which shards a build has.
 
+use super::absolute;
 use super::outcome::Planned;
 use super::task::Task;
-use super::{Error, absolute};
 use crate::Answer;
+use crate::error::Result;
 use crate::kept::{Identity, JobSlot, Keeping, PROGRAM};
 use crate::output;
 use sightlines::checkpoint::{Job, JobStore, Manifest, Outcome, Role};
@@ -40,7 +41,7 @@ fn shards(text: &str) -> Result<usize, String> {
     }
 }
 
-pub(crate) fn run(args: &PlanArgs, show_progress: bool) -> Result<Answer, Error> {
+pub(crate) fn run(args: &PlanArgs, show_progress: bool) -> Result<Answer> {
     let task = Task::parse(&args.command)?;
     let here = absolute(std::path::Path::new("."))?;
     let folder = absolute(&args.output)?;

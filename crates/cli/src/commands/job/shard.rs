@@ -3,7 +3,8 @@
 use super::numbers::Run;
 use super::outcome::{ShardDone, ShardsDone, ranges};
 use super::task::Task;
-use super::{Error, absolute, open};
+use super::{absolute, open, stopped};
+use crate::error::{Result, anyhow};
 use crate::kept::{Identity, JobSlot, Keeping};
 use crate::memory::MemoryArgs;
 use crate::output;
@@ -35,7 +36,7 @@ pub(crate) struct ShardArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &ShardArgs, show_progress: bool) -> Result<Answer, Error> {
+pub(crate) fn run(args: &ShardArgs, show_progress: bool) -> Result<Answer> {
     let start = Instant::now();
     let job = open(&absolute(&args.job)?)?;
     let mut shards = Vec::new();
@@ -66,7 +67,7 @@ pub(crate) fn run(args: &ShardArgs, show_progress: bool) -> Result<Answer, Error
 }
 
 /// Computes shards of one phase.
-fn compute(job: &Job, name: &Path, shards: Vec<usize>, args: &ShardArgs, show_progress: bool) -> Result<(), Error> {
+fn compute(job: &Job, name: &Path, shards: Vec<usize>, args: &ShardArgs, show_progress: bool) -> Result<()> {
     let task = Task::of(job)?.with_threads(Some(args.threads)).with_memory(args.memory);
     let slot = JobSlot::default();
     let after = Duration::from_secs(args.save_after);
@@ -80,17 +81,21 @@ fn compute(job: &Job, name: &Path, shards: Vec<usize>, args: &ShardArgs, show_pr
             let missing: Vec<usize> = missing.iter().map(|(shard, _)| *shard).collect();
             let phase = &job.manifest().phases[phase].name;
             let verb = if shards.len() == 1 { "needs" } else { "need" };
-            Err(Error::Command(format!(
+            Err(anyhow!(
                 "{}: {} {verb} all of phase {phase} first: {} to be done",
                 name.display(),
                 ranges(&shards),
                 ranges(&missing)
-            )))
+            ))
         }
-        _ if interrupt::requested() => Err(interrupt::memory().map_or(Error::Interrupted, Error::Memory)),
+        _ if interrupt::requested() => Err(stopped()),
         _ => {
             made?;
-            Err(Error::NeverBegun { path: name.to_owned(), shard: shards[0] })
+            Err(anyhow!(
+                "{}: the bake came to its end without shard {shard}; plan the job anew",
+                name.display(),
+                shard = shards[0]
+            ))
         }
     }
 }

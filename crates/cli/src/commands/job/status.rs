@@ -1,8 +1,9 @@
 //! `job status`: what is done.
 
 use super::outcome::{Missing, PhaseFacts, PhaseStatus, Status};
-use super::{Error, absolute, open};
+use super::{absolute, open};
 use crate::Answer;
+use crate::error::Result;
 use crate::output;
 use sightlines::checkpoint::{Job, ShardState};
 use std::path::PathBuf;
@@ -18,19 +19,18 @@ pub(crate) struct StatusArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &StatusArgs) -> Result<Answer, Error> {
+pub(crate) fn run(args: &StatusArgs) -> Result<Answer> {
     let job = open(&absolute(&args.job)?)?;
     let manifest = job.manifest();
-    let phases = (0..manifest.phases.len()).map(|phase| of_phase(&job, phase)).collect::<Result<Vec<_>, Error>>()?;
+    let phases = (0..manifest.phases.len()).map(|phase| of_phase(&job, phase)).collect::<Result<Vec<_>>>()?;
     let status = Status { job: args.job.display().to_string(), command: manifest.command.clone(), phases };
     output::print(args.json, &status)?;
     Ok(Answer::Yes)
 }
 
-fn of_phase(job: &Job, phase: usize) -> Result<PhaseStatus, Error> {
+fn of_phase(job: &Job, phase: usize) -> Result<PhaseStatus> {
     let shards = job.manifest().shards_of(phase);
-    let states: Vec<(usize, ShardState)> =
-        shards.map(|shard| Ok((shard, job.state(shard)?))).collect::<Result<_, Error>>()?;
+    let states: Vec<(usize, ShardState)> = shards.map(|shard| Ok((shard, job.state(shard)?))).collect::<Result<_>>()?;
     let (mut all, mut done) = (0.0, 0.0);
     for ((_, state), plan) in states.iter().zip(&job.manifest().phases[phase].shards) {
         all += plan.cost;

@@ -4,8 +4,10 @@ use super::engine::{Command, Did, Engine, Local, Round, Slurm};
 use super::merge::{Progress, merge, report};
 use super::outcome::{Missing, Submitted};
 use super::task::Task;
-use super::{Error, absolute, open};
+use super::{absolute, open};
 use crate::Answer;
+use crate::commands::job::interrupted;
+use crate::error::{ErrorAbout, Result, bail};
 use crate::interrupt;
 use crate::named::one_of;
 use crate::output;
@@ -76,15 +78,15 @@ pub(crate) struct SubmitArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &SubmitArgs, show_progress: bool, verbose: bool) -> Result<Answer, Error> {
+pub(crate) fn run(args: &SubmitArgs, show_progress: bool, verbose: bool) -> Result<Answer> {
     let (folder, out) = (absolute(&args.job)?, args.output.as_deref().map(absolute).transpose()?);
-    let program = std::env::current_exe().map_err(|source| Error::Folder { path: folder.clone(), source })?;
+    let program = std::env::current_exe().in_file(&folder)?;
     let job = open(&folder)?;
     let (options, per_task) = (&args.sbatch[..], args.shards_per_task as usize);
     let slurm = Slurm { program: &program, options, per_task, output: out.as_deref(), show_progress };
     if args.dry_run {
         let Some(phase) = job.manifest().phases.len().checked_sub(1) else {
-            return Err(Error::Command(format!("{}: the job has no shards", args.job.display())));
+            bail!("{}: the job has no shards", args.job.display());
         };
         let shards: Vec<usize> = job.manifest().shards_of(phase).collect();
         let files = slurm.write(&Round { job: &job, phase, shards: &shards }, 0)?;
@@ -117,7 +119,7 @@ pub(crate) fn run(args: &SubmitArgs, show_progress: bool, verbose: bool) -> Resu
             }
         }
         if interrupt::requested() {
-            return Err(Error::Interrupted);
+            return Err(interrupted());
         }
         if undone(&open(&folder)?)?.is_some() {
             continue;
@@ -155,7 +157,7 @@ impl Tries {
 }
 
 /// The first phase with shards that have no sound part, and these shards.
-fn undone(job: &Job) -> Result<Option<(usize, Vec<usize>)>, Error> {
+fn undone(job: &Job) -> Result<Option<(usize, Vec<usize>)>> {
     for phase in 0..job.manifest().phases.len() {
         let mut shards = Vec::new();
         for shard in job.manifest().shards_of(phase) {
@@ -170,7 +172,7 @@ fn undone(job: &Job) -> Result<Option<(usize, Vec<usize>)>, Error> {
     Ok(None)
 }
 
-fn states(job: &Job, shards: &[usize]) -> Result<Vec<(usize, ShardState)>, Error> {
+fn states(job: &Job, shards: &[usize]) -> Result<Vec<(usize, ShardState)>> {
     shards.iter().map(|&shard| Ok((shard, job.state(shard)?))).collect()
 }
 

@@ -1,9 +1,9 @@
 //! The command that a job shares.
 
-use super::Error;
 use crate::commands::tiles::TilesCommand;
 use crate::commands::{build, reject, tiles, vis};
-use crate::kept::{Keeping, KeptError};
+use crate::error::{ErrorAbout, Result, anyhow, bail};
+use crate::kept::Keeping;
 use crate::memory::MemoryArgs;
 use clap::{Parser, Subcommand};
 use sightlines::checkpoint::Job;
@@ -66,14 +66,14 @@ impl fmt::Display for Made {
 
 impl Task {
     /// The command in words of a command line behind the name of the program. Refuses what cannot be shared.
-    pub(super) fn parse(words: &[String]) -> Result<Self, Error> {
+    pub(super) fn parse(words: &[String]) -> Result<Self> {
         let name = words.first().map_or("", String::as_str);
         if !NAMES.contains(&name) {
-            return Err(Error::Command(format!("{name}: only build, vis, reject and tiles build can be shared")));
+            bail!("{name}: only build, vis, reject and tiles build can be shared");
         }
         let line = std::iter::once("sightlines").chain(words.iter().map(String::as_str));
-        let parsed = Line::try_parse_from(line).map_err(|error| Error::Command(plain(&error)))?;
-        let refuse = |option: &str| Err(Error::Command(format!("{option} means nothing for a job")));
+        let parsed = Line::try_parse_from(line).map_err(|error| anyhow!("{}", plain(&error)))?;
+        let refuse = |option: &str| Err(anyhow!("{option} means nothing for a job"));
         match parsed.command {
             Command::Build(args) if args.time_limit.is_some() => refuse("--time-limit"),
             Command::Build(args) if args.resume.is_given() => refuse("--resume or --state"),
@@ -83,7 +83,7 @@ impl Task {
             Command::Reject(args) => Ok(Self::Reject(args)),
             Command::Tiles(args) => match args.what {
                 TilesCommand::Build(args) => Ok(Self::Tiles(args)),
-                _ => Err(Error::Command("of tiles, only tiles build can be shared".to_owned())),
+                _ => Err(anyhow!("of tiles, only tiles build can be shared")),
             },
             Command::Vis(args) => Ok(Self::Vis(args)),
         }
@@ -92,20 +92,20 @@ impl Task {
     /// The command of a job. From here on the program runs in the folder where the job was planned.
     ///
     /// Refuses files that have changed since.
-    pub(super) fn of(job: &Job) -> Result<Self, Error> {
+    pub(super) fn of(job: &Job) -> Result<Self> {
         let manifest = job.manifest();
         let folder = PathBuf::from(&manifest.folder);
-        std::env::set_current_dir(&folder).map_err(|source| Error::Folder { path: folder, source })?;
+        std::env::set_current_dir(&folder).in_file(&folder)?;
         for input in &manifest.inputs {
             let path = Path::new(&input.path);
             let n_bytes = File::open(path).and_then(|file| file.metadata()).map(|found| found.len());
-            let n_bytes = n_bytes.map_err(|source| Error::Folder { path: path.to_owned(), source })?;
+            let n_bytes = n_bytes.in_file(path)?;
             let mut hasher = sightlines::checkpoint::KeyHasher::new("");
             let is_same =
                 n_bytes == input.n_bytes && hasher.file("", path).is_ok_and(|(_, key)| key.to_string() == input.key);
             if !is_same {
                 let job = job.folder().to_owned();
-                return Err(KeptError::OtherInput { path: path.to_owned(), job }.into());
+                bail!("{}: the file is not what it was when the job in {} was planned", path.display(), job.display());
             }
         }
         Self::parse(&manifest.command)
@@ -159,7 +159,7 @@ impl Task {
     }
 
     /// Does it, with units in a store.
-    pub(super) fn make(&self, keeping: Keeping<'_>, show_progress: bool, verbose: bool) -> Result<Made, Error> {
+    pub(super) fn make(&self, keeping: Keeping<'_>, show_progress: bool, verbose: bool) -> Result<Made> {
         Ok(match self {
             Self::Build(args) => Made::Build(Box::new(build::make(args, keeping, show_progress, verbose)?)),
             Self::Reject(args) => Made::Reject(reject::make(args, keeping, show_progress)?),

@@ -1,8 +1,9 @@
 //! `job work`: all of a job, together with other workers.
 
+use super::absolute;
 use super::merge::{report, through};
 use super::task::Task;
-use super::{Error, absolute};
+use crate::error::Result;
 use crate::memory::MemoryArgs;
 use crate::{Answer, interrupt};
 use sightlines::checkpoint::Role;
@@ -34,7 +35,7 @@ pub(crate) struct WorkArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &WorkArgs, verbose: bool) -> Result<Answer, Error> {
+pub(crate) fn run(args: &WorkArgs, verbose: bool) -> Result<Answer> {
     let (folder, out) = (absolute(&args.job)?, args.output.as_deref().map(absolute).transpose()?);
     let role = Role::Worker { n_workers: args.workers as usize, stop: interrupt::requested };
     let after = Duration::from_secs(args.save_after);

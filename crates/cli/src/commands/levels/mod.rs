@@ -3,14 +3,14 @@
 mod outcome;
 
 use crate::Answer;
-use crate::file_error::{FileError, from_file_error};
+use crate::error::{Result, anyhow};
 use crate::folder::NewFolder;
 use crate::input;
-use crate::kept::{Identity, Inputs, Interrupted, Keeping, Kept, KeptError, ResumeArgs};
-use crate::memory::{MemoryArgs, Needs, Size, TooLarge};
+use crate::kept::{Identity, Inputs, Keeping, Kept, ResumeArgs};
+use crate::memory::{MemoryArgs, Needs, Size};
 use crate::output;
 use crate::progress::Bar;
-use crate::simplification::{self, HowArgs, OutFormat, ReadScene, SimplificationError, read, written};
+use crate::simplification::{self, HowArgs, OutFormat, ReadScene, read, written};
 use outcome::Outcome;
 use sightlines::cells::Scene;
 use sightlines::formats::levels::{INDEX_NAME, LevelFile, LevelsIndex, write_levels_index};
@@ -24,28 +24,6 @@ use std::time::Instant;
 
 /// Rays that weigh faces for each level: they only choose what is collapsed first, and there are many levels.
 const N_RAYS: u64 = 1 << 12;
-
-/// Why `levels` fails; exit code 2.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum Error {
-    /// A file cannot be read, used or written.
-    #[error(transparent)]
-    File(FileError),
-    /// A scene that cannot be simplified.
-    #[error(transparent)]
-    Simplification(#[from] SimplificationError),
-    /// Results cannot be kept, or taken up.
-    #[error(transparent)]
-    Kept(#[from] KeptError),
-    /// There is no room for it in the memory that may be used.
-    #[error("{}: {source}; allow more", path.display())]
-    Memory { path: PathBuf, source: TooLarge },
-    /// The program was interrupted.
-    #[error("{0}")]
-    Interrupted(Interrupted),
-}
-
-from_file_error!(Error);
 
 /// Arguments of `levels`.
 #[derive(Debug, clap::Args)]
@@ -86,7 +64,7 @@ fn is_ours(name: &str) -> bool {
     name == INDEX_NAME || number.is_some_and(|n| !n.is_empty() && n.bytes().all(|b| b.is_ascii_digit()))
 }
 
-pub(crate) fn run(args: &LevelsArgs, show_progress: bool) -> Result<Answer, Error> {
+pub(crate) fn run(args: &LevelsArgs, show_progress: bool) -> Result<Answer> {
     let work_memory = MemoryArgs::of(args.work_memory);
     work_memory.watch();
     // Outputs that cannot be written are reported before the work is done.
@@ -113,7 +91,7 @@ pub(crate) fn run(args: &LevelsArgs, show_progress: bool) -> Result<Answer, Erro
     // What each cell sees, in bytes and in bits, and what is left of it.
     let seen = table.n_cells() as u64 * scene.n_triangles() as u64;
     let needs = Needs { shared: seen + seen / 4, per_thread: (4 << 20) + 64 * scene.n_triangles() as u64 };
-    let too_large = |source| Error::Memory { path: args.scene.clone(), source };
+    let too_large = |source| anyhow!("{}: {source}; allow more", args.scene.display());
     let threads = work_memory.threads(options.simplify.threads, needs).map_err(too_large)?;
     let options = LevelOptions { simplify: SimplifyOptions { threads, ..options.simplify }, ..options };
     let start = Instant::now();
@@ -123,7 +101,7 @@ pub(crate) fn run(args: &LevelsArgs, show_progress: bool) -> Result<Answer, Erro
     let made = levels_with(scene, table, &by, &options, &effort).map_err(|source| {
         let of_table = matches!(source, SimplifyError::OtherScene(_) | SimplifyError::Views(_));
         let path = if of_table { &args.table } else { &args.scene };
-        Error::from(SimplificationError::Simplify { path: path.clone(), source })
+        anyhow!("{}: {source}", path.display())
     });
     drop(bar);
     let made = made.and_then(|made| {
@@ -131,7 +109,7 @@ pub(crate) fn run(args: &LevelsArgs, show_progress: bool) -> Result<Answer, Erro
         Ok(outcome)
     });
     match kept.finish(made.is_ok()) {
-        Some(interrupted) => return Err(Error::Interrupted(interrupted)),
+        Some(interrupted) => return Err(anyhow!("{interrupted}")),
         None => output::print(args.json, &made?)?,
     }
     Ok(Answer::Yes)
@@ -161,7 +139,7 @@ fn write(
     (made, is_framed): (&Levels, bool),
     folder: NewFolder,
     start: Instant,
-) -> Result<Outcome, Error> {
+) -> Result<Outcome> {
     let mut index = LevelsIndex {
         n_triangles: scene.n_triangles() as u64,
         budget: args.how.budget(),

@@ -1,20 +1,19 @@
 //! `light`: the soft shadows of an area light, with rays only where nothing is proven.
 
-mod error;
 mod method;
 mod outcome;
 
 use crate::Answer;
-use crate::buffers::MethodFailed;
+use crate::buffers::method_failed;
+use crate::error::{ErrorAbout, Result};
 use crate::eye::EyeArgs;
 use crate::input;
 use crate::named::one_of;
 use crate::output;
-use crate::picture::{self, PictureError};
+use crate::picture;
 use crate::region::Region;
 use crate::surfaces::{self, SurfaceArgs};
 use crate::view::Up;
-use error::Error;
 use method::{UmbraMethod, union};
 use outcome::Outcome;
 use sightlines::area_light::{Options, Shade, Shadows, Sides, shown};
@@ -82,14 +81,13 @@ pub(crate) struct LightArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &LightArgs) -> Result<Answer, Error> {
+pub(crate) fn run(args: &LightArgs) -> Result<Answer> {
     picture::check_png_name(&args.output)?;
     output::check(&[&args.scene], &[&args.output])?;
     input::check_is_scene(&args.scene)?;
     // All that hides casts shadows, and nothing else is drawn.
     let file = input::occluders(&args.scene, &args.surfaces.options())?;
-    let faces = Faces::of_scene(&file.scene.opaque_part())
-        .map_err(|source| Error::Faces { path: args.scene.clone(), source })?;
+    let faces = Faces::of_scene(&file.scene.opaque_part()).in_file(&args.scene)?;
     surfaces::warn_not_drawn(&args.scene, &file);
     let light = Volume::new(args.light.0)?;
     let camera = args.eye.camera(args.eye.up(Up::axis(file.info.up)))?;
@@ -98,13 +96,10 @@ pub(crate) fn run(args: &LightArgs) -> Result<Answer, Error> {
     let chosen = shown(&faces, &image);
 
     let start = Instant::now();
-    let mut method =
-        union(&args.method, &file.scene).map_err(|source| MethodFailed { path: args.scene.clone(), source })?;
+    let mut method = union(&args.method, &file.scene).map_err(|error| method_failed(&args.scene, error))?;
     let options = Options { sides: Sides::Towards(camera.eye()), max_depth: args.depth, min_size: args.min_size };
     let shadows = Shadows::new(&faces);
-    let lighting = shadows
-        .classify(&chosen, &light, &mut method, &options)
-        .map_err(|source| Error::Backend { path: args.scene.clone(), source })?;
+    let lighting = shadows.classify(&chosen, &light, &mut method, &options).in_file(&args.scene)?;
     let decided = start.elapsed();
     let start = Instant::now();
     let picture = shadows.picture(&lighting, &camera, &image, args.rays);
@@ -112,7 +107,7 @@ pub(crate) fn run(args: &LightArgs) -> Result<Answer, Error> {
 
     let pixels: Vec<LightPixel> = picture.shades.iter().map(|&shade| pixel(shade)).collect();
     let png = light_png(picture.size, &pixels, args.grey);
-    let png = png.map_err(|source| PictureError::Png { path: args.output.clone(), source })?;
+    let png = png.in_file(&args.output)?;
     let (counts, rays) = Outcome::counts(&picture);
     let outcome = Outcome {
         scene: args.scene.display().to_string(),

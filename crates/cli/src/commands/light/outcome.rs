@@ -1,5 +1,6 @@
 //! What was drawn.
 
+use crate::error::Result;
 use crate::output::{count, percent, seconds};
 use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};

@@ -1,5 +1,6 @@
 //! Filling one buffer by the first backend of a chain that takes the job.
 
+use crate::error::Result;
 use sightlines::multifocal::{BackendError, Buffer, Job, MultifocalBackend};
 
 /// Fills the buffer of a job with one plane, and names the backend that did. Each backend that refuses the job is a warning,

@@ -1,7 +1,7 @@
 //! The buffer as a picture for people.
 
 use super::outcome::Outcome;
-use crate::picture::PictureError;
+use crate::error::{ErrorAbout, Result};
 use sightlines::multifocal::Buffer;
 use sightlines::pvs::Axis;
 use sightlines::report::{BufferChart, buffer_chart_svg};
@@ -10,7 +10,7 @@ use std::path::Path;
 const AXES: [char; 3] = ['x', 'y', 'z'];
 
 /// The picture of a buffer, with the axis up that is up in the scene, and as it is seen from the volume.
-pub(super) fn svg(path: &Path, outcome: &Outcome, buffer: &Buffer, up: Axis) -> Result<String, PictureError> {
+pub(super) fn svg(path: &Path, outcome: &Outcome, buffer: &Buffer, up: Axis) -> Result<String> {
     let plane = outcome.plane;
     let across = [(plane.axis() + 1) % 3, (plane.axis() + 2) % 3];
     let up = match up {
@@ -36,5 +36,5 @@ pub(super) fn svg(path: &Path, outcome: &Outcome, buffer: &Buffer, up: Axis) -> 
         is_first_up,
         is_mirrored: is_forwards != is_first_up,
     };
-    buffer_chart_svg(&chart).map_err(|source| PictureError::Png { path: path.to_owned(), source })
+    buffer_chart_svg(&chart).in_file(path)
 }

@@ -2,19 +2,18 @@
 
 mod backend;
 mod chart;
-mod error;
 mod outcome;
 mod target;
 
 use crate::Answer;
-use crate::buffers::MethodFailed;
+use crate::buffers::method_failed;
+use crate::error::{ErrorAbout, Result, anyhow};
 use crate::input;
 use crate::named::{measure, one_of};
 use crate::output;
-use crate::picture::{self, PictureError, PictureKind};
+use crate::picture::{self, PictureKind};
 use crate::region::Region;
 use crate::surfaces::SurfaceArgs;
-use error::Error;
 use outcome::{FieldInfo, Outcome};
 use sightlines::bake::methods::{Backend, NotBuiltIn};
 use sightlines::geometry::Point3;
@@ -80,7 +79,7 @@ pub(crate) struct MultifocalArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &MultifocalArgs) -> Result<Answer, Error> {
+pub(crate) fn run(args: &MultifocalArgs) -> Result<Answer> {
     check_outputs(args)?;
     input::check_is_scene(&args.scene)?;
     let file = input::occluders(&args.scene, &args.surfaces.options())?;
@@ -90,11 +89,10 @@ pub(crate) fn run(args: &MultifocalArgs) -> Result<Answer, Error> {
     let plane = args.plane.plane(&volume, &scene.bounds(), args.texels)?;
     let occluders = occluders(&triangles, args.triangles);
     let job = Job::new(volume, vec![plane], &occluders, args.measure, false)
-        .map_err(|source| Error::Job { plane: args.plane.to_string(), source })?;
-    let failed = |source: NotBuiltIn| MethodFailed { path: args.scene.clone(), source: source.into() };
+        .map_err(|source| anyhow!("--plane {plane}: {source}", plane = args.plane))?;
+    let failed = |error: NotBuiltIn| method_failed(&args.scene, error.into());
     let chain = args.backend.open(|text| tracing::warn!("{text}")).map_err(failed)?.chain();
-    let (by, buffer) =
-        backend::fill(chain, &job).map_err(|source| Error::Backend { path: args.scene.clone(), source })?;
+    let (by, buffer) = backend::fill(chain, &job).in_file(&args.scene)?;
     let fields = (args.voronoi.is_some() || args.distance.is_some()).then(|| {
         let features = Features::new(triangles.iter().copied());
         let field = Field::new(&features, &plane);
@@ -135,10 +133,10 @@ fn pixels(args: &MultifocalArgs) -> impl Iterator<Item = &PathBuf> {
 }
 
 /// Refuses names of pictures that are no PNG, that name the same file twice, or the scene, and files that cannot be written.
-fn check_outputs(args: &MultifocalArgs) -> Result<(), Error> {
+fn check_outputs(args: &MultifocalArgs) -> Result<()> {
     pixels(args).try_for_each(|path| picture::check_png_name(path))?;
     args.chart.iter().try_for_each(|path| PictureKind::of(path).map(drop))?;
-    Ok(output::check(&[&args.scene], &outputs(args).map(PathBuf::as_path).collect::<Vec<_>>())?)
+    output::check(&[&args.scene], &outputs(args).map(PathBuf::as_path).collect::<Vec<_>>())
 }
 
 /// What hides: patches, or each triangle that has an area.
@@ -156,12 +154,7 @@ fn white(buffer: &Buffer) -> u32 {
 }
 
 /// Draws all pictures, then writes them.
-fn write(
-    args: &MultifocalArgs,
-    plane: &Plane,
-    buffer: &Buffer,
-    fields: Option<&(Features, Field)>,
-) -> Result<(), Error> {
+fn write(args: &MultifocalArgs, plane: &Plane, buffer: &Buffer, fields: Option<&(Features, Field)>) -> Result<()> {
     let texels = plane.texels();
     let mut pictures: Vec<(&Path, Result<Vec<u8>, PngError>)> =
         vec![(&args.output, buffer_png(texels, buffer.values(), white(buffer)))];
@@ -177,8 +170,8 @@ fn write(
     }
     let drawn = |(path, png): (&'_ Path, Result<Vec<u8>, PngError>)| match png {
         Ok(png) => Ok((path.to_owned(), png)),
-        Err(source) => Err(PictureError::Png { path: path.to_owned(), source }),
+        Err(error) => Err(anyhow!("{}: {error}", path.display())),
     };
     let drawn: Vec<(PathBuf, Vec<u8>)> = pictures.into_iter().map(drawn).collect::<Result<_, _>>()?;
-    Ok(drawn.iter().try_for_each(|(path, png)| output::save(path, png))?)
+    drawn.iter().try_for_each(|(path, png)| output::save(path, png))
 }

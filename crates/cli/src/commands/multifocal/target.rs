@@ -1,6 +1,6 @@
 //! The plane, its window and its texels as arguments.
 
-use super::Error;
+use crate::error::{Result, anyhow, bail};
 use sightlines::geometry::{Aabb, CoordinateError, check_coordinate};
 use sightlines::multifocal::{MAX_TEXELS, Plane, Volume};
 use std::fmt;
@@ -60,16 +60,18 @@ impl fmt::Display for PlaneArg {
 
 impl PlaneArg {
     /// The plane with its window and texels.
-    pub(super) fn plane(&self, volume: &Volume, scene: &Aabb<3>, texels: Texels) -> Result<Plane, Error> {
+    pub(super) fn plane(&self, volume: &Volume, scene: &Aabb<3>, texels: Texels) -> Result<Plane> {
         let (low, high) = (volume.bounds().min[self.axis], volume.bounds().max[self.axis]);
         if low <= self.at && self.at <= high {
             let axis = AXES[self.axis];
-            return Err(Error::PlaneInVolume { plane: self.to_string(), axis, low, high });
+            bail!(
+                "--plane {self}: the plane goes through the view volume, which reaches from {axis}={low} to {axis}={high}"
+            );
         }
         let [min, max] = self.window.unwrap_or_else(|| self.shadow(volume.bounds(), scene));
         let texels = texels.of([0, 1].map(|k| max[k] - min[k]));
         Plane::new(self.axis, self.at > high, self.at, min, max, texels)
-            .map_err(|source| Error::Plane { plane: self.to_string(), source })
+            .map_err(|source| anyhow!("--plane {self}: {source}"))
     }
 
     /// The window around the shadow of a box: where lines from eyes through the part of it that is in front of the

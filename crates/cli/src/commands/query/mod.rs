@@ -1,15 +1,14 @@
 //! `query`: what may be seen from a point.
 
-mod error;
 mod sight;
 
 use crate::Answer;
+use crate::error::{ErrorAbout, Result};
 use crate::facts::Source;
 use crate::output::{self, count};
 use crate::place::Point;
 use crate::tables::{self, Cells, Opened};
 use crate::view::lifted;
-use error::Error;
 use serde::Serialize;
 use sight::ViewerArgs;
 use sightlines::pvs::{CellId, ObjectId, PlaceBuffer};
@@ -36,31 +35,31 @@ pub(crate) struct QueryArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &QueryArgs) -> Result<Answer, Error> {
+pub(crate) fn run(args: &QueryArgs) -> Result<Answer> {
     match tables::open(&args.table, CACHE)? {
         Opened::Plain(cells) => ask(&cells, args),
         Opened::Packed(cells) => ask(&cells, args),
     }
 }
 
-fn ask<C: Cells>(cells: &C, args: &QueryArgs) -> Result<Answer, Error> {
+fn ask<C: Cells>(cells: &C, args: &QueryArgs) -> Result<Answer> {
     let path = &args.table;
     cells.refuse_without_places(path)?;
     let eye = args.eye.coordinates(cells.n_dimensions(), path)?;
     let mut buffer = PlaceBuffer::new();
-    let place = cells.cells_at(lifted(eye), &mut buffer).map_err(|error| C::fail(path, error))?;
+    let place = cells.cells_at(lifted(eye), &mut buffer).in_file(path)?;
     // Outside, the answer says so and names no cells.
     let at = place.inside().unwrap_or_default();
     if args.sight.is_given() {
         output::print(args.json, &sight::look(cells, path, eye, at, &args.sight)?)?;
     } else {
-        output::print(args.json, &rows(cells, eye, at).map_err(|error| C::fail(path, error))?)?;
+        output::print(args.json, &rows(cells, eye, at).in_file(path)?)?;
     }
     Ok(if at.is_empty() { Answer::No } else { Answer::Yes })
 }
 
 /// What the table lists for the cells at a point.
-fn rows<C: Cells>(cells: &C, eye: &[f64], at: &[CellId]) -> Result<Found, C::Error> {
+fn rows<C: Cells>(cells: &C, eye: &[f64], at: &[CellId]) -> Result<Found> {
     let (mut visible, mut objects) = (BTreeSet::new(), BTreeSet::new());
     let (mut some_cells, mut some_objects) = (Vec::new(), Vec::new());
     for &cell in at {
@@ -78,7 +77,7 @@ fn rows<C: Cells>(cells: &C, eye: &[f64], at: &[CellId]) -> Result<Found, C::Err
 }
 
 /// Objects with their names.
-fn named<C: Cells>(cells: &C, objects: impl IntoIterator<Item = ObjectId>) -> Result<Vec<Object>, C::Error> {
+fn named<C: Cells>(cells: &C, objects: impl IntoIterator<Item = ObjectId>) -> Result<Vec<Object>> {
     let object = |id: ObjectId| {
         let source = cells.source_of(id)?.map(Source::from);
         Ok(Object { id: id.0, name: cells.object_name(id)?, source })
@@ -100,7 +99,7 @@ struct Place {
 }
 
 impl Place {
-    fn new<C: Cells>(table: &C, eye: &[f64], at: &[CellId]) -> Result<Self, C::Error> {
+    fn new<C: Cells>(table: &C, eye: &[f64], at: &[CellId]) -> Result<Self> {
         let cells: Vec<u32> = at.iter().map(|cell| cell.0).collect();
         // Either all cells of a table have names or none has.
         let names: Option<Vec<String>> = at.iter().map(|&cell| table.cell_name(cell)).collect::<Result<_, _>>()?;

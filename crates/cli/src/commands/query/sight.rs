@@ -1,9 +1,9 @@
 //! What is seen from a point by a method: in a direction, with doors closed, in mirrors.
 
-use super::Error;
 use super::{Object, Place, ids, named, write_seen};
+use crate::error::{ErrorAbout, Result};
 use crate::output::count;
-use crate::sight::{Sight, SightArgs, SightError};
+use crate::sight::{Sight, SightArgs, without_direction};
 use crate::tables::Cells;
 use crate::view::Methods;
 use serde::Serialize;
@@ -36,17 +36,11 @@ impl ViewerArgs {
 }
 
 /// Answers by the requested methods.
-pub(super) fn look<C: Cells>(
-    cells: &C,
-    path: &Path,
-    eye: &[f64],
-    at: &[CellId],
-    args: &ViewerArgs,
-) -> Result<Seen, Error> {
+pub(super) fn look<C: Cells>(cells: &C, path: &Path, eye: &[f64], at: &[CellId], args: &ViewerArgs) -> Result<Seen> {
     let ViewerArgs { sight: args, bounces } = args;
     let Sight { view, looks } = args.sight(cells, path, eye)?;
     if looks.is_none() && args.lens.is_given() {
-        return Err(SightError::LensWithoutDirection("--fov, --aspect and --up").into());
+        return Err(without_direction("--fov, --aspect and --up"));
     }
     let mut viewer = Viewer::of(cells.clone());
     viewer.set_budget(Budget::UNLIMITED);
@@ -55,16 +49,16 @@ pub(super) fn look<C: Cells>(
     let all = args.method == Some(Methods::All);
     let methods = args.method.unwrap_or(Methods::One(Method::Exact)).list();
     let answers = methods.into_iter().map(|method| answer(&mut viewer, method, &view, bounces.unwrap_or(0)));
-    let mut answers = answers.collect::<Result<Vec<_>, _>>().map_err(|error| C::fail(path, error))?;
+    let mut answers = answers.collect::<Result<Vec<_>, _>>().in_file(path)?;
     let one = if all { None } else { answers.pop() };
     let (dir, fov) = looks.unzip();
     let outside = at.is_empty();
-    let place = Place::new(cells, eye, at).map_err(|error| C::fail(path, error))?;
+    let place = Place::new(cells, eye, at).in_file(path)?;
     Ok(Seen { place, outside, dir, fov, one, methods: answers, all: cells.counts() })
 }
 
 /// Answers by one method.
-fn answer<C: Cells>(viewer: &mut Viewer<C>, method: Method, view: &View, bounces: usize) -> Result<Answered, C::Error> {
+fn answer<C: Cells>(viewer: &mut Viewer<C>, method: Method, view: &View, bounces: usize) -> Result<Answered> {
     viewer.set_method(method);
     // The first look is not warm.
     viewer.try_look(view)?;

@@ -1,10 +1,11 @@
 //! `reject` of a folder: all WADs in it, whose maps are units of one work.
 
 use super::outcome::{FileOutcome, FileStatus, FolderOutcome};
-use super::{BAR, Error, Map, RejectArgs, finish, warn};
-use crate::error::{InputError, OutputError};
+use super::{BAR, Map, RejectArgs, finish, warn};
+use crate::error::{Result, anyhow, bail};
+use crate::folder::cannot_be_made;
 use crate::interrupt;
-use crate::kept::{Inputs, Keeping, Kept, KeptError};
+use crate::kept::{Inputs, Keeping, Kept};
 use crate::memory;
 use crate::output;
 use crate::progress::Bar;
@@ -17,13 +18,16 @@ use std::path::{Path, PathBuf};
 use std::{fs, io};
 
 /// Reads, builds and writes. Nothing is written before the tables of all are there.
-pub(super) fn make(args: &RejectArgs, keeping: Keeping<'_>, show_progress: bool) -> Result<FolderOutcome, Error> {
+pub(super) fn make(args: &RejectArgs, keeping: Keeping<'_>, show_progress: bool) -> Result<FolderOutcome> {
     if args.rmb.is_some() {
-        return Err(Error::EffectsOfFolder(args.input.clone()));
+        bail!(
+            "{}: --rmb is for one WAD, and this is a folder: its effects are on sectors by number, which are others in each file",
+            args.input.display()
+        );
     }
     let paths = list(&args.input)?;
     if paths.is_empty() {
-        return Err(Error::NoWads(args.input.clone()));
+        bail!("{}: there are no WADs in the folder", args.input.display());
     }
     let names: Vec<&OsStr> = paths.iter().filter_map(|path| path.file_name()).collect();
     let outs: Vec<PathBuf> = names.iter().map(|name| args.output.join(name)).collect();
@@ -43,8 +47,8 @@ pub(super) fn make(args: &RejectArgs, keeping: Keeping<'_>, show_progress: bool)
 }
 
 /// The WADs in a folder, in the order of their names; hidden ones are none.
-fn list(folder: &Path) -> Result<Vec<PathBuf>, Error> {
-    let failed = |source| InputError::Open { path: folder.to_owned(), source };
+fn list(folder: &Path) -> Result<Vec<PathBuf>> {
+    let failed = |error| anyhow!("{}: {error}", folder.display());
     let mut paths = Vec::new();
     for entry in fs::read_dir(folder).map_err(failed)? {
         let path = entry.map_err(failed)?.path();
@@ -60,8 +64,8 @@ fn list(folder: &Path) -> Result<Vec<PathBuf>, Error> {
 }
 
 /// Refuses, before anything is read, outputs that would fail at the end, and those that are inputs. Leaves nothing behind.
-fn check_outputs(args: &RejectArgs, paths: &[PathBuf], outs: &[PathBuf]) -> Result<(), OutputError> {
-    let failed = |source| OutputError::Folder { path: args.output.clone(), source };
+fn check_outputs(args: &RejectArgs, paths: &[PathBuf], outs: &[PathBuf]) -> Result<()> {
+    let failed = |error| cannot_be_made(&args.output, error);
     match fs::metadata(&args.output) {
         Ok(found) if found.is_dir() => {}
         Ok(_) => return Err(failed(io::ErrorKind::NotADirectory.into())),
@@ -69,7 +73,7 @@ fn check_outputs(args: &RejectArgs, paths: &[PathBuf], outs: &[PathBuf]) -> Resu
         Err(error) => return Err(failed(error)),
     }
     if output::is_one_place(&args.input, &args.output) {
-        return Err(OutputError::SameFile(args.output.clone()));
+        bail!("{}: the output would replace the input", args.output.display());
     }
     let read: BTreeSet<PathBuf> = paths.iter().filter_map(|path| path.canonicalize().ok()).collect();
     let mut written = BTreeSet::new();
@@ -77,10 +81,10 @@ fn check_outputs(args: &RejectArgs, paths: &[PathBuf], outs: &[PathBuf]) -> Resu
         // Names may be links.
         if let Ok(found) = out.canonicalize() {
             if read.contains(&found) {
-                return Err(OutputError::SameFile(out.clone()));
+                bail!("{}: the output would replace the input", out.display());
             }
             if !written.insert(found) {
-                return Err(OutputError::TwoOutputs(out.clone()));
+                return Err(output::two_outputs(out));
             }
         }
         if k == 0 || out.is_dir() {
@@ -104,7 +108,7 @@ struct Folder<'a> {
 
 impl Folder<'_> {
     /// Finds the maps to do, and reads no more of them than that.
-    fn find(&mut self) -> Result<Vec<RejectMaps>, Error> {
+    fn find(&mut self) -> Result<Vec<RejectMaps>> {
         let mut all = Vec::new();
         for (k, path) in self.paths.iter().enumerate() {
             let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -126,7 +130,10 @@ impl Folder<'_> {
         }
         let is_missing = |name: &&String| !all.iter().any(|maps: &RejectMaps| maps.has(name));
         match self.args.map.iter().find(is_missing) {
-            Some(name) => Err(Error::NoSuchMap { path: self.args.input.clone(), name: name.clone() }),
+            Some(name) => Err(anyhow!(
+                "{}: map {name} is in none of the WADs in the folder that can be read",
+                self.args.input.display()
+            )),
             None if all.is_empty() => Err(self.none_done()),
             None => Ok(all),
         }
@@ -138,15 +145,15 @@ impl Folder<'_> {
         maps: &[RejectMaps],
         kept: &Kept<'_>,
         show_progress: bool,
-    ) -> Result<Vec<Result<RejectTables, RejectError>>, Error> {
+    ) -> Result<Vec<Result<RejectTables, RejectError>>> {
         let bar = Bar::new(BAR, show_progress);
         let built = reject_wads(maps, |file| self.read(self.todo[file]), &self.args.options(&bar, kept));
         built.map_err(|error| match error {
             RejectWadsError::Read(error) => error,
             RejectWadsError::File { file, source } => self.error(self.todo[file], source),
-            RejectWadsError::Halted(halt) => KeptError::from(halt).into(),
+            RejectWadsError::Halted(halt) => anyhow::Error::from(halt),
             // The error of a bake can get more kinds.
-            other => KeptError::from(Halt::Store(other.to_string())).into(),
+            other => anyhow!("{}", Halt::Store(other.to_string())),
         })
     }
 
@@ -156,7 +163,7 @@ impl Folder<'_> {
         maps: &[RejectMaps],
         built: Vec<Result<RejectTables, RejectError>>,
         kept: &Kept<'_>,
-    ) -> Result<(), Error> {
+    ) -> Result<()> {
         let mut done = Vec::new();
         for ((&k, maps), built) in self.todo.iter().zip(maps).zip(built) {
             match built {
@@ -175,12 +182,12 @@ impl Folder<'_> {
                 tables.write(&self.read(*k)?, maps).map_err(|source| self.error(*k, source))?;
             }
         }
-        let failed = |source| OutputError::Folder { path: self.args.output.clone(), source };
+        let failed = |error| cannot_be_made(&self.args.output, error);
         fs::create_dir_all(&self.args.output).map_err(failed)?;
         for (k, maps, tables) in done {
             // Those that are written stay.
             if interrupt::requested() {
-                return Err(KeptError::from(Halt::from(Cancelled)).into());
+                return Err(anyhow::Error::from(Halt::from(Cancelled)));
             }
             match tables.write(&self.read(k)?, maps) {
                 Ok(bytes) => {
@@ -202,18 +209,18 @@ impl Folder<'_> {
     }
 
     /// A WAD as it was when it was looked at.
-    fn read(&self, k: usize) -> Result<Wad, Error> {
+    fn read(&self, k: usize) -> Result<Wad> {
         let wad = Wad::read(&self.paths[k])?;
         self.inputs.check_file(k)?;
         Ok(wad)
     }
 
-    fn error(&self, k: usize, source: RejectError) -> Error {
-        Error::Reject { path: self.paths[k].clone(), source: Box::new(source) }
+    fn error(&self, k: usize, source: RejectError) -> anyhow::Error {
+        anyhow!("{}: {source}", self.paths[k].display())
     }
 
     /// Names the first that failed.
-    fn none_done(&self) -> Error {
+    fn none_done(&self) -> anyhow::Error {
         let failed = self.files.iter().zip(self.paths).find(|(file, _)| file.status == FileStatus::Failed);
         let why = match failed {
             Some((FileOutcome { reason: Some(reason), .. }, path)) => {
@@ -221,7 +228,7 @@ impl Folder<'_> {
             }
             _ => "has maps".to_owned(),
         };
-        Error::NoneDone { path: self.args.input.clone(), why }
+        anyhow!("{}: none of the WADs in the folder {why}", self.args.input.display())
     }
 }
 

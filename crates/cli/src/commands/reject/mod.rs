@@ -6,8 +6,8 @@ mod outcome;
 pub(crate) use outcome::Outcome;
 
 use crate::Answer;
-use crate::file_error::{FileError, from_file_error};
-use crate::kept::{Identity, Inputs, Interrupted, Keeping, Kept, KeptError, ResumeArgs};
+use crate::error::{Result, anyhow};
+use crate::kept::{Identity, Inputs, Keeping, Kept, ResumeArgs};
 use crate::memory::{self, MemoryArgs};
 use crate::output::{self, count};
 use crate::progress::Bar;
@@ -17,37 +17,6 @@ use sightlines::formats::Wad;
 use sightlines::formats::doom::RmbFile;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
-
-/// Why `reject` fails; exit code 2.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum Error {
-    /// A file cannot be read, used or written.
-    #[error(transparent)]
-    File(FileError),
-    /// The REJECT lumps of a WAD cannot be built.
-    #[error("{}: {source}", path.display())]
-    Reject { path: PathBuf, source: Box<RejectError> },
-    /// A folder without WADs.
-    #[error("{}: there are no WADs in the folder", .0.display())]
-    NoWads(PathBuf),
-    /// A map that was named and is in no WAD of a folder.
-    #[error("{}: map {name} is in none of the WADs in the folder that can be read", path.display())]
-    NoSuchMap { path: PathBuf, name: String },
-    /// A folder of which no WAD can be done.
-    #[error("{}: none of the WADs in the folder {why}", path.display())]
-    NoneDone { path: PathBuf, why: String },
-    /// Effects for all WADs of a folder.
-    #[error("{}: --rmb is for one WAD, and this is a folder: its effects are on sectors by number, which are others in each file", .0.display())]
-    EffectsOfFolder(PathBuf),
-    /// Results cannot be kept, or taken up.
-    #[error(transparent)]
-    Kept(#[from] KeptError),
-    /// The program was interrupted.
-    #[error("{0}")]
-    Interrupted(Interrupted),
-}
-
-from_file_error!(Error);
 
 /// Arguments of `reject`.
 #[derive(Debug, clap::Args)]
@@ -87,14 +56,14 @@ pub(crate) struct RejectArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &RejectArgs, show_progress: bool) -> Result<Answer, Error> {
+pub(crate) fn run(args: &RejectArgs, show_progress: bool) -> Result<Answer> {
     let outcome = make(args, Keeping::File(&args.resume), show_progress)?;
     output::print(args.json, &outcome)?;
     Ok(Answer::Yes)
 }
 
 /// Reads, builds and writes. Prints nothing but progress and warnings.
-pub(crate) fn make(args: &RejectArgs, keeping: Keeping<'_>, show_progress: bool) -> Result<Outcome, Error> {
+pub(crate) fn make(args: &RejectArgs, keeping: Keeping<'_>, show_progress: bool) -> Result<Outcome> {
     crate::threads::use_only(args.threads);
     args.memory.watch();
     if args.input.is_dir() {
@@ -103,7 +72,7 @@ pub(crate) fn make(args: &RejectArgs, keeping: Keeping<'_>, show_progress: bool)
     make_wad(args, keeping, show_progress).map(Outcome::Wad)
 }
 
-fn make_wad(args: &RejectArgs, keeping: Keeping<'_>, show_progress: bool) -> Result<WadOutcome, Error> {
+fn make_wad(args: &RejectArgs, keeping: Keeping<'_>, show_progress: bool) -> Result<WadOutcome> {
     // It may be the WAD that is read.
     output::check(&[], &[&args.output])?;
     let files = std::iter::once(&args.input).chain(&args.rmb).map(PathBuf::as_path);
@@ -111,7 +80,7 @@ fn make_wad(args: &RejectArgs, keeping: Keeping<'_>, show_progress: bool) -> Res
     let wad = Wad::read(&args.input)?;
     let rmb = args.rmb.as_ref().map(RmbFile::read).transpose()?;
     let kept = Kept::open(keeping, &inputs, &[&args.output], || args.identity(&inputs, &[]))?;
-    let made = || -> Result<WadOutcome, Error> {
+    let made = || -> Result<WadOutcome> {
         let bar = Bar::new(BAR, show_progress);
         let options = RejectOptions { rmb: rmb.as_ref(), ..args.options(&bar, &kept) };
         let outcome = reject_wad(&wad, &options);
@@ -121,7 +90,7 @@ fn make_wad(args: &RejectArgs, keeping: Keeping<'_>, show_progress: bool) -> Res
                 (RejectError::Rmb(_), Some(options)) => options,
                 _ => &args.input,
             };
-            Error::Reject { path: path.clone(), source: Box::new(source) }
+            anyhow!("{}: {source}", path.display())
         })?;
         kept.before_writing()?;
         output::save(&args.output, &outcome.bytes)?;
@@ -137,9 +106,9 @@ fn make_wad(args: &RejectArgs, keeping: Keeping<'_>, show_progress: bool) -> Res
 const BAR: &str = "visibility of sectors";
 
 /// Ends the run: an error if it was interrupted.
-fn finish<T>(kept: Kept<'_>, made: Result<T, Error>) -> Result<T, Error> {
+fn finish<T>(kept: Kept<'_>, made: Result<T>) -> Result<T> {
     match kept.finish(made.is_ok()) {
-        Some(interrupted) => Err(Error::Interrupted(interrupted)),
+        Some(interrupted) => Err(anyhow!("{interrupted}")),
         None => made,
     }
 }

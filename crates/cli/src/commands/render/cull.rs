@@ -1,6 +1,6 @@
 //! What is left out before anything is drawn.
 
-use super::error::Error;
+use crate::error::{ErrorAbout, Result, bail};
 use crate::tables::{Cells, Opened};
 use sightlines::cells::{Scene, unlike};
 use sightlines::geometry::Point3;
@@ -78,24 +78,23 @@ pub(super) fn seen_by_table(
     path: &Path,
     scene: &Scene,
     eye: Point3,
-) -> Result<Option<Vec<bool>>, Error> {
+) -> Result<Option<Vec<bool>>> {
     match opened {
         Opened::Plain(cells) => ask(cells, table, path, scene, eye),
         Opened::Packed(cells) => ask(cells, table, path, scene, eye),
     }
 }
 
-fn ask<C: Cells>(cells: &C, table: &Path, path: &Path, scene: &Scene, eye: Point3) -> Result<Option<Vec<bool>>, Error> {
+fn ask<C: Cells>(cells: &C, table: &Path, path: &Path, scene: &Scene, eye: Point3) -> Result<Option<Vec<bool>>> {
     cells.refuse_without_places(table)?;
-    let fail = |error| C::fail(table, error);
-    let object = |id| Ok((cells.object_name(id)?, cells.object_box(id)?));
+    let object = |id| Ok::<_, C::Error>((cells.object_name(id)?, cells.object_box(id)?));
     let found =
         unlike(scene, cells.n_dimensions(), cells.frame().as_ref(), cells.counts()[1], |id| object(ObjectId(id)));
-    if let Some(unlike) = found.map_err(fail)? {
-        return Err(Error::OtherScene { table: table.to_owned(), scene: path.to_owned(), unlike });
+    if let Some(unlike) = found.in_file(table)? {
+        bail!("{}: does not go with {}: {unlike}", table.display(), path.display());
     }
     let mut buffer = PlaceBuffer::new();
-    let place = cells.cells_at(eye, &mut buffer).map_err(fail)?;
+    let place = cells.cells_at(eye, &mut buffer).in_file(table)?;
     let Place::Inside(at) = place else {
         tracing::warn!("{}: the eye is outside every cell, where everything may be seen", table.display());
         return Ok(None);
@@ -103,7 +102,7 @@ fn ask<C: Cells>(cells: &C, table: &Path, path: &Path, scene: &Scene, eye: Point
     let mut seen = vec![false; scene.objects().len()];
     let mut objects = Vec::new();
     for &cell in at {
-        cells.objects_seen(cell, &mut objects).map_err(fail)?;
+        cells.objects_seen(cell, &mut objects).in_file(table)?;
         objects.iter().for_each(|&object| seen[object.idx()] = true);
     }
     Ok(Some(seen))

@@ -1,22 +1,21 @@
 //! `render`: what one eye sees of a scene, drawn by one method, or by all side by side.
 
 mod cull;
-mod error;
 mod method;
 mod outcome;
 
 use crate::Answer;
+use crate::error::{ErrorAbout, Result, anyhow};
 use crate::eye::EyeArgs;
 use crate::input;
 use crate::named::one_of;
 use crate::output::{self, count};
-use crate::picture::{self, PictureError};
+use crate::picture;
 use crate::progress::Bar;
 use crate::surfaces::{self, SurfaceArgs};
 use crate::tables;
 use crate::view::Up;
 use cull::{CACHE, Cull, leave_out, seen_by_table};
-use error::Error;
 use method::{Drawn, Kind, Readied, Ready, compared};
 use outcome::{Outcome, Row};
 use sightlines::report::{PngError, SheetPicture, faces_png, sheet_png, sheet_size};
@@ -74,17 +73,17 @@ pub(crate) struct RenderArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &RenderArgs, show_progress: bool) -> Result<Answer, Error> {
+pub(crate) fn run(args: &RenderArgs, show_progress: bool) -> Result<Answer> {
     check(args)?;
     input::check_is_scene(&args.scene)?;
-    let table = args.table.as_ref().map(|path| Ok::<_, Error>((path, tables::open(path, CACHE)?))).transpose()?;
+    let table =
+        args.table.as_ref().map(|path| Ok::<_, anyhow::Error>((path, tables::open(path, CACHE)?))).transpose()?;
     let options = args.surfaces.options_with(table.as_ref().map_or(&[], |(_, opened)| opened.info()));
     let file = input::scene(&args.scene, &options)?;
     if args.cull.contains(&Cull::Pvs) {
         input::check_occluder(&args.scene, &file)?;
     }
-    let faces = Faces::of_scene(&file.scene.opaque_part())
-        .map_err(|source| Error::Faces { path: args.scene.clone(), source })?;
+    let faces = Faces::of_scene(&file.scene.opaque_part()).in_file(&args.scene)?;
     surfaces::warn_not_drawn(&args.scene, &file);
     let up = args.eye.up(Up::axis(file.info.up));
     let camera = args.eye.camera(up)?;
@@ -106,7 +105,7 @@ pub(crate) fn run(args: &RenderArgs, show_progress: bool) -> Result<Answer, Erro
         (vec![Row::new(&drawn, None)], png)
     };
     drop(bar);
-    let png = png.map_err(|source| PictureError::Png { path: args.output.clone(), source })?;
+    let png = png.in_file(&args.output)?;
     let outcome = Outcome {
         scene: args.scene.display().to_string(),
         n_objects: file.scene.objects().len(),
@@ -129,22 +128,26 @@ pub(crate) fn run(args: &RenderArgs, show_progress: bool) -> Result<Answer, Erro
 }
 
 /// Refuses options that do not go together, and outputs that would replace what is read.
-fn check(args: &RenderArgs) -> Result<(), Error> {
+fn check(args: &RenderArgs) -> Result<()> {
     picture::check_png_name(&args.output)?;
     let inputs: Vec<&Path> = std::iter::once(&args.scene).chain(&args.table).map(PathBuf::as_path).collect();
     output::check(&inputs, &[&args.output])?;
     let has_buffer = args.method.contains(&Kind::Zbuffer) || args.method.is_empty();
     match (args.cull.contains(&Cull::Pvs), &args.table) {
-        (true, None) => Err(Error::NoTable),
-        (false, Some(_)) => Err(Error::NoCulling),
-        _ if args.method.len() > 1 && !args.compare => Err(Error::ManyMethods),
-        _ if args.depth.is_some() && !has_buffer => Err(Error::NoBuffer),
+        (true, None) => Err(anyhow!("--cull pvs: this needs a table of the scene: name it with --table")),
+        (false, Some(_)) => Err(anyhow!("--table: the table is not used: add --cull pvs")),
+        _ if args.method.len() > 1 && !args.compare => {
+            Err(anyhow!("--method: several methods are drawn with --compare only; name one"))
+        }
+        _ if args.depth.is_some() && !has_buffer => {
+            Err(anyhow!("--depth: this is the format of a z-buffer, and none is drawn: add --method zbuffer"))
+        }
         _ => Ok(()),
     }
 }
 
 /// The methods that are drawn. With `--compare` the ray caster is one of them, and their sheet is not too large.
-fn methods(args: &RenderArgs, camera: &Camera) -> Result<Vec<(Kind, DepthFormat)>, Error> {
+fn methods(args: &RenderArgs, camera: &Camera) -> Result<Vec<(Kind, DepthFormat)>> {
     if !args.compare {
         return Ok(args.method.iter().map(|&kind| (kind, args.depth.unwrap_or_default())).collect());
     }
@@ -152,7 +155,11 @@ fn methods(args: &RenderArgs, camera: &Camera) -> Result<Vec<(Kind, DepthFormat)
     let (n, size) = (methods.len(), camera.size());
     match sheet_size(size, n) {
         Some([w, h]) if u64::from(w) * u64::from(h) <= MOST_PIXELS => Ok(methods),
-        _ => Err(Error::Sheet { n, size, most: MOST_PIXELS }),
+        _ => Err(anyhow!(
+            "--size: {n} pictures of {} by {} pixels make a sheet of more than {MOST_PIXELS} pixels; name fewer methods, or a smaller size",
+            size[0],
+            size[1]
+        )),
     }
 }
 

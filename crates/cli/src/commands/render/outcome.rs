@@ -2,6 +2,7 @@
 
 use super::cull::Gone;
 use super::method::{Drawn, Prepared};
+use crate::error::Result;
 use crate::output::{count, percent, seconds};
 use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};

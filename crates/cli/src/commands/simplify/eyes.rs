@@ -1,6 +1,6 @@
 //! Where eyes are: boxes, or cells of a table.
 
-use super::Error;
+use crate::error::{ErrorAbout, Result};
 use crate::input;
 use crate::region::Region;
 use sightlines::multifocal::Volume;
@@ -31,17 +31,17 @@ pub(super) struct EyesArgs {
 
 impl EyesArgs {
     /// The table, if there is one.
-    pub(super) fn table(&self) -> Result<Option<Table>, Error> {
-        Ok(self.table.as_ref().map(|path| input::table(path)).transpose()?)
+    pub(super) fn table(&self) -> Result<Option<Table>> {
+        self.table.as_ref().map(|path| input::table(path)).transpose()
     }
 
     /// The places: cells of `table`, which is the one that was read, along its axes.
-    pub(super) fn views(&self, table: Option<&Table>) -> Result<Views, Error> {
+    pub(super) fn views(&self, table: Option<&Table>) -> Result<Views> {
         let (Some(path), Some(table)) = (&self.table, table) else {
             let volumes = self.volume.iter().map(|region| Volume::new(region.0)).collect::<Result<Vec<_>, _>>()?;
             return Ok(Views::new(volumes).expect("the arguments have a volume"));
         };
         let cells: Vec<CellId> = self.cell.iter().copied().map(CellId).collect();
-        Views::of_cells(table, &cells).map_err(|source| Error::Views { path: path.clone(), source })
+        Views::of_cells(table, &cells).in_file(path)
     }
 }

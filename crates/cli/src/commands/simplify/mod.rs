@@ -1,14 +1,13 @@
 //! `simplify`: a scene with fewer triangles for eyes in a volume.
 
-mod error;
 mod eyes;
 mod outcome;
 
 use crate::Answer;
+use crate::error::{Result, anyhow};
 use crate::output;
 use crate::progress::Bar;
-use crate::simplification::{self, HowArgs, OutFormat, ReadScene, SimplificationError, read, written};
-use error::Error;
+use crate::simplification::{self, HowArgs, OutFormat, ReadScene, read, written};
 use eyes::EyesArgs;
 use outcome::{Outcome, Report};
 use sightlines::multifocal::FromRegion;
@@ -52,7 +51,7 @@ pub(crate) struct SimplifyArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &SimplifyArgs, show_progress: bool) -> Result<Answer, Error> {
+pub(crate) fn run(args: &SimplifyArgs, show_progress: bool) -> Result<Answer> {
     let format = OutFormat::of(&args.output)?;
     output::check(&args.eyes.table.iter().map(PathBuf::as_path).collect::<Vec<_>>(), &[&args.output])?;
     let table = args.eyes.table()?;
@@ -73,8 +72,8 @@ pub(crate) fn run(args: &SimplifyArgs, show_progress: bool) -> Result<Answer, Er
     let by = HiddenBy { method: factory.is_some().then_some(make), table };
     let options = args.how.options(args.parts as usize);
     let failed = |source| match (&source, &args.eyes.table) {
-        (SimplifyError::OtherScene(_), Some(table)) => SimplificationError::Simplify { path: table.clone(), source },
-        _ => SimplificationError::Simplify { path: args.scene.clone(), source },
+        (SimplifyError::OtherScene(_), Some(table)) => anyhow!("{}: {source}", table.display()),
+        _ => anyhow!("{}: {source}", args.scene.display()),
     };
     let start = Instant::now();
     let bar = Bar::new("simplifying", show_progress);

@@ -1,6 +1,7 @@
 //! What was simplified, in numbers.
 
 use super::SimplifyArgs;
+use crate::error::Result;
 use crate::output::{bytes, count, percent, seconds};
 use crate::simplification::{Rounded, SingleSided, Written};
 use serde::Serialize;

@@ -1,9 +1,9 @@
 //! One tile of a world: what decides it, and its files.
 
-use super::Error;
 use super::input::TileInput;
 use super::scenes::{Ready, Scenes};
-use crate::buffers::MethodFailed;
+use crate::buffers::method_failed;
+use crate::error::{Result, anyhow};
 use sightlines::bake::tile::{NearTile, Tile, bake_far, bake_tile};
 use sightlines::bake::{BakeError, BakeRequest, Runtime};
 use sightlines::checkpoint::KeyHasher;
@@ -93,7 +93,7 @@ pub(super) fn bake(
     scenes: &Scenes<'_>,
     (request, runtime): (&BakeRequest, &Runtime<'_>),
     only_far: bool,
-) -> Result<Files, Error> {
+) -> Result<Files> {
     let input = &inputs[tile];
     let own = scenes.get(tile)?;
     let near: Vec<Arc<Ready>> = keys.near.iter().map(|&k| scenes.get(k as usize)).collect::<Result<_, _>>()?;
@@ -104,11 +104,11 @@ pub(super) fn bake(
     let parts = Tile { scene, file, cells: &own.cells, near: &of_near, far: &of_far };
     let failed = |source: BakeError| match source {
         BakeError::Cancelled(cancelled) => cancelled.into(),
-        BakeError::Method(source) => MethodFailed { path: input.scene.clone(), source }.into(),
-        source => Error::Bake { path: input.scene.clone(), source },
+        BakeError::Method(source) => method_failed(&input.scene, source),
+        source => anyhow!("{}: {source}", input.scene.display()),
     };
     let names = || keys.far.iter().map(|&k| inputs[k as usize].plan.name.clone()).collect();
-    let write = |source: TileFileError| Error::Write { tile: input.plan.name.clone(), source };
+    let write = |source: TileFileError| anyhow!("tile {tile:?}: {source}", tile = input.plan.name);
     if only_far {
         let rows = bake_far(&parts, request, runtime).map_err(failed)?;
         return Ok(Files(vec![(TilePart::Far, far_bytes(keys.far_key, names(), &rows).map_err(write)?)]));

@@ -1,12 +1,12 @@
 //! `tiles build`: bakes the tiles of a world that are not baked yet.
 
-use super::Error;
 use super::bake::{Files, TileKeys, bake, keys};
 use super::input::{self, TileInput};
 use super::outcome::Outcome;
 use super::scenes::Scenes;
 use crate::commands::build::region::RegionArgs;
-use crate::error::{InputError, OutputError};
+use crate::error::{ErrorAbout, Result, anyhow, bail};
+use crate::folder::cannot_be_made;
 use crate::kept::{Identity, Inputs, Keeping, Kept, PROGRAM, UNITS};
 use crate::memory::MemoryArgs;
 use crate::output;
@@ -63,7 +63,7 @@ pub(crate) struct TilesBuildArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &TilesBuildArgs, show_progress: bool) -> Result<Answer, Error> {
+pub(crate) fn run(args: &TilesBuildArgs, show_progress: bool) -> Result<Answer> {
     let outcome = make(args, Keeping::Nowhere, show_progress)?;
     output::print(args.json, &outcome)?;
     Ok(Answer::Yes)
@@ -82,12 +82,12 @@ impl Observer for Quiet {
 }
 
 /// Reads, bakes and writes. Prints nothing but progress and warnings.
-pub(crate) fn make(args: &TilesBuildArgs, keeping: Keeping<'_>, show_progress: bool) -> Result<Outcome, Error> {
+pub(crate) fn make(args: &TilesBuildArgs, keeping: Keeping<'_>, show_progress: bool) -> Result<Outcome> {
     let start = Instant::now();
     crate::threads::use_only(args.threads);
     args.memory.watch();
     if args.region.names_a_file() {
-        return Err(Error::Cells(args.world.clone()));
+        bail!("{}: --cells is not for worlds: their plan names the cells of each tile", args.world.display());
     }
     let mut request = BakeRequest { detail_below: args.detail_below, ..BakeRequest::default() };
     args.region.put_into(&mut request)?;
@@ -98,7 +98,7 @@ pub(crate) fn make(args: &TilesBuildArgs, keeping: Keeping<'_>, show_progress: b
     // As it was looked at.
     let plan = input::plan(&args.world)?;
     if files != input::files(&args.world, &plan) {
-        return Err(Error::Changed(args.world.clone()));
+        bail!("{}: the file was changed while the world was baked; bake it again", args.world.display());
     }
     let threads = if args.threads == 0 { thread::available_parallelism().map_or(1, usize::from) } else { args.threads };
     let looked = on_threads(threads, plan.tiles.len(), |tile| {
@@ -126,7 +126,8 @@ pub(crate) fn make(args: &TilesBuildArgs, keeping: Keeping<'_>, show_progress: b
             world.find()?;
             let n = inputs.len();
             let n_done = n - world.missing.iter().flatten().count();
-            Err(Error::Interrupted { why: interrupt::memory(), n_done, n })
+            let why = interrupt::memory().map_or_else(|| "interrupted".to_owned(), |why| format!("stopped: {why}"));
+            Err(anyhow!("{why}; the same command goes on from the {n_done} of {n} tiles that are done"))
         }
         None => made,
     }
@@ -140,16 +141,17 @@ fn identity(inputs: &Inputs, keys: &[TileKeys]) -> Identity {
 }
 
 /// Refuses scenes with other axes or units than the first.
-fn check_axes(inputs: &[TileInput]) -> Result<(), Error> {
+fn check_axes(inputs: &[TileInput]) -> Result<()> {
     let first = &inputs[0];
     match inputs.iter().find(|tile| tile.axes != first.axes) {
         None => Ok(()),
-        Some(other) => Err(Error::Axes {
-            path: other.scene.clone(),
-            first: first.scene.clone(),
-            found: other.axes.clone(),
-            expected: first.axes.clone(),
-        }),
+        Some(other) => Err(anyhow!(
+            "{}: up is {found}, and in {} it is {expected}: all scenes of a world have the same axes and units",
+            other.scene.display(),
+            first.scene.display(),
+            found = other.axes,
+            expected = first.axes
+        )),
     }
 }
 
@@ -201,9 +203,9 @@ impl World<'_> {
     }
 
     /// Finds which tiles have their files.
-    fn find(&mut self) -> Result<(), Error> {
+    fn find(&mut self) -> Result<()> {
         let out = &self.args.output;
-        let failed = |source| OutputError::Folder { path: out.clone(), source };
+        let failed = |error| cannot_be_made(out, error);
         fs::create_dir_all(out).map_err(failed)?;
         output::check_writable(&out.join(INDEX_NAME))?;
         let has = |tile: usize, part: TilePart| self.path(tile, part).is_file();
@@ -228,7 +230,7 @@ impl World<'_> {
         (reading, threads): (&SceneReadOptions, usize),
         kept: &Kept<'_>,
         show_progress: bool,
-    ) -> Result<(), Error> {
+    ) -> Result<()> {
         let units = kept.units();
         // Tiles that are near each other need the same scenes, so they follow each other.
         let viewers: Vec<Aabb<3>> = self.inputs.iter().map(|tile| tile.bounds.viewers).collect();
@@ -253,11 +255,11 @@ impl World<'_> {
         let shares = shares_of(&costs);
         let bar = Bar::new("tiles", show_progress);
         let counter = Counter::new(Some(&bar), PHASE, order.len()).of(Work::Deciding);
-        let one = |unit: usize| -> Result<(), Error> {
+        let one = |unit: usize| -> Result<()> {
             let tile = order[unit];
             counter.check()?;
             let mut is_made = false;
-            let result = units.get(PHASE, unit, || -> Result<Vec<u8>, Error> {
+            let result = units.get(PHASE, unit, || -> Result<Vec<u8>> {
                 let Some(missing) = self.missing[tile] else { return Ok(Vec::new()) };
                 is_made = true;
                 let begin = Instant::now();
@@ -290,25 +292,25 @@ impl World<'_> {
                 }
                 one(unit).inspect_err(|_| is_failed.store(true, Relaxed))
             });
-            done.into_iter().collect::<Result<(), Error>>()
+            done.into_iter().collect::<Result<()>>()
         })
     }
 
-    fn save(&self, tile: usize, files: &Files) -> Result<(), Error> {
-        Ok(files.iter().try_for_each(|(part, bytes)| output::save(&self.path(tile, part), bytes))?)
+    fn save(&self, tile: usize, files: &Files) -> Result<()> {
+        files.iter().try_for_each(|(part, bytes)| output::save(&self.path(tile, part), bytes))
     }
 
     /// Writes the index, and removes files of tiles that are no longer in it.
-    fn finish(&self, start: Instant) -> Result<Outcome, Error> {
+    fn finish(&self, start: Instant) -> Result<Outcome> {
         let out = &self.args.output;
         let mut outcome = Outcome::new(&self.args.world, out);
         let (border, reach) = self.distances;
         let mut index = WorldIndex { border, reach, tiles: Vec::new() };
         for (tile, (input, keys)) in self.inputs.iter().zip(self.keys).enumerate() {
             let path = self.path(tile, TilePart::Table);
-            let open = |source| InputError::Open { path: path.clone(), source };
+            let open = |error| anyhow!("{}: {error}", path.display());
             let table = Packed::open(File::open(&path).map_err(open)?, 0);
-            let table = table.map_err(|source| InputError::Packed { path: path.clone(), source })?;
+            let table = table.in_file(&path)?;
             let TileKeys { key, far_key, .. } = *keys;
             index.tiles.push(TileEntry {
                 name: input.plan.name.clone(),
@@ -322,7 +324,7 @@ impl World<'_> {
                 .count(self.missing[tile].map(|missing| missing == Missing::All), (table.n_cells(), table.n_objects()));
             for part in TilePart::ALL {
                 let path = self.path(tile, part);
-                outcome.n_bytes += fs::metadata(&path).map_err(|source| InputError::Open { path, source })?.len();
+                outcome.n_bytes += fs::metadata(&path).in_file(&path)?.len();
             }
         }
         let index_path = out.join(INDEX_NAME);

@@ -1,7 +1,7 @@
 //! `tiles check`: whether the files of a baked world are whole and belong together.
 
-use super::Error;
 use crate::Answer;
+use crate::error::Result;
 use crate::output::{self, bytes, count};
 use crate::progress::Bar;
 use serde::Serialize;
@@ -31,15 +31,15 @@ struct Checked {
     n_resident_bytes: usize,
 }
 
-pub(super) fn run(args: &TilesCheckArgs, show_progress: bool) -> Result<Answer, Error> {
-    let world = World::open(&args.world).map_err(Error::Tables)?;
+pub(super) fn run(args: &TilesCheckArgs, show_progress: bool) -> Result<Answer> {
+    let world = World::open(&args.world)?;
     let n_tiles = world.index().tiles.len();
     let mut checked =
         Checked { world: args.world.display().to_string(), n_tiles, n_cells: 0, n_objects: 0, n_resident_bytes: 0 };
     let bar = Bar::new("tiles", show_progress);
     for (k, tile) in world.tiles().enumerate() {
-        let tables = TileTables::load(&world, tile, 0).map_err(Error::Tables)?;
-        tables.verify().map_err(Error::Tables)?;
+        let tables = TileTables::load(&world, tile, 0)?;
+        tables.verify()?;
         checked.n_cells += tables.table().n_cells();
         checked.n_objects += tables.table().n_objects();
         checked.n_resident_bytes += tables.n_bytes();

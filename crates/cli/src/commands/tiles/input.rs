@@ -1,7 +1,6 @@
 //! What a world consists of: its plan, and what is known of each tile before any is baked.
 
-use super::Error;
-use crate::error::InputError;
+use crate::error::{ErrorAbout, Result, anyhow, bail};
 use crate::surfaces;
 use sightlines::bake::tile::{tile_cells, tile_extent};
 use sightlines::bake::{BakeError, BakeRequest, CellsFrom, Runtime};
@@ -41,9 +40,9 @@ pub(super) struct Loaded {
 }
 
 /// The plan of a world.
-pub(super) fn plan(path: &Path) -> Result<WorldPlan, Error> {
-    let text = fs::read(path).map_err(|source| InputError::Open { path: path.to_owned(), source })?;
-    WorldPlan::parse(&text).map_err(|source| Error::World { path: path.to_owned(), source })
+pub(super) fn plan(path: &Path) -> Result<WorldPlan> {
+    let text = fs::read(path).in_file(path)?;
+    WorldPlan::parse(&text).in_file(path)
 }
 
 /// The plan, and all files that it names.
@@ -57,11 +56,7 @@ fn beside(world: &Path, name: &str) -> PathBuf {
 }
 
 /// The tile of a plan, `tile` in it; warns of what a user should hear of its file.
-pub(super) fn look(
-    world: &Path,
-    (tile, plan): (usize, TilePlan),
-    reading: &SceneReadOptions,
-) -> Result<TileInput, Error> {
+pub(super) fn look(world: &Path, (tile, plan): (usize, TilePlan), reading: &SceneReadOptions) -> Result<TileInput> {
     let (scene, cells) = (beside(world, &plan.scene), plan.cells.as_deref().map(|name| beside(world, name)));
     let loaded = load(&scene, cells.as_deref(), &plan, reading, true)?;
     let extent = tile_extent(&loaded.scene, &[ViewCell { id: String::new(), bounds: loaded.viewers }]);
@@ -69,7 +64,7 @@ pub(super) fn look(
     if is_flat {
         let what =
             format!("{}: there is no room for viewers in the box of the scene; name \"viewers\"", scene.display());
-        return Err(Error::World { path: world.to_owned(), source: WorldError::Tile { tile, what } });
+        bail!("{}: {source}", world.display(), source = WorldError::Tile { tile, what });
     }
     let bounds = TileBounds { viewers: loaded.viewers, extent };
     let axes = format!("{:?}, {:?}", loaded.info.up, loaded.info.unit);
@@ -79,27 +74,30 @@ pub(super) fn look(
 
 impl TileInput {
     /// Reads it again. Refuses what has changed meanwhile.
-    pub(super) fn load(&self, reading: &SceneReadOptions) -> Result<Loaded, Error> {
+    pub(super) fn load(&self, reading: &SceneReadOptions) -> Result<Loaded> {
         let loaded = load(&self.scene, self.cells.as_deref(), &self.plan, reading, false)?;
-        if loaded.key() == self.key { Ok(loaded) } else { Err(Error::Changed(self.scene.clone())) }
+        if loaded.key() == self.key {
+            Ok(loaded)
+        } else {
+            Err(anyhow!("{}: the file was changed while the world was baked; bake it again", self.scene.display()))
+        }
     }
 
     /// Its cells: those that its plan gives, or cut as the request says.
-    pub(super) fn cut(
-        &self,
-        loaded: &Loaded,
-        request: &BakeRequest,
-        runtime: &Runtime<'_>,
-    ) -> Result<Vec<ViewCell>, Error> {
+    pub(super) fn cut(&self, loaded: &Loaded, request: &BakeRequest, runtime: &Runtime<'_>) -> Result<Vec<ViewCell>> {
         let cells = loaded.given.clone().map(CellsFrom::Boxes).or_else(|| request.cells.clone());
         let failed = |source: BakeError| match source {
             BakeError::Cancelled(cancelled) => cancelled.into(),
-            source => Error::Bake { path: self.scene.clone(), source },
+            source => anyhow!("{}: {source}", self.scene.display()),
         };
         let request = BakeRequest { cells, ..request.clone() };
         let cells = tile_cells(&loaded.scene, &loaded.viewers, &request, runtime).map_err(failed)?;
         if cells.is_empty() {
-            return Err(Error::NoCells { path: self.scene.clone(), tile: self.plan.name.clone() });
+            bail!(
+                "{}: the tile {tile:?} has no cells: no eye can be in it; leave it out, or give it \"viewers\"",
+                self.scene.display(),
+                tile = self.plan.name
+            );
         }
         Ok(cells)
     }
@@ -114,19 +112,13 @@ impl Loaded {
     }
 }
 
-fn load(
-    scene: &Path,
-    cells: Option<&Path>,
-    plan: &TilePlan,
-    reading: &SceneReadOptions,
-    warn: bool,
-) -> Result<Loaded, Error> {
+fn load(scene: &Path, cells: Option<&Path>, plan: &TilePlan, reading: &SceneReadOptions, warn: bool) -> Result<Loaded> {
     let file = read_scene_with(scene, reading)?;
     crate::input::check_occluder(scene, &file)?;
     if warn {
         surfaces::warn(scene, &file);
     }
-    let moved = |source| Error::Moved { path: scene.to_owned(), source };
+    let moved = |source| anyhow!("{}: moved to its place in the world: {source}", scene.display());
     let (scene, info) = (file.scene.translated(plan.at).map_err(moved)?, file.info);
     let given = cells.map(read_view_cells).transpose()?.map(|given| moved_cells(given, plan.at));
     let of_cells = |given: &ViewCells| {

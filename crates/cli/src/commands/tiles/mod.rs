@@ -3,17 +3,16 @@
 mod bake;
 mod build;
 mod check;
-mod error;
 mod input;
 mod outcome;
 mod query;
 mod scenes;
 
 pub(crate) use build::{TilesBuildArgs, make};
-pub(crate) use error::Error;
 pub(crate) use outcome::Outcome;
 
 use crate::Answer;
+use crate::error::Result;
 use clap::Subcommand;
 
 /// Arguments of `tiles`.
@@ -34,7 +33,7 @@ pub(crate) enum TilesCommand {
     Check(check::TilesCheckArgs),
 }
 
-pub(crate) fn run(args: &TilesArgs, show_progress: bool) -> Result<Answer, Error> {
+pub(crate) fn run(args: &TilesArgs, show_progress: bool) -> Result<Answer> {
     match &args.what {
         TilesCommand::Build(args) => build::run(args, show_progress),
         TilesCommand::Query(args) => query::run(args),

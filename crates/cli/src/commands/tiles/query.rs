@@ -1,6 +1,6 @@
 //! `tiles query`: what may be seen from a point of a baked world.
 
-use super::Error;
+use crate::error::Result;
 use crate::output::{self, count};
 use crate::{Answer, place::Point};
 use serde::Serialize;
@@ -48,15 +48,15 @@ struct Found {
     n_tiles: usize,
 }
 
-pub(super) fn run(args: &TilesQueryArgs) -> Result<Answer, Error> {
-    let world = World::open(&args.world).map_err(Error::Tables)?;
+pub(super) fn run(args: &TilesQueryArgs) -> Result<Answer> {
+    let world = World::open(&args.world)?;
     let eye = args.eye.coordinates(3, &args.world)?;
     let eye = [eye[0], eye[1], eye[2]];
     let (mut at, mut inside, mut seen, mut scratch) = (Vec::new(), Vec::new(), Seen::default(), TileScratch::default());
     world.tiles_at(eye, &mut at);
     for &tile in &at {
-        let tables = TileTables::load(&world, tile, CACHE).map_err(Error::Tables)?;
-        if tables.see(eye, &mut seen, &mut scratch).map_err(Error::Tables)? {
+        let tables = TileTables::load(&world, tile, CACHE)?;
+        if tables.see(eye, &mut seen, &mut scratch)? {
             inside.push(tile);
         }
     }

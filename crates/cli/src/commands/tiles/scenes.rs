@@ -1,7 +1,7 @@
 //! Scenes of tiles with their cells, read when they are needed, and kept while there is room.
 
-use super::Error;
 use super::input::{Loaded, TileInput};
+use crate::error::Result;
 use sightlines::bake::{BakeRequest, Runtime};
 use sightlines::formats::ViewCell;
 use sightlines::formats::scene::SceneReadOptions;
@@ -45,7 +45,7 @@ impl<'a> Scenes<'a> {
     }
 
     /// A tile, read if it is not there.
-    pub(super) fn get(&self, tile: usize) -> Result<Arc<Ready>, Error> {
+    pub(super) fn get(&self, tile: usize) -> Result<Arc<Ready>> {
         let slot = {
             let (slots, order) = &mut *lock(&self.kept);
             order.retain(|&other| other != tile);

@@ -1,7 +1,6 @@
 //! The picture of the first ray that shows a violation.
 
-use super::Error;
-use crate::picture::PictureError;
+use crate::error::{ErrorAbout, Result};
 use crate::picture::up_of;
 use crate::picture::{draw_plan, save_picture};
 use sightlines::geometry::Point2;
@@ -12,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 /// Draws what a cell sees according to the table, and the ray that contradicts it. `None`, and no picture, if no violation has a
 /// ray.
-pub(super) fn draw(source: &Path, table: &Table, findings: &Findings, out: &Path) -> Result<Option<PathBuf>, Error> {
+pub(super) fn draw(source: &Path, table: &Table, findings: &Findings, out: &Path) -> Result<Option<PathBuf>> {
     let shown = findings.violations.iter().find_map(|v| Some((v, v.segment()?)));
     let Some((violation, segment)) = shown else { return Ok(None) };
     let cells = violation.cells();
@@ -30,8 +29,7 @@ pub(super) fn draw(source: &Path, table: &Table, findings: &Findings, out: &Path
             line: Some(segment),
             ..SliceOptions::default()
         };
-        slice_svg(table, &options)
-            .map_err(|source_error| PictureError::Draw { path: source.to_owned(), source: source_error })?
+        slice_svg(table, &options).in_file(source)?
     };
     save_picture(&svg, out)?;
     Ok(Some(out.to_owned()))

@@ -1,7 +1,6 @@
 //! `verify`: is a table true to its scene?
 
 mod drawing;
-mod error;
 mod outcome;
 mod own;
 mod proofs;
@@ -9,7 +8,7 @@ mod truth;
 mod violations;
 
 use crate::Answer;
-use crate::error::InputError;
+use crate::error::{Result, anyhow};
 use crate::input;
 use crate::input::refuse;
 use crate::picture::PictureKind;
@@ -18,7 +17,6 @@ use crate::progress::Bar;
 use crate::surfaces::SurfaceArgs;
 use crate::unproven::Unproven;
 use crate::{output, tables};
-use error::Error;
 use outcome::{Outcome, With};
 use sightlines::formats::InputKind;
 use sightlines::pvs::Table;
@@ -78,7 +76,7 @@ pub(crate) struct VerifyArgs {
 /// Bytes of blocks of a packed table that are kept while it is unpacked.
 const CACHE: usize = 64 << 20;
 
-pub(crate) fn run(args: &VerifyArgs, show_progress: bool) -> Result<Answer, Error> {
+pub(crate) fn run(args: &VerifyArgs, show_progress: bool) -> Result<Answer> {
     if let Some(picture) = &args.draw {
         PictureKind::of(picture)?;
         output::check(&[&args.table, &args.scene], &[picture])?;
@@ -100,7 +98,7 @@ pub(crate) fn run(args: &VerifyArgs, show_progress: bool) -> Result<Answer, Erro
     } else if args.draw.is_some() {
         input::refuse_without_places(table, &args.table, "no ray can be drawn")?;
     }
-    let failed = |source| Error::Verify { table: args.table.clone(), scene: args.scene.clone(), source };
+    let failed = |source| anyhow!("{}: is no table of {}: {source}", args.table.display(), args.scene.display());
     let VerifyArgs { rays, pairs, tries, segments, seed, threads, .. } = *args;
     let start = Instant::now();
     let bar = Bar::new("rays", show_progress);
@@ -145,10 +143,10 @@ fn unproven(table: &Table) -> Option<Unproven> {
 }
 
 /// Reads a table of either kind.
-fn read_table(path: &Path) -> Result<Table, InputError> {
+fn read_table(path: &Path) -> Result<Table> {
     if input::kind_of(path)? != Some(InputKind::Packed) {
         return input::table(path);
     }
-    let failed = |source| InputError::Packed { path: path.to_owned(), source };
+    let failed = |source| anyhow!("{}: {source}", path.display());
     tables::packed(path, CACHE)?.to_table().map_err(failed)
 }

@@ -1,9 +1,8 @@
 //! The visibility that a map has of its own, which engines load: read, and summed up.
 
-use super::Error;
-use crate::error::InputError;
+use crate::error::{Result, anyhow, bail};
 use crate::input;
-use crate::map_portals::portals_for;
+use crate::map_portals::{do_not_fit, portals_for};
 use crate::output::{bytes, count};
 use serde::Serialize;
 use sightlines::bake::BakeError;
@@ -74,12 +73,7 @@ impl fmt::Display for About {
 ///
 /// # Errors
 /// [`Error`] for a map without visibility of its own, for files that cannot be read, and for those that do not go together.
-pub(super) fn read(
-    path: &Path,
-    scene: &Path,
-    map: Option<&str>,
-    prt: Option<&Path>,
-) -> Result<Option<OwnVisibility>, Error> {
+pub(super) fn read(path: &Path, scene: &Path, map: Option<&str>, prt: Option<&Path>) -> Result<Option<OwnVisibility>> {
     match input::kind_of(path)? {
         Some(InputKind::Bsp) => of_bsp(path, scene, prt).map(Some),
         Some(InputKind::Wad) => of_wad(path, scene, map).map(Some),
@@ -88,31 +82,37 @@ pub(super) fn read(
 }
 
 /// Reads the lump of a Quake map; the portal file of the scene lists the cluster of each leaf.
-fn of_bsp(path: &Path, scene: &Path, prt: Option<&Path>) -> Result<OwnVisibility, Error> {
+fn of_bsp(path: &Path, scene: &Path, prt: Option<&Path>) -> Result<OwnVisibility> {
     let bsp = read_bsp(path)?;
     let (named, portals) = portals_of(path, scene, prt)?;
     OwnVisibility::of_bsp(&bsp, &portals).map_err(|error| match error {
-        OwnError::OtherMap(source) => InputError::of_portals(&named, path, source).into(),
+        OwnError::OtherMap(source) => do_not_fit(&named, path, &source),
         error => refused(path, None, error),
     })
 }
 
 /// Reads the lump of a Doom map, for the cells that the lines of the scene make.
-fn of_wad(path: &Path, scene: &Path, name: Option<&str>) -> Result<OwnVisibility, Error> {
+fn of_wad(path: &Path, scene: &Path, name: Option<&str>) -> Result<OwnVisibility> {
     if input::kind_of(scene)? != Some(InputKind::Wad) {
         let (path, scene) = (path.to_owned(), scene.to_owned());
-        return Err(Error::OwnScene { path, scene, needed: "a WAD with the map" });
+        bail!(
+            "{}: is a map, whose own visibility is checked against a WAD with the map; {} is none",
+            path.display(),
+            scene.display()
+        );
     }
     let [map, real] = [input::doom(path, name)?, input::doom(scene, name)?];
     if map.n_sectors() != real.n_sectors() {
         let n_sectors = [map.n_sectors(), real.n_sectors()];
-        return Err(Error::OwnSectors { path: path.to_owned(), scene: scene.to_owned(), n_sectors });
+        bail!(
+            "{}: is no map of {}: it has {} sectors, not {}",
+            path.display(),
+            scene.display(),
+            n_sectors[0],
+            n_sectors[1]
+        );
     }
-    let failed = |source: BakeError| Error::Bake {
-        path: scene.to_owned(),
-        map: Some(real.name().to_string()),
-        source: Box::new(source),
-    };
+    let failed = |source: BakeError| anyhow!("{}: map {}: {source}", scene.display(), real.name());
     // A map without a lump is refused before it is cut.
     OwnVisibility::check_reject(&map).map_err(|error| refused(path, Some(map.name().to_string()), error))?;
     let plan = real.plan().map_err(|error| failed(error.into()))?;
@@ -121,28 +121,32 @@ fn of_wad(path: &Path, scene: &Path, name: Option<&str>) -> Result<OwnVisibility
 }
 
 /// Names the file and the map.
-fn refused(path: &Path, map: Option<String>, error: OwnError) -> Error {
-    let path = path.to_owned();
+fn refused(path: &Path, map: Option<String>, error: OwnError) -> anyhow::Error {
+    let file = path.display();
     match (error, map) {
-        (OwnError::Visibility(source) | OwnError::OtherMap(source), _) => Error::OwnVisibility { path, source },
-        (OwnError::Length(source), Some(map)) => Error::OwnLength { path, map, source },
-        (_, map @ Some(_)) => Error::NoOwn { path, map, what: "REJECT lump", command: "sightlines reject" },
-        (_, None) => Error::NoOwn { path, map: None, what: "visibility lump", command: "sightlines vis" },
+        (OwnError::Visibility(source) | OwnError::OtherMap(source), _) => anyhow!("{file}: {source}"),
+        (OwnError::Length(source), Some(map)) => anyhow!("{file}: map {map}: {source}"),
+        (_, Some(map)) => {
+            anyhow!("{file}: map {map}: there is no REJECT lump to check, or an empty one; sightlines reject writes it")
+        }
+        (_, None) => {
+            anyhow!("{file}: there is no visibility lump to check, or an empty one; sightlines vis writes it")
+        }
     }
 }
 
 /// The portals of the scene, which may be a portal file itself, with the file that has them.
-fn portals_of(path: &Path, scene: &Path, prt: Option<&Path>) -> Result<(PathBuf, Prt), Error> {
+fn portals_of(path: &Path, scene: &Path, prt: Option<&Path>) -> Result<(PathBuf, Prt)> {
     match (input::kind_of(scene)?, prt) {
         (Some(InputKind::Prt), _) => Ok((scene.to_owned(), read_prt(scene)?)),
         (Some(InputKind::Bsp), prt) => {
             let portals = portals_for(&read_bsp(scene)?, scene, prt)?;
             Ok((portals.path, portals.prt))
         }
-        _ => Err(Error::OwnScene {
-            path: path.to_owned(),
-            scene: scene.to_owned(),
-            needed: "a Quake map or its portal file",
-        }),
+        _ => Err(anyhow!(
+            "{}: is a map, whose own visibility is checked against a Quake map or its portal file; {} is none",
+            path.display(),
+            scene.display()
+        )),
     }
 }

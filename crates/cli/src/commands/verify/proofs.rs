@@ -1,7 +1,6 @@
 //! Proofs that `build --certify` wrote, checked against their table.
 
-use super::Error;
-use crate::error::InputError;
+use crate::error::{ErrorAbout, Result, anyhow, bail};
 use crate::output::{bytes, count, seconds};
 use serde::Serialize;
 use sightlines::certificates::Refusal;
@@ -85,12 +84,7 @@ pub(super) struct ProofOutcome {
 ///
 /// # Errors
 /// [`Error`] if `--strict` has nothing to be strict about, for files that cannot be read, and for proofs of another kind of table.
-pub(super) fn check(
-    args: &ProofArgs,
-    path: &Path,
-    table: &Table,
-    truth: &Truth<'_>,
-) -> Result<Option<ProofOutcome>, Error> {
+pub(super) fn check(args: &ProofArgs, path: &Path, table: &Table, truth: &Truth<'_>) -> Result<Option<ProofOutcome>> {
     let beside = path.with_extension("cert");
     let is_asked_for = args.proofs.is_some();
     let file = match &args.proofs {
@@ -98,10 +92,14 @@ pub(super) fn check(
         None if beside.is_file() => beside,
         // What has no proofs is counted, and that is all.
         None if !can_be_proven(table) => return Ok(None),
-        None if args.strict => return Err(Error::NoProofs { path: path.to_owned(), beside }),
+        None if args.strict => bail!(
+            "{}: --strict is for tables with proofs, and there are none: no --proofs, and no {}",
+            path.display(),
+            beside.display()
+        ),
         None => return Ok(None),
     };
-    let content = std::fs::read(&file).map_err(|source| InputError::Open { path: file.clone(), source })?;
+    let content = std::fs::read(&file).in_file(&file)?;
     let start = Instant::now();
     let found = check_proofs(table, &content);
     let is_of_other = match &found {
@@ -123,7 +121,7 @@ pub(super) fn check(
         );
         return Ok(Some(ProofOutcome { is_stale: true, is_true: !args.strict, ..nothing }));
     }
-    let found = found.map_err(|source| Error::Proofs { path: file.clone(), table: path.to_owned(), source })?;
+    let found = found.map_err(|source| anyhow!("{}: {source} (the table is {})", file.display(), path.display()))?;
     let walls = match truth {
         Truth::Plan(plan) => check_walls_of_plan(table, plan),
         Truth::Scene(scene) => check_walls_in_space(table, scene),

@@ -1,9 +1,8 @@
 //! The scene that a table is checked against.
 
-use super::Error;
-use crate::error::InputError;
+use crate::error::{Result, anyhow};
 use crate::input::{self, refuse};
-use crate::map_portals::portals_for;
+use crate::map_portals::{do_not_fit, portals_for};
 use sightlines::bake::{Bakeable, Gap, PrtBakeError};
 use sightlines::cells::{CellGraph, Convex, Plan, Scene};
 use sightlines::formats::quake::bsp::BspError;
@@ -30,7 +29,7 @@ impl Real {
         map: Option<&str>,
         prt: Option<&Path>,
         (options, plan): (&SceneReadOptions, &PlanReadOptions),
-    ) -> Result<Self, Error> {
+    ) -> Result<Self> {
         let input = input::read(path, map, options, plan)?;
         let portals = match &input {
             Input::Bsp(bsp) => Some(portals_for(bsp, path, prt)?),
@@ -46,10 +45,9 @@ impl Real {
             Bakeable::Portals(prt) => Self::Portals(graph_of_prt(&prt)),
             Bakeable::Map(bsp, portals) => {
                 let file = file.unwrap_or_default();
-                check_portals(&bsp, &portals)
-                    .map_err(|source| InputError::of_portals(&file, path, Box::new(source)))?;
+                check_portals(&bsp, &portals).map_err(|source| do_not_fit(&file, path, &source))?;
                 let broken =
-                    |error: BspError| Error::BakePrt { path: path.to_owned(), source: PrtBakeError::Bsp(error) };
+                    |error: BspError| anyhow!("{}: {source}", path.display(), source = PrtBakeError::Bsp(error));
                 Self::Map(graph_of_prt(&portals), WorldTree::of_map(&bsp, &portals).map_err(broken)?)
             }
         })

@@ -1,6 +1,6 @@
 //! What `vga` writes, by the name of its output.
 
-use super::error::Error;
+use crate::error::{Result, anyhow};
 use std::path::Path;
 
 /// What is written.
@@ -13,13 +13,13 @@ pub(super) enum Kind {
 }
 
 impl Kind {
-    pub(super) fn of(path: &Path) -> Result<Self, Error> {
+    pub(super) fn of(path: &Path) -> Result<Self> {
         match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
             Some("csv") => Ok(Self::Csv),
             Some("geojson" | "json") => Ok(Self::GeoJson),
             Some("svg") => Ok(Self::Svg),
             Some("png") => Ok(Self::Png),
-            _ => Err(Error::Kind(path.to_owned())),
+            _ => Err(anyhow!("{}: the name of the output ends in .csv, .geojson, .svg or .png", path.display())),
         }
     }
 

@@ -1,22 +1,19 @@
 //! `vga`: visibility graph analysis of a floor plan.
 
-mod error;
 mod kind;
 mod outcome;
 mod points;
 
 use crate::Answer;
-use crate::error::InputError;
+use crate::error::{ErrorAbout, Result, anyhow, bail};
 use crate::input;
 use crate::kept::{Identity, Inputs, Keeping, Kept, ResumeArgs};
 use crate::memory::{self, MemoryArgs, Needs};
 use crate::named::one_of;
 use crate::output;
-use crate::picture::PictureError;
 use crate::place::Point;
 use crate::plans::PlanArgs;
 use crate::progress::Bar;
-use error::Error;
 use kind::Kind;
 use outcome::{Outcome, Range};
 use sightlines::bake::Bakeable;
@@ -178,16 +175,16 @@ const fn touch_about(touch: Touch) -> &'static str {
     }
 }
 
-pub(crate) fn run(args: &VgaArgs, show_progress: bool) -> Result<Answer, Error> {
+pub(crate) fn run(args: &VgaArgs, show_progress: bool) -> Result<Answer> {
     args.memory.watch();
     let kind = Kind::of(&args.output)?;
     let inputs: Vec<&Path> = std::iter::once(&args.plan).chain(&args.points).map(PathBuf::as_path).collect();
     output::check(&inputs, &[&args.output])?;
     if kind.is_picture() && args.spacing.is_none() {
-        return Err(Error::Side(args.output.clone()));
+        bail!("{}: a picture of points needs --spacing, the side of the square around each", args.output.display());
     }
     if args.measure.is_some() && !kind.is_picture() {
-        return Err(Error::Measure(args.output.clone()));
+        bail!("{}: --measure is for pictures, and this is a table of all --measures", args.output.display());
     }
     let keeping = Keeping::File(&args.resume);
     let looked = Inputs::look(keeping, inputs)?;
@@ -198,7 +195,12 @@ pub(crate) fn run(args: &VgaArgs, show_progress: bool) -> Result<Answer, Error> 
             (points, Some(size))
         }
         (Some(path), _) => (points::of_file(path)?, None),
-        (None, None) => return Err(Error::Side(args.output.clone())),
+        (None, None) => {
+            return Err(anyhow!(
+                "{}: a picture of points needs --spacing, the side of the square around each",
+                args.output.display()
+            ));
+        }
     };
     let measures = measures(args, kind);
     let drawn = kind.is_picture().then(|| shown(args, &measures));
@@ -206,7 +208,7 @@ pub(crate) fn run(args: &VgaArgs, show_progress: bool) -> Result<Answer, Error> 
     // Paths keep a length, a node and an entry of a heap for each point; a column has a number, and a value that may be missing.
     let n = points.len() as u64;
     let needs = Needs { shared: 24 * n * measures.len() as u64, per_thread: (4 << 20) + 48 * n };
-    let too_large = |source| Error::Memory { path: args.plan.clone(), source };
+    let too_large = |source| anyhow!("{}: {source}; allow more, or take fewer points", args.plan.display());
     let threads = args.memory.threads(args.threads, needs).map_err(too_large)?;
     let kept = Kept::open(keeping, &looked, &[&args.output], || args.identity(&looked))?;
     let analysed = analyse(args, &plan, &points, &measures, (&kept, threads, show_progress));
@@ -217,7 +219,7 @@ pub(crate) fn run(args: &VgaArgs, show_progress: bool) -> Result<Answer, Error> 
     });
     // Results are of use until the output is written.
     if let Some(interrupted) = kept.finish(written.is_ok()) {
-        return Err(Error::Interrupted(interrupted));
+        bail!("{interrupted}");
     }
     let (Analysed { graph, graph_seconds, measure_seconds, .. }, columns) = written?;
     let outcome = Outcome {
@@ -259,7 +261,7 @@ fn analyse(
     points: &Points,
     measures: &[Measure],
     (kept, threads, show_progress): (&Kept<'_>, usize, bool),
-) -> Result<Analysed, Error> {
+) -> Result<Analysed> {
     let bar = Bar::new("visibility graph", show_progress);
     let units = kept.units();
     let effort = Effort { threads, observer: Some(&bar), units };
@@ -273,8 +275,7 @@ fn analyse(
         angular_radius: args.angular_radius,
         turns: args.turns,
     };
-    let failed = |error| Error::Graph { path: args.plan.clone(), source: error };
-    let analysis = Analysis::of(&graph, points, measures, &options, &effort).map_err(|error| failed(error.into()))?;
+    let analysis = Analysis::of(&graph, points, measures, &options, &effort).in_file(&args.plan)?;
     Ok(Analysed { graph, analysis, graph_seconds, measure_seconds: start.elapsed().as_secs_f64() })
 }
 
@@ -295,7 +296,7 @@ impl VgaArgs {
 }
 
 /// The plan of a file.
-fn plan_of(args: &VgaArgs) -> Result<Plan, Error> {
+fn plan_of(args: &VgaArgs) -> Result<Plan> {
     let (path, map) = (&args.plan, args.map.as_deref());
     let options = args.plans.options(path)?;
     if matches!(input::kind_of(path)?, Some(InputKind::Plan | InputKind::Wad)) {
@@ -304,12 +305,12 @@ fn plan_of(args: &VgaArgs) -> Result<Plan, Error> {
             return Ok(plan);
         }
     }
-    Err(InputError::Kind { path: path.to_owned(), expected: "a plan nor a WAD" }.into())
+    Err(input::neither(path, "a plan nor a WAD"))
 }
 
-fn seeds(args: &VgaArgs) -> Result<Vec<Point2>, Error> {
+fn seeds(args: &VgaArgs) -> Result<Vec<Point2>> {
     let seed = |seed: &Point| {
-        let at = seed.coordinates(2, &args.plan).map_err(Error::Seed)?;
+        let at = seed.coordinates(2, &args.plan).about("--seed")?;
         Ok(Point2::new(at[0], at[1]))
     };
     args.seed.iter().map(seed).collect()
@@ -340,15 +341,15 @@ fn shown(args: &VgaArgs, measures: &[Measure]) -> Measure {
 }
 
 /// What sees what, decided on a mesh of the walls.
-fn graph(args: &VgaArgs, plan: &Plan, points: &Points, effort: &Effort<'_>) -> Result<VisibilityGraph, Error> {
-    let failed = |source| Error::Mesh { path: args.plan.clone(), source };
+fn graph(args: &VgaArgs, plan: &Plan, points: &Points, effort: &Effort<'_>) -> Result<VisibilityGraph> {
+    let failed = |source| anyhow!("{}: {source}", args.plan.display());
     let at = points.coordinates();
     let mesh = WallMesh::around(plan, at.iter().copied()).map_err(failed)?;
     let from = args.points.as_ref().unwrap_or(&args.plan);
-    let index = mesh.index(at).map_err(|source| Error::Eye { path: from.clone(), source })?;
+    let index = mesh.index(at).in_file(from)?;
     let seen = |eye: u32, list: &mut Vec<u32>| mesh.points_seen(eye, &index, args.touch, list);
     let built = VisibilityGraph::build(at.len() as u32, seen, effort);
-    built.map_err(|source| Error::Graph { path: args.plan.clone(), source })
+    built.in_file(&args.plan)
 }
 
 /// The bytes of the output.
@@ -359,7 +360,7 @@ fn written(
     points: &Points,
     columns: &[(Measure, Vec<f64>)],
     drawn: Option<Measure>,
-) -> Result<Vec<u8>, Error> {
+) -> Result<Vec<u8>> {
     let known: Vec<(Measure, Vec<Option<f64>>)> = columns
         .iter()
         .map(|(measure, values)| (*measure, values.iter().map(|&x| (x != UNDEFINED).then_some(x)).collect()))
@@ -387,5 +388,5 @@ fn written(
     if kind == Kind::Svg {
         return Ok(field_svg(&field).into_bytes());
     }
-    Ok(field_png(&field).map_err(|source| PictureError::Png { path: args.output.clone(), source })?)
+    field_png(&field).in_file(&args.output)
 }

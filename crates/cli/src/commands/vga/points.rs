@@ -1,6 +1,6 @@
 //! Which points there are.
 
-use super::error::Error;
+use crate::error::{ErrorAbout, Result, anyhow};
 use crate::output::count;
 use sightlines::cells::Plan;
 use sightlines::formats::points::read_points;
@@ -9,8 +9,8 @@ use sightlines::visibility_graph::{Grid, GridError, Interior, Points};
 use std::path::Path;
 
 /// The points of a grid over a plan: those that seeds reach or, without seeds, the interior; and the grid's columns and rows.
-pub(super) fn of_grid(path: &Path, plan: &Plan, spacing: f64, seeds: &[Point2]) -> Result<(Points, [usize; 2]), Error> {
-    let failed = |source: GridError| Error::Grid { path: path.to_owned(), source };
+pub(super) fn of_grid(path: &Path, plan: &Plan, spacing: f64, seeds: &[Point2]) -> Result<(Points, [usize; 2])> {
+    let failed = |source: GridError| anyhow!("{}: {source}", path.display());
     let grid = Grid::over(plan, spacing).map_err(failed)?;
     if !seeds.is_empty() {
         return Ok((grid.fill(seeds).map_err(failed)?, grid.size()));
@@ -27,7 +27,7 @@ pub(super) fn of_grid(path: &Path, plan: &Plan, spacing: f64, seeds: &[Point2]) 
 }
 
 /// The points of a file.
-pub(super) fn of_file(path: &Path) -> Result<Points, Error> {
+pub(super) fn of_file(path: &Path) -> Result<Points> {
     let points = read_points(path)?.into_iter().map(|point| point.point);
-    Points::new(points).map_err(|source| Error::Points { path: path.to_owned(), source })
+    Points::new(points).in_file(path)
 }

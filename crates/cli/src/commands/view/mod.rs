@@ -1,16 +1,14 @@
 //! `view`: a table as one HTML file.
 
-mod error;
 mod scene;
 
 use crate::Answer;
-use crate::error::InputError;
+use crate::error::{ErrorAbout, Result, anyhow};
 use crate::output::{self, bytes, count};
 use crate::plans::PlanArgs;
 use crate::reasons::reasons;
 use crate::surfaces::SurfaceArgs;
 use crate::{input, tables, walk_path};
-use error::Error;
 use serde::Serialize;
 use sightlines::formats::InputKind;
 use sightlines::pvs::Table;
@@ -66,7 +64,7 @@ pub(crate) struct ViewArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &ViewArgs, show_progress: bool) -> Result<Answer, Error> {
+pub(crate) fn run(args: &ViewArgs, show_progress: bool) -> Result<Answer> {
     let others = [&args.scene, &args.against, &args.walk];
     let inputs: Vec<&Path> =
         std::iter::once(args.table.as_path()).chain(others.into_iter().filter_map(Option::as_deref)).collect();
@@ -84,7 +82,7 @@ pub(crate) fn run(args: &ViewArgs, show_progress: bool) -> Result<Answer, Error>
         max_bytes: args.max_mb as usize * 1_000_000,
         ..Page::new(args.title.as_deref().unwrap_or(&name), &name, &table)
     };
-    let written = page.html().map_err(|source| Error::Page { path: args.table.clone(), source })?;
+    let written = page.html().in_file(&args.table)?;
     output::save(&args.output, written.html.as_bytes())?;
     let outcome = Outcome {
         out: args.output.display().to_string(),
@@ -97,23 +95,25 @@ pub(crate) fn run(args: &ViewArgs, show_progress: bool) -> Result<Answer, Error>
     };
     output::print(args.json, &outcome)?;
     if args.open {
-        open(&args.output).map_err(|source| Error::Browser { path: args.output.clone(), source })?;
+        open(&args.output).map_err(|error| {
+            anyhow!("{}: was written, but no browser could be started: {error}", args.output.display())
+        })?;
     }
     Ok(Answer::Yes)
 }
 
 /// Reads a table of either kind.
-fn read(path: &Path) -> Result<Table, Error> {
+fn read(path: &Path) -> Result<Table> {
     if input::kind_of(path)? == Some(InputKind::Packed) {
         let packed = tables::packed(path, CACHE)?;
-        let failed = |source| InputError::Packed { path: path.to_owned(), source };
-        return Ok(packed.to_table().map_err(failed)?);
+        let failed = |source| anyhow!("{}: {source}", path.display());
+        return packed.to_table().map_err(failed);
     }
-    Ok(input::table(path)?)
+    input::table(path)
 }
 
-fn frames(path: &Path, dimension: u8) -> Result<Vec<Frame>, Error> {
-    let poses = walk_path::read(path, dimension)?.map_err(|source| Error::Walk { path: path.to_owned(), source })?;
+fn frames(path: &Path, dimension: u8) -> Result<Vec<Frame>> {
+    let poses = walk_path::read(path, dimension)?;
     Ok(poses.into_iter().map(|pose| Frame { eye: pose.eye, dir: pose.dir }).collect())
 }
 

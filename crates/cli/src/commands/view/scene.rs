@@ -1,6 +1,7 @@
 //! The scene that a table was made of, as it is drawn.
 
-use super::{Error, ViewArgs};
+use super::ViewArgs;
+use crate::error::{Result, anyhow};
 use crate::input;
 use crate::same_scene::difference;
 use sightlines::bake::Bakeable;
@@ -12,7 +13,7 @@ use sightlines::viewer::Figure;
 use std::path::Path;
 
 /// Reads a scene, and refuses one that the table was not made of.
-pub(super) fn figure(path: &Path, args: &ViewArgs, table: &Table) -> Result<Figure, Error> {
+pub(super) fn figure(path: &Path, args: &ViewArgs, table: &Table) -> Result<Figure> {
     let plan = args.plans.options_with(path, table)?;
     match input::read(path, args.map.as_deref(), &args.surfaces.options_with(table.info()), &plan)? {
         Input::Scene(file) => of_scene(path, &file.scene, table),
@@ -25,11 +26,11 @@ pub(super) fn figure(path: &Path, args: &ViewArgs, table: &Table) -> Result<Figu
     }
 }
 
-fn other(path: &Path, what: impl Into<String>) -> Error {
-    Error::OtherScene { path: path.to_owned(), what: what.into() }
+fn other(path: &Path, what: impl std::fmt::Display) -> anyhow::Error {
+    anyhow!("{}: the table was made of another scene: {what}", path.display())
 }
 
-fn of_scene(path: &Path, scene: &Scene, table: &Table) -> Result<Figure, Error> {
+fn of_scene(path: &Path, scene: &Scene, table: &Table) -> Result<Figure> {
     if table.dimension() != 3 {
         return Err(other(path, "the table is of a plan"));
     }
@@ -40,7 +41,7 @@ fn of_scene(path: &Path, scene: &Scene, table: &Table) -> Result<Figure, Error> 
 }
 
 /// The objects of the table of a Quake map are the faces of its world.
-fn of_map(path: &Path, bsp: &Bsp, table: &Table) -> Result<Figure, Error> {
+fn of_map(path: &Path, bsp: &Bsp, table: &Table) -> Result<Figure> {
     let faces = bsp.world_faces().map_err(|error| ReadError::new(path, error))?;
     let (found, listed) = (faces.n_faces(), table.objects().len());
     match table.kind().is_quake() && found == listed {
@@ -49,7 +50,7 @@ fn of_map(path: &Path, bsp: &Bsp, table: &Table) -> Result<Figure, Error> {
     }
 }
 
-fn of_plan(path: &Path, plan: &Plan, table: &Table) -> Result<Figure, Error> {
+fn of_plan(path: &Path, plan: &Plan, table: &Table) -> Result<Figure> {
     if table.dimension() != 2 {
         return Err(other(path, "the table is of a scene in space"));
     }

@@ -1,7 +1,6 @@
 //! Proofs for some of the pairs of a table, before it is written.
 
-use super::Error;
-use super::error::Found;
+use crate::error::{Result, anyhow};
 use crate::output::count;
 use crate::progress::Bar;
 use serde::Serialize;
@@ -44,7 +43,7 @@ pub(super) fn certify(
     n: usize,
     fast: bool,
     bar: &Bar,
-) -> Result<Certified, Error> {
+) -> Result<Certified> {
     let explainer = ConvexExplainer::new(graph);
     let (visible, hidden) = (spread(visible_pairs(seen), n), spread(border_pairs(graph, seen), n));
     let mut certified = Certified::default();
@@ -56,7 +55,7 @@ pub(super) fn certify(
         let explanation = explainer.explain(a, b, MOST_EXPLAINED);
         let proven = if listed { &mut certified.visible } else { &mut certified.hidden };
         proven.n_picked += 1;
-        let wrong = |found| Err(Error::Contradiction { path: path.to_owned(), pair, is_listed: listed, found });
+        let wrong = |found| Err(contradiction(path, pair, listed, found));
         let shown = match explanation {
             Verdict::Undecided(ConvexDoubt::Limit(_)) => {
                 proven.n_too_many += 1;
@@ -70,16 +69,22 @@ pub(super) fn certify(
             Verdict::Visible(_) => true,
         };
         match (check_convex(graph, a, b, &explanation), listed, shown) {
-            (false, _, _) => return wrong(Found::Refused),
-            (true, false, true) => return wrong(Found::Line),
+            (false, _, _) => return wrong("the proof that was found does not hold"),
+            (true, false, true) => return wrong("a line joins them"),
             (true, true, false) if !fast && !seen.undecided.contains(&pair) => {
-                return wrong(Found::NoLine);
+                return wrong("no line joins them");
             }
             (true, true, false) => proven.n_loose += 1,
             (true, _, _) => proven.n_accepted += 1,
         }
     }
     Ok(certified)
+}
+
+/// A proof about two clusters that contradicts what the table lists: our bug.
+fn contradiction(path: &Path, [a, b]: [u32; 2], is_listed: bool, found: &str) -> anyhow::Error {
+    let listed = if is_listed { "visible" } else { "hidden" };
+    anyhow!("{}: clusters {a} and {b} are listed as {listed}, but {found}; nothing was written", path.display())
 }
 
 /// Pairs of different clusters that see each other, lower number first.

@@ -1,21 +1,19 @@
 //! `vis`: the visibility of a Quake map.
 
 mod certify;
-mod error;
 mod outcome;
 mod sounds;
 
-pub(crate) use error::Error;
+use crate::error::{Result, anyhow, bail};
 pub(crate) use outcome::Outcome;
 pub(crate) use sounds::Sound;
 
 use crate::Answer;
 use crate::clusters::warn_of_repeats;
 use crate::commands::build::needs::of_clusters;
-use crate::error::{InputError, OutputError};
 use crate::input;
 use crate::kept::{Identity, Inputs, Keeping, Kept, ResumeArgs};
-use crate::map_portals::{MapPortals, portal_file, portals_for};
+use crate::map_portals::{MapPortals, do_not_fit, portal_file, portals_for};
 use crate::memory::MemoryArgs;
 use crate::output;
 use crate::progress::Bar;
@@ -87,7 +85,7 @@ pub(crate) struct Manner<'a, 'k> {
     /// Whether they are kept after the end.
     pub(crate) keep_after: bool,
     /// Called before the search.
-    pub(crate) begin: &'a mut dyn FnMut(&Beginning<'_>) -> Result<(), OutputError>,
+    pub(crate) begin: &'a mut dyn FnMut(&Beginning<'_>) -> Result<()>,
 }
 
 /// What a search begins with.
@@ -99,7 +97,7 @@ pub(crate) struct Beginning<'a> {
     pub(crate) resumed: bool,
 }
 
-pub(crate) fn run(args: &VisArgs, show_progress: bool, verbose: bool) -> Result<Answer, Error> {
+pub(crate) fn run(args: &VisArgs, show_progress: bool, verbose: bool) -> Result<Answer> {
     let mut outcome = make(args, Keeping::File(&args.resume), show_progress)?;
     outcome.verbose = verbose;
     output::print(args.json, &outcome)?;
@@ -107,17 +105,23 @@ pub(crate) fn run(args: &VisArgs, show_progress: bool, verbose: bool) -> Result<
 }
 
 /// Writes the map. Prints nothing but progress and warnings.
-pub(crate) fn make(args: &VisArgs, keeping: Keeping<'_>, show_progress: bool) -> Result<Outcome, Error> {
+pub(crate) fn make(args: &VisArgs, keeping: Keeping<'_>, show_progress: bool) -> Result<Outcome> {
     compute(args, Manner { show_progress, keeping, keep_after: false, begin: &mut |_| Ok(()) })
 }
 
 /// The same, in a manner.
-pub(crate) fn compute(args: &VisArgs, manner: Manner<'_, '_>) -> Result<Outcome, Error> {
+pub(crate) fn compute(args: &VisArgs, manner: Manner<'_, '_>) -> Result<Outcome> {
     crate::threads::use_only(args.threads);
     let start = Instant::now();
     args.memory.watch();
     if args.prt.is_none() && args.map.is_file() && input::kind_of(&args.map)? == Some(InputKind::Prt) {
-        return Err(Error::PortalsForMap { path: args.map.clone(), command: "sightlines vis" });
+        bail!(
+            "{}: these are the portals of a map, and the map itself is needed: {command} {} --prt {}",
+            args.map.display(),
+            args.map.with_extension("bsp").display(),
+            args.map.display(),
+            command = "sightlines vis"
+        );
     }
     let file = portal_file(&args.map, args.prt.as_deref());
     let out = args.output.as_ref().unwrap_or(&args.map);
@@ -132,10 +136,10 @@ pub(crate) fn compute(args: &VisArgs, manner: Manner<'_, '_>) -> Result<Outcome,
         portals.announce();
     }
     let MapPortals { prt, path: prt_path, text, .. } = portals;
-    check_portals(&bsp, &prt).map_err(|source| InputError::of_portals(&prt_path, &args.map, Box::new(source)))?;
+    check_portals(&bsp, &prt).map_err(|source| do_not_fit(&prt_path, &args.map, &source))?;
     warn_of_repeats(&prt_path, &prt);
 
-    let too_large = |source| Error::Memory { path: args.map.clone(), source };
+    let too_large = |source| anyhow!("{}: {source}; allow more", args.map.display());
     let threads = args.memory.threads(args.threads, of_clusters(&prt)).map_err(too_large)?;
     let kept = Kept::open(manner.keeping, &inputs, &[out], || args.identity(&text, &inputs, manner.keeping))?;
     drop(text);
@@ -151,7 +155,7 @@ pub(crate) fn compute(args: &VisArgs, manner: Manner<'_, '_>) -> Result<Outcome,
         Ok(map) => map,
         Err(source) => {
             if let Some(interrupted) = kept.finish(false) {
-                return Err(Error::Interrupted(interrupted));
+                bail!("{interrupted}");
             }
             return Err(explained(source, args, &prt_path));
         }
@@ -165,7 +169,7 @@ pub(crate) fn compute(args: &VisArgs, manner: Manner<'_, '_>) -> Result<Outcome,
     let certified = certified.transpose()?;
     if let Err(error) = output::save(out, &map.bytes) {
         kept.finish(false);
-        return Err(error.into());
+        return Err(error);
     }
     if manner.keep_after {
         kept.leave();
@@ -198,8 +202,8 @@ impl VisArgs {
 }
 
 /// Puts the name of the file before what is wrong with it.
-fn explained(source: PrtBakeError, args: &VisArgs, prt: &Path) -> Error {
-    let about = |path: &Path, source| Error::BakePrt { path: path.to_owned(), source };
+fn explained(source: PrtBakeError, args: &VisArgs, prt: &Path) -> anyhow::Error {
+    let about = |path: &Path, source| anyhow!("{}: {source}", path.display());
     match source {
         PrtBakeError::Bsp(_) | PrtBakeError::Visibility(VisibilityError::Bsp(_) | VisibilityError::TooLarge { .. }) => {
             about(&args.map, source)

@@ -1,6 +1,6 @@
 //! What is drawn along a walk with the levels of a folder, and without.
 
-use super::error::{Error, UnlikeLevels};
+use crate::error::{ErrorAbout, Result, bail};
 use crate::output::percent;
 use crate::tables::Cells;
 use serde::Serialize;
@@ -26,21 +26,25 @@ pub(super) struct Drawn {
 }
 
 /// Counts the triangles of each frame.
-pub(super) fn drawn<C: Cells>(folder: &Path, cells: &C, file: &Path, views: &[View]) -> Result<Drawn, Error> {
+pub(super) fn drawn<C: Cells>(folder: &Path, cells: &C, file: &Path, views: &[View]) -> Result<Drawn> {
     let path = folder.join(INDEX_NAME);
     let index = read_levels_index(&path)?;
-    let unlike = |source| Error::LevelsOf { path: path.clone(), source };
     let [table, _] = cells.counts();
     if index.cells.len() != table {
-        return Err(unlike(UnlikeLevels::Count { levels: index.cells.len(), path: file.to_owned(), table }));
+        bail!(
+            "{}: the levels are for another table: the index has {} cells, {} has {table}",
+            path.display(),
+            index.cells.len(),
+            file.display()
+        );
     }
     let sizes = index.levels.iter().map(|level| LevelSize { bytes: level.n_bytes, n_triangles: level.n_triangles });
     let sizes: Vec<LevelSize> = sizes.collect();
-    let levels = LevelIndex::new(index.cells, sizes).map_err(|error| unlike(error.into()))?;
+    let levels = LevelIndex::new(index.cells, sizes).in_file(&path)?;
     let mut buffer = PlaceBuffer::new();
     let (mut n_frames, mut n_with_level, mut sum, mut most) = (0, 0, 0, 0);
     for view in views {
-        let place = cells.cells_at(view.eye(), &mut buffer).map_err(|error| C::fail(file, error))?;
+        let place = cells.cells_at(view.eye(), &mut buffer).in_file(file)?;
         if let Place::Inside(at) = place {
             let n = levels.n_triangles_at(at, index.n_triangles);
             n_frames += 1;

@@ -1,7 +1,7 @@
 //! Walking, and taking the time.
 
-use super::Error;
 use super::nesting::Sets;
+use crate::error::{ErrorAbout, Result, bail};
 use crate::tables::Cells;
 use sightlines::eye_to_cell::{Method, View};
 use sightlines::pvs::ObjectId;
@@ -79,7 +79,7 @@ struct Shot {
 impl<C: Cells> Walk<'_, C> {
     /// Walks all frames by each of the methods, which are in order, each no more than the one before: once waiting for
     /// what is prepared, taking times and checking that the answers are nested, and once without waiting.
-    pub(super) fn measure(&self, methods: &[Method], progress: &dyn Fn(usize, usize)) -> Result<Measured, Error> {
+    pub(super) fn measure(&self, methods: &[Method], progress: &dyn Fn(usize, usize)) -> Result<Measured> {
         let sums = |&method: &Method| MethodSums {
             method,
             cells: 0,
@@ -125,7 +125,7 @@ impl<C: Cells> Walk<'_, C> {
         first: usize,
         views: &[View],
         most_bytes: &mut usize,
-    ) -> Result<Vec<Vec<Shot>>, Error> {
+    ) -> Result<Vec<Vec<Shot>>> {
         let mut all = Vec::new();
         let mut coarser: Vec<Option<(Method, Sets)>> = vec![None; views.len()];
         for &method in methods {
@@ -137,7 +137,11 @@ impl<C: Cells> Walk<'_, C> {
                         && let Some(what) = sets.beyond(found)
                     {
                         let (path, frame) = (self.file.to_owned(), first + k);
-                        return Err(Error::Nesting { path, frame, finer: method, coarser: *coarser, what });
+                        bail!(
+                            "{}: frame {frame}: {method} finds {what}, which {coarser} does not; this is a defect of the program",
+                            path.display(),
+                            coarser = *coarser
+                        );
                     }
                     coarser[k] = Some((method, sets));
                 }
@@ -150,13 +154,13 @@ impl<C: Cells> Walk<'_, C> {
     }
 
     /// A frame, repeated until it is answered in full; the time is that of the last. Its sets, if it was.
-    fn shoot(&self, walk: &mut Walkthrough<C, C>, view: &View, method: Method) -> Result<(Shot, Option<Sets>), Error> {
+    fn shoot(&self, walk: &mut Walkthrough<C, C>, view: &View, method: Method) -> Result<(Shot, Option<Sets>)> {
         for left in (0..TRIES).rev() {
             while !walk.is_idle() {
                 thread::sleep(NAP);
             }
             if let Some((_, error)) = walk.take_error() {
-                return Err(C::fail(self.file, error).into());
+                return Err(error).in_file(self.file);
             }
             let start = Instant::now();
             let frame = walk.frame(view, method);

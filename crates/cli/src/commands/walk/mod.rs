@@ -1,18 +1,17 @@
 //! `walk`: what each method leaves to draw along a walk, and what it costs.
 
-mod error;
 mod levels;
 mod measure;
 mod nesting;
 mod outcome;
 
 use crate::Answer;
+use crate::error::{ErrorAbout, Result, anyhow, bail};
 use crate::output;
 use crate::progress::Bar;
 use crate::tables::{self, Cells, Opened};
 use crate::view::{LensArgs, Methods, method_help};
-use crate::walk_path::{self, PathError};
-use error::Error;
+use crate::walk_path;
 use measure::Walk;
 use outcome::Outcome;
 use sightlines::eye_to_cell::{Budget, CellSource, Method, View};
@@ -92,7 +91,7 @@ fn steps(text: &str) -> Result<Budget, String> {
     }
 }
 
-pub(crate) fn run(args: &WalkArgs, show_progress: bool) -> Result<Answer, Error> {
+pub(crate) fn run(args: &WalkArgs, show_progress: bool) -> Result<Answer> {
     let outputs: Vec<&Path> = [&args.output, &args.csv].into_iter().flatten().map(PathBuf::as_path).collect();
     output::check(&[&args.table], &outputs)?;
     match tables::open(&args.table, args.budget)? {
@@ -101,25 +100,20 @@ pub(crate) fn run(args: &WalkArgs, show_progress: bool) -> Result<Answer, Error>
     }
 }
 
-fn walk<C: Cells>(cells: &C, args: &WalkArgs, show_progress: bool) -> Result<Answer, Error> {
+fn walk<C: Cells>(cells: &C, args: &WalkArgs, show_progress: bool) -> Result<Answer> {
     let file = &args.table;
     cells.refuse_without_places(file)?;
     let lens = args.lens.lens(cells, file)?;
-    let fail = |error| C::fail(file, error);
     let (stands, step) = match (&args.path, args.random) {
-        (Some(path), _) => (
-            walk_path::read(path, cells.n_dimensions())?
-                .map_err(|source| Error::Path { path: path.to_owned(), source })?,
-            None,
-        ),
+        (Some(path), _) => (walk_path::read(path, cells.n_dimensions())?, None),
         (None, n) => {
-            let step = args.step.map_or_else(|| usual_step(cells), Ok).map_err(fail)?;
-            let stands = wander(cells, n.unwrap_or(0) as usize, step, args.seed).map_err(fail)?;
+            let step = args.step.map_or_else(|| usual_step(cells), Ok).in_file(file)?;
+            let stands = wander(cells, n.unwrap_or(0) as usize, step, args.seed).in_file(file)?;
             (stands, Some(step))
         }
     };
     if stands.is_empty() {
-        return Err(Error::NoWay(file.clone()));
+        bail!("{}: no cell has a portal, so there is nowhere to go; name a path with --path", file.display());
     }
     let view = |(k, stand): (usize, &CameraPose)| {
         lens.view(*stand).map_err(|error| refused(args.path.as_deref().unwrap_or(file), k, error))
@@ -134,7 +128,7 @@ fn walk<C: Cells>(cells: &C, args: &WalkArgs, show_progress: bool) -> Result<Ans
     let polygons = (0..n_objects)
         .map(|o| cells.polygons_of(sightlines::pvs::ObjectId(o)))
         .collect::<Result<Vec<_>, _>>()
-        .map_err(fail)?;
+        .in_file(file)?;
     let options =
         WalkOptions { budget: args.budget, bounces: args.bounces, steps: args.steps, ..WalkOptions::default() };
     let bar = Bar::new("frames", show_progress);
@@ -153,12 +147,12 @@ fn walk<C: Cells>(cells: &C, args: &WalkArgs, show_progress: bool) -> Result<Ans
 }
 
 /// The error of an invalid view in a frame.
-fn refused(path: &Path, frame: usize, source: sightlines::eye_to_cell::ViewError) -> Error {
-    Error::Path { path: path.to_owned(), source: PathError::View { frame, source } }
+fn refused(path: &Path, frame: usize, source: sightlines::eye_to_cell::ViewError) -> anyhow::Error {
+    anyhow!("{}: {source}", path.display(), source = anyhow!("frame {frame}: {source}"))
 }
 
 /// A 400th of the diagonal of the box around all cells.
-fn usual_step<C: Cells>(cells: &C) -> Result<f64, C::Error> {
+fn usual_step<C: Cells>(cells: &C) -> Result<f64> {
     let (mut min, mut max) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
     for cell in (0..CellSource::n_cells(cells) as u32).map(sightlines::pvs::CellId) {
         let bounds = cells.cell_box(cell)?;

@@ -1,8 +1,8 @@
 //! A command of the user for each shard, or for several.
 
 use super::{Did, Engine, Round, pool, quoted};
-use crate::commands::job::Error;
 use crate::commands::job::numbers::Run;
+use crate::error::Result;
 use sightlines::checkpoint::batch;
 use std::path::Path;
 use std::process::Command as Process;
@@ -16,7 +16,7 @@ pub(in crate::commands::job) struct Command<'a> {
 }
 
 impl Engine for Command<'_> {
-    fn run(&self, round: &Round<'_>, attempt: u32) -> Result<Did, Error> {
+    fn run(&self, round: &Round<'_>, attempt: u32) -> Result<Did> {
         let job = quoted(round.job.folder());
         let template = self.template.replace("{job}", &job).replace("{program}", &quoted(self.program));
         let takes_several = template.contains("{shards}");

@@ -2,8 +2,10 @@
 
 use super::process::{End, Process, TICK};
 use super::{Did, Engine, Round, Shown, pool};
+use crate::commands::job::interrupted;
 use crate::commands::job::numbers::Run;
-use crate::commands::job::{Error, open};
+use crate::commands::job::open;
+use crate::error::Result;
 use crate::interrupt;
 use sightlines::checkpoint::Job;
 use std::path::Path;
@@ -22,7 +24,7 @@ pub(in crate::commands::job) struct Local<'a> {
 }
 
 impl Engine for Local<'_> {
-    fn run(&self, round: &Round<'_>, attempt: u32) -> Result<Did, Error> {
+    fn run(&self, round: &Round<'_>, attempt: u32) -> Result<Did> {
         if attempt == 1 {
             return self.work(round);
         }
@@ -45,7 +47,7 @@ impl Engine for Local<'_> {
 
 impl Local<'_> {
     /// Starts workers, and waits for all.
-    fn work(&self, round: &Round<'_>) -> Result<Did, Error> {
+    fn work(&self, round: &Round<'_>) -> Result<Did> {
         let _watch = interrupt::watch();
         let mut job = round.job.clone();
         let n = self.workers.to_string();
@@ -73,7 +75,7 @@ impl Local<'_> {
             let next = loop {
                 if interrupt::requested() {
                     running.into_iter().for_each(Process::kill);
-                    return Err(Error::Interrupted);
+                    return Err(interrupted());
                 }
                 let mut hopeless = None;
                 running.retain_mut(|process| match process.look() {

@@ -10,7 +10,7 @@ pub(super) use command::Command;
 pub(super) use local::Local;
 pub(super) use slurm::Slurm;
 
-use super::Error;
+use crate::error::Result;
 use crate::progress::Bar;
 use sightlines::checkpoint::Job;
 use sightlines::progress::{Observer, Progress};
@@ -39,7 +39,7 @@ pub(super) trait Engine {
     ///
     /// # Errors
     /// [`Error`] if nothing can be started at all, or would fail again.
-    fn run(&self, round: &Round<'_>, attempt: u32) -> Result<Did, Error>;
+    fn run(&self, round: &Round<'_>, attempt: u32) -> Result<Did>;
 }
 
 /// Shows how much of a round is done, by cost.

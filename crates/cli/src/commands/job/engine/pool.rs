@@ -2,8 +2,9 @@
 
 use super::process::{End, Process, TICK};
 use super::{Round, Shown};
-use crate::commands::job::Error;
+use crate::commands::job::interrupted;
 use crate::commands::job::outcome::ranges;
+use crate::error::Result;
 use crate::interrupt;
 use std::process::Command;
 
@@ -19,7 +20,7 @@ pub(super) fn run(
     show_progress: bool,
     size: impl Fn(usize) -> usize,
     start: impl Fn(&[usize]) -> Command,
-) -> Result<(), Error> {
+) -> Result<()> {
     let _watch = interrupt::watch();
     let shown = Shown::new(round, show_progress);
     let (mut todo, mut hopeless) = (round.shards, None);
@@ -27,7 +28,7 @@ pub(super) fn run(
     for tick in 0_usize.. {
         if interrupt::requested() {
             running.into_iter().for_each(Process::kill);
-            return Err(Error::Interrupted);
+            return Err(interrupted());
         }
         while running.len() < n && !todo.is_empty() && hopeless.is_none() {
             let (shards, later) = todo.split_at(size(todo.len()).clamp(1, todo.len()));

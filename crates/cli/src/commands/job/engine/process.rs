@@ -1,6 +1,6 @@
 //! A process on this machine, and what it prints.
 
-use crate::commands::job::Error;
+use crate::error::{Result, anyhow};
 use std::io::{self, Read, Write};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::thread::JoinHandle;
@@ -26,16 +26,16 @@ pub(super) enum End {
     /// It ended well, or failed in a way that may not happen again; what it printed.
     Passed(Vec<u8>),
     /// It would fail again.
-    Hopeless(Error),
+    Hopeless(anyhow::Error),
 }
 
 impl Process {
     /// Starts one. What it prints is kept until it ends.
-    pub(super) fn start(name: String, command: &mut Command) -> Result<Self, Error> {
+    pub(super) fn start(name: String, command: &mut Command) -> Result<Self> {
         let child = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
         let mut child = child.map_err(|source| {
             let program = command.get_program().to_string_lossy().into_owned();
-            Error::Start { program, source }
+            anyhow!("{program}: cannot be started: {source}")
         })?;
         let (said, printed) = (child.stderr.take().map(read_all), child.stdout.take().map(read_all));
         Ok(Self { name, child, said, printed })
@@ -61,7 +61,7 @@ impl Process {
             let said = said.trim();
             let message = said.strip_prefix("error: ").unwrap_or(said);
             let message = if message.is_empty() { status.to_string() } else { message.to_owned() };
-            return End::Hopeless(Error::Process { name: self.name.clone(), message });
+            return End::Hopeless(anyhow!("{name}: {message}", name = self.name));
         }
         // Nothing is left to do if standard error is closed.
         let _ = io::stderr().write_all(said);

@@ -3,9 +3,10 @@
 mod queue;
 
 use super::{Did, Engine, Round, Shown, quoted};
-use crate::commands::job::Error;
+use crate::commands::job::interrupted;
 use crate::commands::job::numbers::Run;
 use crate::commands::job::outcome::ranges;
+use crate::error::{ErrorAbout, Result, bail};
 use crate::interrupt;
 use crate::output;
 use queue::{Watch, cancel, is_gone, is_pending, sbatch};
@@ -95,10 +96,10 @@ impl Slurm<'_> {
     }
 
     /// Writes the scripts of an attempt into the folder of the job.
-    pub(in crate::commands::job) fn write(&self, round: &Round<'_>, attempt: u32) -> Result<Vec<PathBuf>, Error> {
+    pub(in crate::commands::job) fn write(&self, round: &Round<'_>, attempt: u32) -> Result<Vec<PathBuf>> {
         let files = Files::of(round, attempt);
         let folder = &files.folder;
-        fs::create_dir_all(folder).map_err(|source| Error::Folder { path: folder.clone(), source })?;
+        fs::create_dir_all(folder).in_file(folder)?;
         let (program, job) = (quoted(self.program), quoted(round.job.folder()));
         let options: String = self.options.iter().map(|option| format!("#SBATCH {option}\n")).collect();
         let name = &round.job.manifest().phases[round.phase].name;
@@ -135,7 +136,7 @@ impl Slurm<'_> {
 }
 
 impl Engine for Slurm<'_> {
-    fn run(&self, round: &Round<'_>, attempt: u32) -> Result<Did, Error> {
+    fn run(&self, round: &Round<'_>, attempt: u32) -> Result<Did> {
         let _watch = interrupt::watch();
         self.write(round, attempt)?;
         let files = Files::of(round, attempt);
@@ -155,12 +156,12 @@ impl Engine for Slurm<'_> {
                 cancel(&[&shards, &merge]);
                 let message = message.trim();
                 let message = message.strip_prefix("error: ").unwrap_or(message).to_owned();
-                return Err(Error::Process { name: ranges(&self.shards_of(round, task)), message });
+                bail!("{name}: {message}", name = ranges(&self.shards_of(round, task)));
             }
             if interrupt::requested() {
                 // Otherwise the cluster would go on with what nobody waits for.
                 cancel(&[&shards, &merge]);
-                return Err(Error::Interrupted);
+                return Err(interrupted());
             }
             if let Some(stuck) = watch.look(&shards) {
                 tracing::warn!("Slurm keeps what will never end: {}; it is cancelled and sent again", stuck.join(", "));

@@ -1,7 +1,7 @@
 //! What Slurm says of its queue and its nodes, and what it is told.
 
 use super::POLL;
-use crate::commands::job::Error;
+use crate::error::{Result, anyhow};
 use crate::interrupt;
 use std::collections::HashSet;
 use std::path::Path;
@@ -15,13 +15,13 @@ const TICKS: usize = 10;
 const STUCK: usize = 8;
 
 /// Asks a program of Slurm.
-fn ask(program: &str, words: &[&str]) -> Result<Output, Error> {
+fn ask(program: &str, words: &[&str]) -> Result<Output> {
     let asked = Command::new(program).args(words).stdin(Stdio::null()).output();
-    asked.map_err(|source| Error::Start { program: program.to_owned(), source })
+    asked.map_err(|source| anyhow!("{program}: cannot be started: {source}"))
 }
 
 /// Queues a script; the number of the job. Tries for a while: the controller may be starting again.
-pub(super) fn sbatch(script: &Path, after: Option<&str>) -> Result<String, Error> {
+pub(super) fn sbatch(script: &Path, after: Option<&str>) -> Result<String> {
     let mut last = String::new();
     for _ in 0..PATIENCE {
         let mut command = Command::new("sbatch");
@@ -31,7 +31,7 @@ pub(super) fn sbatch(script: &Path, after: Option<&str>) -> Result<String, Error
             command.arg(format!("--dependency=afterany:{after}"));
         }
         let program = "sbatch".to_owned();
-        let done = command.arg(script).output().map_err(|source| Error::Start { program, source })?;
+        let done = command.arg(script).output().map_err(|source| anyhow!("{program}: cannot be started: {source}"))?;
         let text = String::from_utf8_lossy(&done.stdout);
         if done.status.success() {
             let id = text.trim().split(';').next().unwrap_or_default().to_owned();
@@ -43,7 +43,7 @@ pub(super) fn sbatch(script: &Path, after: Option<&str>) -> Result<String, Error
         }
         std::thread::sleep(POLL);
     }
-    Err(Error::Queue { program: "sbatch", message: last })
+    Err(anyhow!("{program}: {last}", program = "sbatch"))
 }
 
 /// Cancels jobs, as far as Slurm can.
@@ -54,7 +54,7 @@ pub(super) fn cancel(jobs: &[&str]) {
 }
 
 /// Whether Slurm knows, and knows nothing of these jobs any more. Nothing follows from silence.
-pub(super) fn is_gone(jobs: &[&str]) -> Result<bool, Error> {
+pub(super) fn is_gone(jobs: &[&str]) -> Result<bool> {
     let asked = ask("squeue", &["-h", "-o", "%i", "-j", &jobs.join(",")])?;
     let said = String::from_utf8_lossy(&asked.stderr);
     Ok(match asked.status.success() {
@@ -64,7 +64,7 @@ pub(super) fn is_gone(jobs: &[&str]) -> Result<bool, Error> {
 }
 
 /// Whether Slurm says that a job waits.
-pub(super) fn is_pending(job: &str) -> Result<bool, Error> {
+pub(super) fn is_pending(job: &str) -> Result<bool> {
     let asked = ask("squeue", &["-h", "-o", "%T", "-j", job])?;
     Ok(asked.status.success() && asked.stdout.trim_ascii() == b"PENDING")
 }
