@@ -1,6 +1,7 @@
 //! The clusters of a Quake map, as `vis` and `build` report them.
 
 use crate::output::{count, percent, seconds};
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::bake::ClusterVisibility;
 use sightlines::formats::quake::Prt;
@@ -19,20 +20,21 @@ pub(crate) fn warn_of_repeats(path: &Path, prt: &Prt) {
 }
 
 /// What was found about clusters.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub(crate) struct Clusters {
+    /// Clusters.
     n_clusters: usize,
-    /// Portals with an area.
+    /// Portals that have an area.
     n_portals: usize,
-    /// Unordered pairs of different clusters.
+    /// Unordered pairs of different clusters that may see each other.
     n_visible_pairs: u64,
-    /// Of all unordered pairs of different clusters.
+    /// The same as a share of all unordered pairs of different clusters.
     visible_share: f64,
-    /// Pairs that count as visible though no line was found, lower id first.
+    /// Pairs of clusters that count as visible though no line was found, the lower number first.
     undecided: Vec<[u32; 2]>,
-    /// Counts of elementary operations; of earlier runs too, if this one was resumed.
+    /// Counts of elementary operations by name; those of an earlier run included if it was resumed.
     counters: BTreeMap<&'static str, u64>,
-    /// Of the search, in this run.
+    /// Seconds of the search for visible pairs, in this run.
     see_seconds: f64,
     #[serde(skip)]
     n_pairs: u64,

@@ -1,6 +1,7 @@
 //! The lines about tables and scenes that several commands print.
 
 use crate::output::{bytes, count, percent, seconds};
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::formats::scene::{Axis, LengthUnit, SceneFormat, SceneInfo};
 use sightlines::pvs::{DoorRecord, Frame, GeometryDigest, ObjectSource, Table};
@@ -38,15 +39,16 @@ pub(crate) fn times(cut_seconds: f64, what: &str, see_seconds: f64) -> String {
     format!("{cut} to cut the {what}, {see} to compute visibility")
 }
 
-/// What the stab trees of a table are.
-#[derive(Debug, Clone, Copy, Default, Serialize)]
+/// Stab trees of a table.
+#[derive(Debug, Clone, Copy, Default, Serialize, JsonSchema)]
 pub(crate) struct StabFacts {
-    /// Sequences of portals, of all cells.
+    /// Sequences of portals, of all cells together.
     n_sequences: u64,
-    /// Nodes; sequences that continue alike share one.
+    /// Stored nodes; equal subtrees are stored once.
     n_stab_nodes: usize,
+    /// Stored edges.
     n_stab_edges: u64,
-    /// Bytes by which the table would be smaller without them.
+    /// Bytes of the table that the stab trees take.
     n_stab_bytes: usize,
 }
 
@@ -76,11 +78,11 @@ impl fmt::Display for StabFacts {
 }
 
 /// The digests of a table, as hexadecimal numbers.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub(crate) struct DigestFacts {
     /// Of what hides.
     hiding: String,
-    /// Of what is seen.
+    /// Of what can be seen.
     seen: String,
 }
 
@@ -99,9 +101,11 @@ impl fmt::Display for DigestFacts {
 }
 
 /// Where an object is in the file that a table was made of.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
 pub(crate) struct Source {
+    /// Index of its node in the `nodes` of the glTF that the table was made of; absent if it is not known.
     node: u32,
+    /// Index of its primitive in the node's mesh; there if `node` is.
     primitive: u32,
 }
 
@@ -118,11 +122,13 @@ impl fmt::Display for Source {
 }
 
 /// A door of a table.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub(crate) struct DoorFacts {
+    /// Its name; names may repeat.
     name: String,
-    /// Null for one that was given as a box.
+    /// The object that it is; null for a door that was given as a box.
     object: Option<u32>,
+    /// The portals that it closes when it is shut; the table takes it to be open.
     portals: Vec<u32>,
 }
 
@@ -160,12 +166,12 @@ pub(crate) fn write_doors(f: &mut fmt::Formatter<'_>, doors: &[DoorFacts]) -> fm
     Ok(())
 }
 
-/// The frame of a table.
-#[derive(Debug, Clone, Copy, Serialize)]
+/// Frame of a table: the axes of its own that it has. Its cells, portals and objects are along these; points that queries take are not.
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
 pub(crate) struct FrameFacts {
     /// Each axis as a unit vector of the scene.
     axes: [[f64; 3]; 3],
-    /// In scene units.
+    /// Openings narrower than this may count as closed, and things that are thinner as hidden; along a diagonal up to √3 times this.
     gap: f64,
 }
 
@@ -212,12 +218,15 @@ pub(crate) fn axis(axis: Axis) -> &'static str {
 }
 
 /// What a file states about its scene, for people: format, axis, unit.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
 pub(crate) struct Stated {
+    /// Format of the file, such as `glTF` or `OBJ`.
     format: &'static str,
+    /// The axis that points up.
     up: &'static str,
+    /// Whether `up` is an assumption because the file does not state it.
     up_is_assumed: bool,
-    /// Null if the file does not state it.
+    /// Unit of length; null if the file does not state it.
     unit: Option<&'static str>,
 }
 

@@ -20,6 +20,7 @@ mod folder;
 mod glb;
 mod input;
 mod interrupt;
+mod json;
 mod kept;
 mod map_portals;
 mod memory;
@@ -85,6 +86,11 @@ pub fn command() -> clap::Command {
 /// The options of `sightlines-vis`, as long ones. The program takes each with any number of dashes in front, one for example.
 pub fn vis_command() -> clap::Command {
     vis_program::command()
+}
+
+/// The page that describes what `sightlines` prints with `--json`, as Markdown: `docs/json.md`.
+pub fn json_page() -> String {
+    json::page()
 }
 
 /// The exit code of a program, which prints what went wrong.

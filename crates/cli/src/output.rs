@@ -1,6 +1,7 @@
 //! Results: standard output, and files that are written as a whole.
 
 use crate::error::{Result, StdoutError, anyhow, bail};
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::formats::{Hidden, WriteError, atomic_write, remove_left};
 use std::fmt;
@@ -13,8 +14,10 @@ use std::path::Path;
 pub(crate) const JSON_VERSION: u32 = 3;
 
 /// A result with the version of its form.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Versioned<'a, T> {
+    /// Version of these objects, the same for all commands: 3. It grows when a field is removed, renamed, or changes its meaning. New fields leave
+    /// it as it is, so ignore fields that you do not know.
     version: u32,
     #[serde(flatten)]
     result: &'a T,
@@ -22,12 +25,17 @@ struct Versioned<'a, T> {
 
 /// Prints a result: as one line of JSON if `json`, with its version, otherwise as it is displayed.
 pub(crate) fn print(json: bool, result: &(impl Serialize + fmt::Display)) -> Result<()> {
+    print_as(json, || result, result)
+}
+
+/// The same where people and programs get different forms of it.
+pub(crate) fn print_as<T: Serialize>(json: bool, fields: impl FnOnce() -> T, text: impl fmt::Display) -> Result<()> {
     stdout(|out| {
         if json {
-            serde_json::to_writer(&mut *out, &Versioned { version: JSON_VERSION, result })?;
+            serde_json::to_writer(&mut *out, &Versioned { version: JSON_VERSION, result: &fields() })?;
             writeln!(out)
         } else {
-            write!(out, "{result}")
+            write!(out, "{text}")
         }
     })
 }
@@ -144,6 +152,11 @@ pub(crate) fn seconds(time: std::time::Duration) -> String {
         s if s < 1.0 => format!("{:.0} ms", s * 1e3),
         s => format!("{s:.2} s"),
     }
+}
+
+/// The same of a number of seconds.
+pub(crate) fn seconds_of(time: f64) -> String {
+    seconds(std::time::Duration::from_secs_f64(time))
 }
 
 /// A number with its noun, in the plural unless it is one.

@@ -7,6 +7,7 @@ use crate::named::one_of;
 use crate::numbers::share;
 use crate::output::count;
 use crate::surfaces::{self, SurfaceArgs};
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::bake::methods::{OcclusionMethod, OcclusionMethodFactory};
 use sightlines::cells::{MovingObject, Scene, SceneObject, Unlike};
@@ -23,7 +24,7 @@ use std::path::Path;
 
 /// Whether a scene has faces of which engines draw the fronts only: a table takes their backs to be unseen. Displayed behind a promise
 /// for every eye, as what that leaves out.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
 #[serde(transparent)]
 pub(crate) struct SingleSided(bool);
 
@@ -199,10 +200,11 @@ pub(crate) struct Written {
 }
 
 /// Coordinates that were rounded because the file holds single precision.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
 pub(crate) struct Rounded {
+    /// Coordinates that were rounded.
     n_coordinates: u64,
-    /// In scene units.
+    /// The largest change of a coordinate, in scene units.
     largest: f64,
 }
 

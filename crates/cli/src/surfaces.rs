@@ -1,6 +1,7 @@
 //! What of a scene hides and what is only seen: arguments, and lines of reports.
 
 use crate::output::count;
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::bake::{Backs, stated_reading};
 use sightlines::cells::Scene;
@@ -91,37 +92,43 @@ pub(crate) fn warn_not_drawn(path: &Path, file: &SceneFile) {
 }
 
 /// Objects that are classified alike, for the same reason.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub(crate) struct ClassGroup {
+    /// How they were classified: `occluder` (hide although their material or an extension says otherwise), `see-through`, `detail`, `door` (all
+    /// three are seen and hide nothing), `portal`, `view-volume` or `ignore` (not seen, and hide nothing).
     role: &'static str,
-    /// Whether they move or change their shape.
+    /// Whether they move or change their shape; they are seen wherever they may be, and hide nothing.
     moves: bool,
+    /// Why, for people: `alphaMode BLEND`, `an animation`, `the pattern glass*`.
     reason: String,
+    /// How many they are.
     n_objects: usize,
-    /// The first few.
+    /// Names of the first few.
     names: Vec<String>,
 }
 
 /// What of a scene hides, and what does not.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub(crate) struct Surfaces {
-    /// What is not simply a wall, the largest groups first.
+    /// How the objects that are not simply walls were classified, grouped by role and reason; the largest groups first.
     surfaces: Vec<ClassGroup>,
-    /// View volumes that are flat, and so ignored.
+    /// Objects with the role `view-volume` that are ignored: those without a triangle that has an area, and all if the box around them is flat.
     n_ignored_view_volumes: usize,
-    /// The first few.
+    /// Names of the first few.
     ignored_view_volumes: Vec<String>,
-    /// Triangles that hide, of which engines draw the fronts only.
+    /// Triangles that hide, from both sides, of which engines draw the fronts only.
     n_single_sided_triangles: usize,
     /// Of these, what viewers in the cells of a table can see from behind.
     #[serde(skip_serializing_if = "Option::is_none")]
     backs: Option<SeenBacks>,
 }
 
-/// How many single-sided triangles can be seen from behind.
-#[derive(Debug, Clone, Copy, Serialize)]
+/// Backs of single-sided triangles that can be seen.
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
 struct SeenBacks {
+    /// An upper bound: those with a cell right behind them, or, of given cells and places, with any part of a cell behind their plane.
     n_at_most: usize,
+    /// A lower bound: those whose back rays from cells met first, of those that the upper bound counts.
     n_by_rays: usize,
 }
 

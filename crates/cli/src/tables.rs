@@ -2,6 +2,7 @@
 
 use crate::error::{ErrorAbout, Result};
 use crate::input;
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::eye_to_cell::{CellSource, TableCells};
 use sightlines::formats::InputKind;
@@ -46,7 +47,7 @@ pub(crate) fn packed(path: &Path, cache_bytes: usize) -> Result<Packed<File>> {
 }
 
 /// The class of a file, on a command line and in answers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum, Serialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Class {
     Small,

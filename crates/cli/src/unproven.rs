@@ -1,13 +1,15 @@
 //! What of a table no proof speaks of.
 
 use crate::output::count;
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::pvs::Table;
 use sightlines::verify::{ProofFindings, can_be_proven};
 use std::fmt;
 
-/// Pairs without a proof.
-#[derive(Debug, Clone, Copy, Serialize)]
+/// Pairs without a proof. Nothing is known to be wrong with them. What from-region methods hide has a proof only if walls between cells hide it as
+/// well.
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
 pub(crate) struct Unproven {
     /// Unordered pairs of different cells that the table hides.
     n_hidden: u64,

@@ -7,6 +7,7 @@ use sightlines_pvs::{CellId, Table};
 /// Shares of a scene that a viewer sees, from 0 to 1, averaged over the places where a viewer may be: each
 /// cell counts by its size.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct ViewerShare {
     /// Of the cells.
     pub cells: f64,

@@ -7,6 +7,7 @@ use sightlines_pvs::{CellId, CellRecord, Table};
 
 /// The numbers of a table.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Summary {
     /// 2 for a plane, 3 for space.
     pub dimension: u8,
@@ -28,6 +29,7 @@ pub struct Summary {
     pub mean_cell_share: f64,
     /// The share of the floor (in space: of the volume) that a viewer has to draw, averaged over the
     /// places where a viewer may stand, from 0 to 1: each cell counts by its size, as viewer and as viewed.
+    #[cfg_attr(feature = "schemars", schemars(with = "Option<f64>"))]
     pub mean_floor_share: f64,
     /// The floor in square scene units (in space: the volume of all cells).
     pub floor: f64,

@@ -5,6 +5,7 @@ use crate::error::Result;
 use crate::folder::cannot_be_made;
 use crate::glb::{self, save_glb};
 use crate::output::{self, bytes, count};
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::geometry::Aabb;
 use sightlines::scenes::{CityOptions, CityTile, TowerOptions, city_tiles, tower, tower_rooms};
@@ -120,13 +121,19 @@ fn write_world(args: &WorldArgs) -> Result<Answer> {
 }
 
 /// What was written of a world.
-#[derive(Debug, Default, Serialize)]
-struct WorldOutcome {
+#[derive(Debug, Default, Serialize, JsonSchema)]
+pub(crate) struct WorldOutcome {
+    /// The folder that was written.
     out: String,
+    /// Seed of the generator.
     seed: u64,
+    /// Tiles.
     n_tiles: usize,
+    /// View cells of all tiles.
     n_cells: usize,
+    /// Objects of all tiles.
     n_objects: usize,
+    /// Triangles of all tiles.
     n_triangles: usize,
 }
 
@@ -168,16 +175,22 @@ fn write_tower(args: &TowerArgs) -> Result<Answer> {
     Ok(Answer::Yes)
 }
 
-/// What was written.
-#[derive(Debug, Serialize)]
-struct Outcome {
+/// The scene that was written.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct Outcome {
+    /// The scene that was written.
     out: String,
+    /// Seed of the generator.
     seed: u64,
+    /// Floors.
     n_floors: u32,
-    /// Stairwells are rooms, corridors are not.
+    /// Rooms; stairwells are rooms, corridors are not.
     n_rooms: usize,
+    /// Objects.
     n_objects: usize,
+    /// Triangles.
     n_triangles: usize,
+    /// Bytes of the file.
     n_bytes: usize,
 }
 

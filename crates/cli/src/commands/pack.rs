@@ -5,6 +5,7 @@ use crate::error::{ErrorAbout, Result, anyhow};
 use crate::output::{self, bytes, count, percent};
 use crate::tables::Class;
 use crate::{input, tables};
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::packed::{PackOptions, Packed, pack_report};
 use sightlines::pvs::Table;
@@ -91,21 +92,26 @@ pub(crate) fn unpack(args: &UnpackArgs) -> Result<Answer> {
     Ok(Answer::Yes)
 }
 
-/// What was packed.
-#[derive(Debug, Serialize)]
-struct Outcome {
+/// The packed table.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct Outcome {
+    /// The packed table that was written.
     out: String,
+    /// Layout of the file, `small` or `large`.
     class: Class,
+    /// Bytes of the table.
     n_plain_bytes: u64,
+    /// Bytes of the packed table.
     n_packed_bytes: u64,
-    /// Bytes of the visibility rows; merging reduces them.
+    /// Of these, bytes of the visibility rows.
     n_row_bytes: u64,
+    /// Cells.
     n_cells: usize,
-    /// Rows that are stored: those that differ; in a large file one for each cell.
+    /// Different visibility rows; of a large file, which has one for each cell, the cells.
     n_rows: usize,
-    /// How many times two different rows were merged.
+    /// Merges of different rows, to fit into `--max-bytes`.
     n_merges: usize,
-    /// Visible pairs of cells for each one before merging.
+    /// Visible pairs after packing, for each one before; 1 without merges.
     over_estimation: f64,
 }
 
@@ -132,11 +138,14 @@ impl fmt::Display for Outcome {
     }
 }
 
-/// What was unpacked.
-#[derive(Debug, Serialize)]
-struct Unpacked {
+/// The plain table.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct Unpacked {
+    /// The table that was written.
     out: String,
+    /// Bytes of the table.
     n_plain_bytes: u64,
+    /// Cells.
     n_cells: usize,
 }
 

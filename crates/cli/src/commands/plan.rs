@@ -6,6 +6,7 @@ use crate::input::{self, refuse};
 use crate::output::{self, bytes};
 use crate::plans::PlanArgs;
 use crate::surfaces::SurfaceArgs;
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::bake::{Bakeable, FloorCut, floor_cut};
 use sightlines::cells::Plan;
@@ -81,31 +82,38 @@ fn cut(path: &Path, file: &SceneFile, height: Option<f64>) -> Result<FloorCut> {
     floor_cut(&file.scene, file.info.up, height).in_file(path)
 }
 
-/// What was written.
-#[derive(Debug, Serialize)]
-struct Outcome {
+/// The plan that was written.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct Outcome {
+    /// The GeoJSON file that was written.
     out: String,
+    /// Lines that block sight.
     n_walls: usize,
-    /// Lines that do not block sight.
+    /// Lines that do not.
     n_transparent: usize,
+    /// Of the walls, those that are mirrors.
     n_mirrors: usize,
+    /// Objects.
     n_objects: usize,
+    /// Bytes of the file.
     n_bytes: usize,
-    /// Of scenes only.
+    /// Of scenes in space: how they were cut.
     #[serde(skip_serializing_if = "Option::is_none")]
     cut: Option<Cut>,
 }
 
 /// How a scene was cut.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct Cut {
+    /// The height.
     height: f64,
+    /// Triangles that the plane meets in a segment.
     n_triangles: usize,
-    /// Triangles in the plane, which were left out.
+    /// Triangles that lie in the plane, which were left out.
     n_flat: usize,
-    /// Segments that repeat others, or have no length.
+    /// Segments that were dropped because they repeat others or have no length.
     n_dropped: usize,
-    /// Segments that were joined to others.
+    /// Segments that were joined to another on the same line.
     n_joined: usize,
 }
 

@@ -4,6 +4,7 @@ use crate::Answer;
 use crate::error::Result;
 use crate::map_portals::{MapPortals, made};
 use crate::output::{self, bytes, count};
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::formats::quake::{LeafClusters, read_bsp};
 use std::fmt;
@@ -42,17 +43,22 @@ pub(crate) fn run(args: &PortalsArgs) -> Result<Answer> {
     Ok(Answer::Yes)
 }
 
-/// What was written.
-#[derive(Debug, Serialize)]
-struct Outcome {
+/// The portal file that was written.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct Outcome {
+    /// The portal file that was written.
     out: String,
+    /// Format of the map.
     format: &'static str,
+    /// Dialect of the portal file.
     portal_format: &'static str,
-    /// Those that a map knows.
+    /// Clusters that the map knows.
     n_clusters: usize,
+    /// Portals.
     n_portals: usize,
-    /// Clusters for what is solid and can be seen through.
+    /// Clusters behind these, for what is solid and can be seen through.
     n_passages: usize,
+    /// Bytes of the portal file.
     n_bytes: usize,
 }
 

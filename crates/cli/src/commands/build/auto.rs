@@ -1,29 +1,38 @@
 //! Which methods were chosen for an input, and why.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::bake::auto::Choice;
 use std::fmt;
 
-/// What was chosen, and why.
-#[derive(Debug, Clone, Serialize)]
+/// Choice of a method, and why.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub(super) struct Chosen {
+    /// The method that was chosen.
     method: String,
+    /// Why, in words.
     reasons: Vec<String>,
     /// The measured properties of a scene in space.
     #[serde(skip_serializing_if = "Option::is_none")]
     facts: Option<Facts>,
 }
 
-#[derive(Debug, Clone, Copy, Serialize)]
+/// Facts of a scene, where the method was chosen for it.
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
 struct Facts {
+    /// Triangles.
     n_triangles: usize,
+    /// Objects.
     n_objects: usize,
+    /// Share of the area that is perpendicular to an axis.
     axial_share: f64,
-    /// Properties that do not matter are not measured.
+    /// Share of flat pieces that stand alone, such as screens and signs; measured only where it matters.
     #[serde(skip_serializing_if = "Option::is_none")]
     loose_share: Option<f64>,
+    /// Share of rays that leave the scene without meeting anything: 0 for rooms, nearly 1 for a plain; measured only where it matters.
     #[serde(skip_serializing_if = "Option::is_none")]
     openness: Option<f64>,
+    /// Size of a typical object as a share of the size of the scene.
     object_size: f64,
 }
 

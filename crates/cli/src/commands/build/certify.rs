@@ -5,6 +5,7 @@ use crate::kept::Kept;
 use crate::output::{self, bytes, count, seconds};
 use crate::progress::Bar;
 use crate::unproven::Unproven;
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::bake::Baked;
 use sightlines::stabtree::CertifyOptions;
@@ -88,20 +89,25 @@ impl CertifyArgs {
 }
 
 /// What was written, and what has no proof.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub(super) struct Certified {
     /// None for cells without portals.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     file: Option<ProofFile>,
+    /// Of a table of cells without portals, which can have no proofs.
     unproven: Unproven,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct ProofFile {
+    /// The file of proofs that was written.
     proofs: String,
+    /// Its size.
     n_proof_bytes: usize,
+    /// Seconds to find the proofs.
     certify_seconds: f64,
-    /// Pairs that the table shows, although they are proven to be hidden.
+    /// Pairs listed as visible and proven to be hidden; only in tables of scenes in space. This and the three before are absent for cells without
+    /// portals, about which there are no proofs.
     n_excess: u64,
 }
 

@@ -3,6 +3,7 @@
 use crate::doors::DoorBox;
 use crate::error::{Result, anyhow};
 use crate::output::count;
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::bake::{Bakeable, Baked};
 use sightlines::pvs::{DoorRecord, Table};
@@ -57,9 +58,11 @@ fn record(path: &Path, door: &DoorBox, table: &Table) -> DoorRecord {
 }
 
 /// A door that was given as a box.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub(super) struct GivenDoor {
+    /// Its name; names may repeat.
     name: String,
+    /// The portals that it closes when it is shut; the table takes it to be open.
     portals: Vec<u32>,
 }
 

@@ -2,6 +2,7 @@
 
 use crate::facts::FrameFacts;
 use crate::output::percent;
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::bake::{Along, Framed, Prepared};
 use std::fmt;
@@ -10,9 +11,9 @@ use std::fmt;
 const TOLD: f64 = 1.01;
 
 /// How a scene and its cells stand in the table.
-#[derive(Debug, Clone, Copy, Default, Serialize)]
+#[derive(Debug, Clone, Copy, Default, Serialize, JsonSchema)]
 pub(super) struct Placed {
-    /// The frame of a scene that does not stand along the axes of its file.
+    /// The frame of a scene whose walls, or whose given cells, do not stand along the axes of its file.
     #[serde(skip_serializing_if = "Option::is_none")]
     frame: Option<Taken>,
     /// How many times the surface of the given cells the boxes around them have, where these stand along other axes.
@@ -45,21 +46,23 @@ impl fmt::Display for Placed {
     }
 }
 
-/// The frame of a scene, and what it brought.
-#[derive(Debug, Clone, Copy, Serialize)]
+/// Frame of a scene, and what it brought.
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
 struct Taken {
     #[serde(flatten)]
     frame: FrameFacts,
-    /// `walls` or `cells`: what stands along the axes of the frame.
+    /// What stands along the axes of the frame: `walls`, or the given `cells` where that suits the walls no worse, or most of them stand along no
+    /// axes.
     along: &'static str,
-    /// The largest distance of a coordinate from that of the file, along the axes of the frame, in scene units.
+    /// The largest distance of a coordinate from that of the file, along the axes of the frame.
     largest_move: f64,
+    /// Corners of triangles.
     n_corners: usize,
     /// Corners that were moved, beyond rounding, to where others are.
     n_snapped_corners: usize,
-    /// The share of the area of what hides that was across an axis of the file.
+    /// Share of the area of what hides that was across an axis of the file.
     axial_before: f64,
-    /// The share that is across an axis of the frame.
+    /// Share that is across an axis of the frame.
     axial_after: f64,
 }
 

@@ -1,6 +1,7 @@
 //! A limit of time, and what was not decided within it.
 
 use crate::output::{count, seconds};
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::bake::{LimitReport, Report};
 use sightlines::progress::Budget;
@@ -45,11 +46,14 @@ impl Clock {
     }
 }
 
-/// What was not decided in time.
-#[derive(Debug, Clone, Copy, Serialize)]
+/// Pairs that were not decided in time.
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
 pub(crate) struct Undecided {
+    /// Cells about which everything was decided.
     n_cells_decided: usize,
+    /// Cells about which something was decided.
     n_cells_in_part: usize,
+    /// Cells about which nothing was decided.
     n_cells_undecided: usize,
     /// Pairs of cells that count as visible for that reason, at most.
     n_cell_pairs: u64,

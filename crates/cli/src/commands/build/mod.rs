@@ -37,6 +37,7 @@ use crate::progress::Bar;
 use crate::surfaces::{SurfaceArgs, Surfaces};
 use crate::tables::Class;
 use options::BakeArgs;
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::bake::{BakeInput, BakeRequest, Bakeable, Baked, Recipe, Report, Runtime, SceneMethod};
 use sightlines::formats::{Input, InputKind, SceneFile};
@@ -312,7 +313,7 @@ impl BuildArgs {
 }
 
 /// What was built, for each kind of input.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 #[serde(untagged)]
 enum Outcome {
     Plan(plan::Outcome),
@@ -361,10 +362,10 @@ impl fmt::Display for Outcome {
     }
 }
 
-/// What was built, and the stab trees and proofs with it.
-#[derive(Debug, Serialize)]
+/// All of `build`: what is the same for every kind of input.
+#[derive(Debug, Serialize, JsonSchema)]
 pub(crate) struct Built {
-    /// What was chosen for the input, and why.
+    /// What was chosen for the input: with `--method auto`, or without a method where more than sightlines was chosen.
     #[serde(skip_serializing_if = "Option::is_none")]
     auto: Option<auto::Chosen>,
     #[serde(flatten)]
@@ -377,9 +378,10 @@ pub(crate) struct Built {
     /// Of a scene in space.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     surfaces: Option<Surfaces>,
-    /// Doors that were given as boxes.
+    /// With `--door`: the doors that were given as boxes.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     given_doors: Vec<doors::GivenDoor>,
+    /// With `--stab-trees`: what was stored.
     #[serde(skip_serializing_if = "Option::is_none")]
     stab: Option<stab::Added>,
     #[serde(flatten, skip_serializing_if = "Option::is_none")]

@@ -10,6 +10,7 @@ use crate::kept::Kept;
 use crate::output::{self, count};
 use crate::progress::Bar;
 use crate::tables::Class;
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::bake::region::PackRegionsError;
 use sightlines::bake::{BakeError, Bakeable, Prepared, Recipe, RegionReport, Runtime, SceneMethod};
@@ -73,23 +74,30 @@ pub(super) fn write_rows(
     Ok(Outcome::new(out, file, &report, &packed))
 }
 
-/// What was written row by row.
-#[derive(Debug, Serialize)]
+/// Of packed tables in the large layout: more than 65,536 cells without portals, or `--class large`.
+#[derive(Debug, Serialize, JsonSchema)]
 pub(super) struct Outcome {
+    /// The table that was written.
     out: String,
     #[serde(flatten)]
     stated: Stated,
+    /// The method that found what is hidden.
     method: String,
+    /// Triangles.
     n_triangles: usize,
+    /// Cells.
     n_cells: usize,
+    /// Objects.
     n_objects: usize,
+    /// Bytes of the file.
     n_bytes: u64,
-    /// Bytes of the rows of cells.
+    /// Of these, bytes of the rows.
     n_row_bytes: u64,
     /// Unordered pairs of different cells that may see each other.
     n_visible_pairs: u64,
-    /// Pairs of a cell and an object that it may see.
+    /// Pairs of a cell and an object that may be visible from it.
     n_objects_seen: u64,
+    /// Seconds for everything.
     seconds: f64,
 }
 

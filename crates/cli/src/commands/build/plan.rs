@@ -3,6 +3,7 @@
 use super::brief::{Brief, of_cells};
 use crate::facts::{Facts, times};
 use crate::output::{bytes, count, percent};
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::bake::PlanReport;
 use sightlines::pvs::Table;
@@ -30,19 +31,28 @@ pub(super) fn warn(path: &Path, report: &PlanReport) {
     }
 }
 
-/// What was built.
-#[derive(Debug, Serialize)]
+/// The table of a plan.
+#[derive(Debug, Serialize, JsonSchema)]
 pub(crate) struct Outcome {
+    /// The table that was written.
     out: String,
+    /// Name of the WAD's map; null for other plans.
     map: Option<String>,
+    /// How cells were made: `kd` or `triangulation`.
     subdivide: String,
     #[serde(flatten)]
     pub(crate) table: Summary,
+    /// Walls that block nothing because the k-d tree cannot follow them.
     n_ignored_walls: usize,
+    /// Crossings of lines whose point was rounded, towards visible.
     n_rounded_crossings: usize,
+    /// Pieces of walls that block nothing because rounding could have closed a gap beside them.
     n_dropped_pieces: usize,
+    /// Cells in regions whose lines disagree about the group.
     n_disputed_cells: usize,
+    /// Seconds to make the cells.
     cut_seconds: f64,
+    /// Seconds to find the visible pairs.
     see_seconds: f64,
 }
 

@@ -3,6 +3,7 @@
 use super::brief::Brief;
 use crate::clusters::Clusters;
 use crate::output::bytes;
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::bake::ClusterVisibility;
 use sightlines::formats::Prt;
@@ -43,14 +44,18 @@ pub(super) fn of_clusters(taken: String, fast: bool, clusters: &Clusters, out: &
     }
 }
 
-/// What was built.
-#[derive(Debug, Serialize)]
+/// The table of a portal file.
+#[derive(Debug, Serialize, JsonSchema)]
 pub(crate) struct Outcome {
+    /// The table that was written.
     out: String,
+    /// Dialect of the portal file.
     portal_format: &'static str,
+    /// Whether only a coarse bound was computed.
     fast: bool,
     #[serde(flatten)]
     clusters: Clusters,
+    /// Bytes of the table.
     n_bytes: usize,
     #[serde(skip)]
     verbose: bool,

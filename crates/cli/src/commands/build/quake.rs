@@ -6,6 +6,7 @@ use crate::clusters::Clusters;
 use crate::error::anyhow;
 use crate::map_portals::{MADE, do_not_fit};
 use crate::output::{bytes, count};
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::bake::{MapReport, PrtBakeError, WorldSummary};
 use sightlines::formats::quake::{Bsp, VisibilityError};
@@ -26,13 +27,16 @@ pub(super) fn failed(map: &Path, portals: &Path, source: PrtBakeError) -> anyhow
     }
 }
 
-/// What was built.
-#[derive(Debug, Serialize)]
+/// The table of a Quake map.
+#[derive(Debug, Serialize, JsonSchema)]
 pub(crate) struct Outcome {
+    /// The table that was written.
     out: String,
+    /// Format of the map.
     format: &'static str,
-    /// Or that there was no portal file.
+    /// Dialect of the portal file, or `made from the map`.
     portal_format: &'static str,
+    /// Whether only a coarse bound was computed.
     fast: bool,
     #[serde(flatten)]
     clusters: Clusters,
@@ -44,10 +48,11 @@ pub(crate) struct Outcome {
     n_listed: usize,
     /// Pairs of a cluster and a face that reaches into it without being listed there.
     n_reaching: usize,
-    /// Planes between clusters, or between them and what is solid.
+    /// Planes between clusters, or between clusters and solids.
     n_planes: usize,
-    /// How near to a plane a viewer counts to both sides, in map units.
+    /// Distance to a plane, in map units, within which a viewer counts as on both sides.
     slack: f64,
+    /// Bytes of the table.
     n_bytes: usize,
     #[serde(skip)]
     verbose: bool,

@@ -9,6 +9,7 @@ use crate::error::Result;
 use crate::facts::{Facts, Stated};
 use crate::named::one_of;
 use crate::output::{bytes, count, percent, seconds};
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::bake::places::{PlaceOptions, PlaceSummary};
 use sightlines::bake::{BakeRequest, CellsFrom, RegionReport, SceneMethod};
@@ -88,49 +89,61 @@ impl RegionArgs {
     }
 }
 
-/// What was built.
-#[derive(Debug, Serialize)]
+/// With a `--method` of from-region occlusion, with given cells (`--grid`, `--cells`) or with places (`--n-cells`, `--cell-size`, and scenes with
+/// few axis-aligned walls).
+#[derive(Debug, Serialize, JsonSchema)]
 pub(super) struct Outcome {
+    /// The table that was written.
     out: String,
     #[serde(flatten)]
     stated: Stated,
-    /// `kd`, `places` or `boxes`.
+    /// How cells were made: `kd`, `places`, or `boxes` if they were given.
     subdivide: &'static str,
-    /// What was cut, if cells are places.
+    /// How cells were cut, if they are places.
     #[serde(skip_serializing_if = "Option::is_none")]
     places: Option<Cuts>,
-    /// The methods that decided visibility.
+    /// The methods that found what is hidden.
     method: String,
+    /// Triangles.
     n_triangles: usize,
     #[serde(flatten)]
     pub(super) table: Summary,
-    /// What a viewer sees on average, each place of the same weight.
+    /// What may be visible from a cell, on average.
     pub(super) viewer: ViewerShare,
-    /// Pairs of a cell and an object that it may see.
+    /// Pairs of a cell and an object that may be visible from it.
     n_objects_seen: u64,
-    /// Volumes that were queried: cells, and parts of cells.
+    /// Volumes that were tested: cells, and parts of cells.
     n_volumes: u64,
-    /// Queries whether a box, or a triangle, is hidden.
+    /// Tests whether a box or a triangle is hidden from a volume.
     n_asked: u64,
+    /// If the scene has doors and the cells are those of a k-d tree: all doors, in the order of the objects.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     doors: Vec<Door>,
     /// If there was a time limit and it was reached.
     #[serde(skip_serializing_if = "Option::is_none")]
     time_limit: Option<Undecided>,
-    /// Of all seconds.
+    /// Of these, seconds to cut cells, which a time limit does not shorten.
     cut_seconds: f64,
+    /// Seconds to find what is visible.
     seconds: f64,
 }
 
-/// How places were cut.
-#[derive(Debug, Serialize)]
+/// Cuts of places.
+#[derive(Debug, Serialize, JsonSchema)]
 struct Cuts {
+    /// Places.
     n_cells: usize,
+    /// Longest side of a place.
     cell_size: f64,
+    /// Cuts along walls.
     n_along_walls: usize,
+    /// Other cuts where rays show that views differ.
     n_by_views: usize,
+    /// Other cuts, of long boxes.
     n_by_size: usize,
+    /// Boxes inside of solid matter, which are no cells.
     n_solid: usize,
+    /// Boxes behind the backs of single-sided faces, which are no cells.
     n_behind: usize,
 }
 

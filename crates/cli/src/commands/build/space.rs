@@ -4,6 +4,7 @@ use super::brief::{Brief, of_cells, of_viewer};
 use super::limit::{Undecided, brief};
 use crate::facts::{Facts, Stated, times};
 use crate::output::{bytes, count, percent};
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::bake::{DoorPortals, SceneReport};
 use sightlines::cells::{Scene, SceneObject};
@@ -25,11 +26,14 @@ pub(super) fn warn(path: &Path, report: &SceneReport) {
     say(report.n_lost_mirrors, "rectangle", "do not reflect everywhere: a part is in no cell");
 }
 
-/// A door, and the portals that it closes while it stands as it does in the file.
-#[derive(Debug, Serialize)]
+/// Door of a scene, and the portals that it closes while it stands as it does in the file.
+#[derive(Debug, Serialize, JsonSchema)]
 pub(super) struct Door {
+    /// The object that it is; null for a door that was given as a box.
     object: u32,
+    /// Its name; names may repeat.
     name: String,
+    /// The portals that it closes when it is shut; the table takes it to be open.
     portals: Vec<u32>,
 }
 
@@ -41,52 +45,63 @@ impl Door {
     }
 }
 
-/// What was built. Of the triangles, each is either axis-aligned or hides nothing; those that are detail are
-/// of both kinds.
-#[derive(Debug, Serialize)]
+/// The table of a scene by sightlines alone; other methods and given cells are below. Of the triangles, each is either axis-aligned or hides
+/// nothing; those that are detail are of both kinds.
+#[derive(Debug, Serialize, JsonSchema)]
 pub(crate) struct Outcome {
+    /// The table that was written.
     out: String,
     #[serde(flatten)]
     stated: Stated,
+    /// How cells were made: `kd`.
     subdivide: &'static str,
+    /// Triangles.
     n_triangles: usize,
+    /// Triangles perpendicular to an axis.
     n_axial_triangles: usize,
-    /// Triangles that hide nothing, because they are not perpendicular to an axis.
+    /// Triangles that hide nothing because they are not perpendicular to an axis.
     n_other_triangles: usize,
     /// Triangles without area, which were left out.
     n_degenerate_triangles: usize,
-    /// Triangles of objects that are detail.
+    /// Triangles of detail objects; also counted in one of the two fields before the last.
     n_detail_triangles: usize,
+    /// Detail objects: too small to be used as occluders.
     n_detail_objects: usize,
-    /// In scene units.
+    /// Size below which an object is detail.
     detail_below: f64,
     /// Rectangles that the scene was cut along.
     n_faces: usize,
-    /// Pieces of them that hide nothing, because of `--tau`.
+    /// Pieces of them that hide nothing because of `--tau`.
     n_unfollowed: usize,
+    /// Cells left out because they are inside solids.
     n_solid: usize,
+    /// Cells left out because they are closed and show only back sides.
     n_hollow: usize,
+    /// Cells left out because no way leads to them from the view region.
     n_unreachable: usize,
     #[serde(flatten)]
     pub(crate) table: Summary,
-    /// What a viewer sees on average, each place of the same weight.
+    /// What may be visible from a cell, on average.
     pub(crate) viewer: ViewerShare,
+    /// If the scene has doors: all of them, in the order of the objects.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     doors: Vec<Door>,
-    /// Rectangles that walls were merged into.
+    /// Rectangles that the walls were merged into.
     n_blockers: usize,
-    /// Queries whether one box sees another; these counts vary from run to run with several threads.
+    /// Tests whether two boxes see each other; this and the next three may vary from run to run with several threads.
     n_asked: u64,
     /// Linear programs solved in doubles.
     n_programs: u64,
-    /// Linear programs whose margin was within rounding, so that integers had to decide.
+    /// Linear programs decided in exact numbers because doubles were too close to call.
     n_exact: u64,
-    /// Pairs that count as visible because deciding about them would have taken too much.
+    /// Pairs that count as visible because the limit of work was reached, or 106 bits were too few.
     n_assumed: u64,
     /// If there was a time limit and it was reached.
     #[serde(skip_serializing_if = "Option::is_none")]
     time_limit: Option<Undecided>,
+    /// Seconds to make the cells.
     cut_seconds: f64,
+    /// Seconds to find the visible pairs.
     see_seconds: f64,
 }
 

@@ -5,6 +5,7 @@ use crate::facts::StabFacts;
 use crate::kept::Kept;
 use crate::output::{percent, seconds};
 use crate::progress::Bar;
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::bake::{Baked, StabOptions, StabReport};
 use sightlines::pvs::Table;
@@ -31,20 +32,22 @@ pub(super) fn add(
     Ok((baked, Some(added)))
 }
 
-/// What was added.
-#[derive(Debug, Serialize)]
+/// Stab trees that were added.
+#[derive(Debug, Serialize, JsonSchema)]
 pub(super) struct Added {
     #[serde(flatten)]
     facts: StabFacts,
-    /// The most nodes that the tree of a cell was allowed, before equal ones are merged.
+    /// Limit of nodes for the tree of one cell, before equal subtrees are merged.
     max_nodes: usize,
+    /// Nodes of the largest tree, before equal subtrees are merged.
     n_largest: u64,
-    /// Cells whose tree was cut.
+    /// Cells whose tree was truncated.
     n_cut_cells: u64,
-    /// Sequences at which a tree was cut.
+    /// Sequences at which a tree was truncated.
     n_open: u64,
-    /// Sequences that count as passed because it was not decided.
+    /// Sequences that count as passable because they were not decided.
     n_undecided: u64,
+    /// Seconds to build the trees.
     stab_seconds: f64,
     #[serde(skip)]
     cut_share: f64,

@@ -1,14 +1,18 @@
 //! Where viewers can be, as the file of a scene states it.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::bake::StatedViewers;
 use std::fmt;
 
-/// The region of viewers that a file states.
-#[derive(Debug, Clone, Copy, Serialize)]
+/// Region of viewers that a file states.
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
 pub(super) struct Viewers {
+    /// Objects with the role `view-volume`.
     n_volumes: usize,
+    /// Lower corner of the box around them.
     min: [f64; 3],
+    /// Upper corner.
     max: [f64; 3],
 }
 

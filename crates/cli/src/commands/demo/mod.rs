@@ -1,7 +1,7 @@
 //! `demo`: all steps on a generated scene.
 
-mod office;
-mod tower;
+pub(crate) mod office;
+pub(crate) mod tower;
 
 use crate::Answer;
 use crate::error::{ErrorAbout, Result};
@@ -9,6 +9,7 @@ use crate::folder::cannot_be_made;
 use crate::memory;
 use crate::output::{self, bytes};
 use crate::reasons::reasons;
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::pvs::Table;
 use sightlines::viewer::{Figure, Page};
@@ -63,14 +64,17 @@ fn save_page(args: &DemoArgs, title: &str, table_name: &str, table: &Table, figu
 }
 
 /// What all demos did: where their files are, and what they took.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct Done {
+    /// The folder of the files.
     folder: String,
+    /// Seed of the generator.
     seed: u64,
+    /// Seconds in all.
     seconds: f64,
-    /// Null where the system does not report it.
+    /// The largest memory in use; null if the system does not report it.
     peak_bytes: Option<u64>,
-    /// In the folder.
+    /// The files that were written, by their names in the folder.
     files: Vec<String>,
 }
 

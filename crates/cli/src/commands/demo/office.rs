@@ -6,6 +6,7 @@ use crate::commands::build::{bake_visibly, plan};
 use crate::error::{ErrorAbout, Result};
 use crate::output::{self, bytes, percent};
 use crate::picture::{PictureKind, draw_plan, save_picture};
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::bake::{BakeRequest, Report};
 use sightlines::formats::geojson;
@@ -77,9 +78,11 @@ fn by_seen_floor(table: &Table) -> Vec<CellId> {
 }
 
 /// What the demo did.
-#[derive(Debug, Serialize)]
-struct Demo {
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct Demo {
+    /// Walls of the plan.
     n_walls: usize,
+    /// The table.
     built: plan::Outcome,
     #[serde(flatten)]
     done: Done,

@@ -7,6 +7,7 @@ use crate::error::{ErrorAbout, Result};
 use crate::glb::save_glb;
 use crate::output::{self, bytes, percent};
 use crate::picture::{self, PictureKind, save_picture};
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::bake::{BakeRequest, Report};
 use sightlines::formats::scene::read_scene;
@@ -78,9 +79,11 @@ fn viewer(table: &Table) -> Option<CellId> {
 }
 
 /// What the demo did.
-#[derive(Debug, Serialize)]
-struct Demo {
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct Demo {
+    /// Floors.
     n_floors: u32,
+    /// The table.
     built: space::Outcome,
     #[serde(flatten)]
     done: Done,

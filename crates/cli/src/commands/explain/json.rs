@@ -1,8 +1,8 @@
-//! An explanation for programs. `docs/json.md` describes the fields, which depend on the kind of the cells.
+//! An explanation for programs; the fields depend on the kind of the cells.
 
 use super::report::Report;
-use serde::ser::SerializeMap;
-use serde::{Serialize, Serializer};
+use schemars::JsonSchema;
+use serde::Serialize;
 use serde_json::{Value, json};
 use sightlines::bake::GraphKind;
 use sightlines::bake::explain::{Answer, BlockedWay, Blocks, Corner, ExactLine, Reason, SightLine, Way};
@@ -10,159 +10,407 @@ use sightlines::cells::PortalId;
 use sightlines::sightline::{Branch, BranchRow, Bypass, Contradiction, ConvexCertificate, ConvexNode, ConvexTerm};
 use sightlines::stabtree::{AxialProof, Blocking};
 
-impl Serialize for Report<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(None)?;
-        map.serialize_entry("from", &self.pair[0].0)?;
-        map.serialize_entry("to", &self.pair[1].0)?;
-        map.serialize_entry("listed", &self.listed)?;
-        if let Some(checked) = self.explanation.checked {
-            map.serialize_entry("checked", &checked)?;
+/// An explanation, by the kind of the cells.
+#[derive(Debug, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub(crate) enum Explained {
+    Plan(Box<InPlan>),
+    Scene(Box<InScene>),
+    Boxes(Box<OfBoxes>),
+    Clusters(Box<OfClusters>),
+}
+
+/// Pair of cells
+#[derive(Debug, Serialize, JsonSchema)]
+struct Pair {
+    /// The first cell.
+    from: u32,
+    /// The second cell.
+    to: u32,
+    /// Whether the table lists the pair as visible; null without a table.
+    listed: Option<bool>,
+    /// `same` (one cell), `visible`, `hidden`, `unknown` (the limit of work was reached, or nothing was found between cells without portals) or
+    /// `undecided` (only of clusters). Fields that only some answers have name them.
+    answer: &'static str,
+}
+
+/// Exit code 1 for a hidden pair.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct InPlan {
+    #[serde(flatten)]
+    pair: Pair,
+    /// Visible: the portals that the line passes, in order.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    portals: Option<Vec<u32>>,
+    /// Visible: the cell entered through each portal.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    cells: Option<Vec<u32>>,
+    /// Visible: where the line crosses each portal, rounded.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    points: Option<Vec<[f64; 2]>>,
+    /// Visible: the line a x + b y + c = 0, exactly.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    line: Option<PlanLine>,
+    /// Hidden: whether any way through portals joins the cells.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    connected: Option<bool>,
+    /// Hidden: sequences of portals that lead that way, all of them blocked.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    n_blocked: Option<u64>,
+    /// Hidden: some of these.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    blocked: Option<Vec<BlockedInPlan>>,
+    /// Unknown: the limit of entered cells.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    max_visits: Option<u64>,
+}
+
+/// Line in a plan
+#[derive(Debug, Serialize, JsonSchema)]
+struct PlanLine {
+    /// A, as a fraction.
+    a: String,
+    /// B, as a fraction.
+    b: String,
+    /// C, as a fraction.
+    c: String,
+}
+
+/// Blocked sequence of portals in a plan
+#[derive(Debug, Serialize, JsonSchema)]
+struct BlockedInPlan {
+    /// Visible: the portals that the line passes, in order.
+    portals: Vec<u32>,
+    /// Left ends of portals: a line would have to pass on their right.
+    lefts: Vec<End>,
+    /// Right ends of portals: a line would have to pass on their left. No line separates the two lists.
+    rights: Vec<End>,
+}
+
+/// Corner
+#[derive(Debug, Serialize, JsonSchema)]
+struct End {
+    /// The portal.
+    portal: u32,
+    /// Its end.
+    point: [f64; 2],
+}
+
+/// Exit code 1 for a hidden pair. The line leads through portals. If a from-region method took part in the table and `listed` is false, it
+/// hides the pair by walls that are no borders of cells, which the line may meet; then the exit code is 1 all the same.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct InScene {
+    #[serde(flatten)]
+    pair: Pair,
+    /// Visible: the portals that the line passes, in order.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    portals: Option<Vec<u32>>,
+    /// Visible: the cell entered through each portal.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    cells: Option<Vec<u32>>,
+    /// Visible: where the line crosses each portal, rounded; null for a portal that the line lies in.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    points: Option<Vec<Option<[f64; 3]>>>,
+    /// Visible: a point of the line in the first cell and one in the last.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ends: Option<[[f64; 3]; 2]>,
+    /// Visible: the line, exactly.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    line: Option<Ray>,
+    /// Hidden: whether any way through portals joins the cells; if not, the fields below are absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    connected: Option<bool>,
+    #[serde(flatten)]
+    walls: Option<Walls>,
+    /// Unknown: the limit of linear programs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    max_programs: Option<u64>,
+}
+
+/// Line through boxes
+#[derive(Debug, Serialize, JsonSchema)]
+struct Ray {
+    /// A point, as fractions.
+    point: [String; 3],
+    /// The direction, as fractions.
+    direction: [String; 3],
+}
+
+/// Walls in the way of all lines
+#[derive(Debug, Serialize, JsonSchema)]
+struct Walls {
+    /// Hidden: rectangles that the walls were merged into.
+    n_blockers: usize,
+    /// Hidden: rectangles passed in the proof, each as often as it is passed.
+    n_nodes: usize,
+    /// Hidden: contradictions that end branches of the proof.
+    n_contradictions: usize,
+    /// Hidden: the most rectangles passed in one branch.
+    depth: usize,
+    /// Hidden: the rectangles in the way.
+    walls: Vec<Wall>,
+    /// Hidden: a tree for each octant of directions. Its element has `forward`, whether lines go forward along each axis, and `branch`. A branch is
+    /// a `contradiction`, a list of rows, each with `times`, its exact multiplier; or it has `wall` (index into `walls`), `ways`, a list of objects
+    /// with `way` (`before`, `after`, or an object with `beside`, the axis, and `entering`) and `branch`, and `rest`, rows or null. A `row` is one
+    /// of {`end`, `early`, `late`}, {`taken`, `row`}, {`not_taken`, `way`}.
+    proof: Vec<Value>,
+}
+
+/// Rectangle in the way
+#[derive(Debug, Serialize, JsonSchema)]
+struct Wall {
+    /// Lower corner.
+    min: [f64; 3],
+    /// Upper corner.
+    max: [f64; 3],
+    /// Hidden: rectangles passed in the proof, each as often as it is passed.
+    n_nodes: usize,
+}
+
+/// Of given cells, and of places. Exit code 1 for a pair that the table hides, unless a line joins it.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct OfBoxes {
+    #[serde(flatten)]
+    pair: Pair,
+    /// Visible: from inside one cell to inside the other; nothing in the scene touches it, which is decided exactly. Along the axes of the table.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    segment: Option<[[f64; 3]; 2]>,
+    /// Unknown, with `--scene`: about how many rays from each cell found no line, which proves nothing.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    n_rays: Option<u32>,
+    /// Unknown, of a pair that the table hides: the methods of which at least one hid it; with `--scene` the one, unless that takes too many cells.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    hidden_by: Vec<String>,
+}
+
+/// Of portal files, and of tables of portal files and Quake maps. Exit code 1 for a hidden pair.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct OfClusters {
+    #[serde(flatten)]
+    pair: Pair,
+    /// Whether the independent checker accepts the reason.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    checked: Option<bool>,
+    /// Visible: the portals that the line passes, in order. Undecided: a sequence that was not decided.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    portals: Option<Vec<Passed>>,
+    /// Visible: two points of the line.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    line: Option<[[f64; 3]; 2]>,
+    /// Hidden: the cluster from which the sequences lead to the other.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    start: Option<u32>,
+    /// Hidden: sequences of portals, all of them blocked.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    n_blocked: Option<u64>,
+    /// Hidden: all of these.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    blocked: Option<Vec<BlockedClusters>>,
+    /// Unknown: the limit of tested sequences.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    max_questions: Option<u64>,
+}
+
+/// Passed portal
+#[derive(Debug, Serialize, JsonSchema)]
+struct Passed {
+    /// The portal.
+    portal: u32,
+    /// The cluster behind it.
+    cell: u32,
+    /// Visible: where the line crosses the portal, rounded.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    at: Option<[f64; 3]>,
+}
+
+/// Blocked sequence of portals between clusters
+#[derive(Debug, Serialize, JsonSchema)]
+struct BlockedClusters {
+    /// Visible: the portals that the line passes, in order. Undecided: a sequence that was not decided.
+    portals: Vec<Passed>,
+    /// Why no line passes: `behind` (one of the portals is not ahead of another); or `plane`, with the `edge`, `corner` and `stops` that give it; or
+    /// `boxes`, with `portals`, `blocks` (`corner`, `edges`) and `nodes`, each a split (`axis`, `at`, `parts`) or a list of terms (`portal`, `edge`,
+    /// `times`); or `hulls`, with `portals` and `terms`, whose sum is positive for no line from the hull of the one portal to that of the other.
+    certificate: Value,
+}
+
+impl Report<'_> {
+    /// The fields of the report.
+    pub(super) fn fields(&self) -> Explained {
+        match self.explanation.cells {
+            GraphKind::Planar => Explained::Plan(Box::new(self.in_plan())),
+            GraphKind::Axial => Explained::Scene(Box::new(self.in_scene())),
+            GraphKind::Convex => Explained::Clusters(Box::new(self.of_clusters())),
+            _ => Explained::Boxes(Box::new(self.of_boxes())),
         }
-        let name = match &self.explanation.answer {
+    }
+
+    fn pair(&self) -> Pair {
+        let answer = match &self.explanation.answer {
             Answer::Same => "same",
             Answer::Visible(..) => "visible",
             Answer::Hidden(_) => "hidden",
             Answer::GivenUp(_) | Answer::Unknown { .. } => "unknown",
             Answer::Undecided(_) => "undecided",
         };
-        map.serialize_entry("answer", name)?;
-        self.write_fields(&mut map)?;
-        map.end()
+        Pair { from: self.pair[0].0, to: self.pair[1].0, listed: self.listed, answer }
     }
-}
 
-impl Report<'_> {
-    fn write_fields<M: SerializeMap>(&self, map: &mut M) -> Result<(), M::Error> {
-        let cells = self.explanation.cells;
+    fn line(&self) -> Option<(&SightLine, &ExactLine)> {
         match &self.explanation.answer {
-            Answer::Same => Ok(()),
-            Answer::Visible(line, exact) => write_line(map, line, exact),
-            Answer::Hidden(reason) => self.write_hidden(map, reason),
-            Answer::GivenUp(limit) => {
-                let name = match cells {
-                    GraphKind::Planar => "max_visits",
-                    GraphKind::Convex => "max_questions",
-                    _ => "max_programs",
-                };
-                map.serialize_entry(name, limit)
-            }
-            Answer::Undecided(way) => map.serialize_entry("portals", &all_passed(way)),
-            Answer::Unknown { n_rays, hidden_by } => {
-                n_rays.iter().try_for_each(|n| map.serialize_entry("n_rays", n))?;
-                if hidden_by.is_empty() { Ok(()) } else { map.serialize_entry("hidden_by", hidden_by) }
-            }
+            Answer::Visible(line, exact) => Some((line, exact)),
+            _ => None,
         }
     }
 
-    fn write_hidden<M: SerializeMap>(&self, map: &mut M, reason: &Reason) -> Result<(), M::Error> {
-        match (self.explanation.cells, reason) {
-            (GraphKind::Convex, Reason::Blocked { start, .. }) => map.serialize_entry("start", &start.0)?,
-            (GraphKind::Convex, _) => map.serialize_entry("start", &self.pair[0].0)?,
-            _ => map.serialize_entry("connected", &(*reason != Reason::NotConnected))?,
+    fn reason(&self) -> Option<&Reason> {
+        match &self.explanation.answer {
+            Answer::Hidden(reason) => Some(reason),
+            _ => None,
         }
-        let (n_blocked, blocked) = match reason {
-            Reason::Walls(walls) => return write_walls(map, walls),
-            Reason::NotConnected if self.explanation.cells == GraphKind::Axial => return Ok(()),
-            Reason::NotConnected => (0, &[][..]),
-            Reason::Blocked { n_blocked, blocked, .. } => (*n_blocked, &blocked[..]),
+    }
+
+    fn limit(&self) -> Option<u64> {
+        match self.explanation.answer {
+            Answer::GivenUp(limit) => Some(limit),
+            _ => None,
+        }
+    }
+
+    /// The blocked ways, and how many there are.
+    fn blocked(&self) -> Option<(u64, &[BlockedWay])> {
+        match self.reason()? {
+            Reason::Blocked { n_blocked, blocked, .. } => Some((*n_blocked, blocked)),
+            _ => Some((0, &[])),
+        }
+    }
+
+    fn in_plan(&self) -> InPlan {
+        let line = self.line();
+        let blocked = self.blocked();
+        let planar = |[x, y, _]: [f64; 3]| [x, y];
+        InPlan {
+            pair: self.pair(),
+            portals: line.map(|(line, _)| numbers(&line.portals)),
+            cells: line.map(|(line, _)| entered(line)),
+            points: line.map(|(_, exact)| exact.crossings().into_iter().flatten().map(planar).collect()),
+            line: line.and_then(|(_, exact)| match exact {
+                ExactLine::Planar(witness, _) => {
+                    let [a, b, c] = witness.coefficients().map(ToString::to_string);
+                    Some(PlanLine { a, b, c })
+                }
+                _ => None,
+            }),
+            connected: self.reason().map(|reason| *reason != Reason::NotConnected),
+            n_blocked: blocked.map(|(n, _)| n),
+            blocked: blocked.map(|(_, ways)| ways.iter().filter_map(BlockedInPlan::new).collect()),
+            max_visits: self.limit(),
+        }
+    }
+
+    fn in_scene(&self) -> InScene {
+        let line = self.line();
+        InScene {
+            pair: self.pair(),
+            portals: line.map(|(line, _)| numbers(&line.portals)),
+            cells: line.map(|(line, _)| entered(line)),
+            points: line.map(|(_, exact)| exact.crossings()),
+            ends: line.and_then(|(line, _)| line.ends),
+            line: line.and_then(|(_, exact)| match exact {
+                ExactLine::Axial(witness, _) => Some(Ray {
+                    point: witness.point().each_ref().map(ToString::to_string),
+                    direction: witness.direction().each_ref().map(ToString::to_string),
+                }),
+                _ => None,
+            }),
+            connected: self.reason().map(|reason| *reason != Reason::NotConnected),
+            walls: self.reason().and_then(|reason| match reason {
+                Reason::Walls(proof) => Some(Walls::new(proof)),
+                _ => None,
+            }),
+            max_programs: self.limit(),
+        }
+    }
+
+    fn of_boxes(&self) -> OfBoxes {
+        let (n_rays, hidden_by) = match &self.explanation.answer {
+            Answer::Unknown { n_rays, hidden_by } => (*n_rays, hidden_by.clone()),
+            _ => (None, Vec::new()),
         };
-        map.serialize_entry("n_blocked", &n_blocked)?;
-        map.serialize_entry("blocked", &blocked.iter().map(Blocked::new).collect::<Vec<_>>())
+        OfBoxes { pair: self.pair(), segment: self.line().and_then(|(line, _)| line.ends), n_rays, hidden_by }
     }
-}
 
-/// A portal of a cluster on the way.
-#[derive(Serialize)]
-struct Passed {
-    portal: u32,
-    cell: u32,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    at: Option<[f64; 3]>,
+    fn of_clusters(&self) -> OfClusters {
+        let line = self.line();
+        let blocked = self.blocked();
+        let passed = |(line, exact): (&SightLine, &ExactLine)| {
+            let portals = line.portals.iter().zip(entered(line)).zip(exact.crossings());
+            portals.map(|((portal, cell), at)| Passed { portal: portal.0, cell, at }).collect()
+        };
+        OfClusters {
+            pair: self.pair(),
+            checked: self.explanation.checked,
+            portals: match &self.explanation.answer {
+                Answer::Undecided(way) => Some(all_passed(way)),
+                _ => line.map(passed),
+            },
+            line: line.and_then(|(_, exact)| match exact {
+                ExactLine::Convex(points, _) => Some(*points),
+                _ => None,
+            }),
+            start: self.reason().map(|reason| match reason {
+                Reason::Blocked { start, .. } => start.0,
+                _ => self.pair[0].0,
+            }),
+            n_blocked: blocked.map(|(n, _)| n),
+            blocked: blocked.map(|(_, ways)| ways.iter().filter_map(BlockedClusters::new).collect()),
+            max_questions: self.limit(),
+        }
+    }
 }
 
 fn all_passed(way: &Way) -> Vec<Passed> {
-    way.portals
-        .iter()
-        .zip(&way.cells)
-        .map(|(portal, cell)| Passed { portal: portal.0, cell: cell.0, at: None })
-        .collect()
+    let portals = way.portals.iter().zip(&way.cells);
+    portals.map(|(portal, cell)| Passed { portal: portal.0, cell: cell.0, at: None }).collect()
 }
 
 fn numbers(portals: &[PortalId]) -> Vec<u32> {
     portals.iter().map(|portal| portal.0).collect()
 }
 
-/// A line through boxes: a point and a direction, as fractions.
-#[derive(Serialize)]
-struct Ray {
-    point: [String; 3],
-    direction: [String; 3],
+/// The cells behind the portals of a line.
+fn entered(line: &SightLine) -> Vec<u32> {
+    line.cells.iter().skip(1).map(|cell| cell.0).collect()
 }
 
-fn write_line<M: SerializeMap>(map: &mut M, line: &SightLine, exact: &ExactLine) -> Result<(), M::Error> {
-    let entered: Vec<u32> = line.cells.iter().skip(1).map(|cell| cell.0).collect();
-    let crossings = exact.crossings();
-    match exact {
-        ExactLine::Planar(witness, _) => {
-            map.serialize_entry("portals", &numbers(&line.portals))?;
-            map.serialize_entry("cells", &entered)?;
-            let points: Vec<[f64; 2]> = crossings.iter().flatten().map(|&[x, y, _]| [x, y]).collect();
-            map.serialize_entry("points", &points)?;
-            let [a, b, c] = witness.coefficients().map(ToString::to_string);
-            map.serialize_entry("line", &json!({"a": a, "b": b, "c": c}))
-        }
-        ExactLine::Axial(witness, _) => {
-            map.serialize_entry("portals", &numbers(&line.portals))?;
-            map.serialize_entry("cells", &entered)?;
-            map.serialize_entry("points", &crossings)?;
-            map.serialize_entry("ends", &line.ends)?;
-            let point = witness.point().each_ref().map(ToString::to_string);
-            let direction = witness.direction().each_ref().map(ToString::to_string);
-            map.serialize_entry("line", &Ray { point, direction })
-        }
-        ExactLine::Convex(points, _) => {
-            let portals = line.portals.iter().zip(entered).zip(crossings);
-            let portals = portals.map(|((portal, cell), at)| Passed { portal: portal.0, cell, at });
-            map.serialize_entry("portals", &portals.collect::<Vec<_>>())?;
-            map.serialize_entry("line", points)
-        }
-        ExactLine::Segment => map.serialize_entry("segment", &line.ends),
+impl BlockedInPlan {
+    fn new(BlockedWay { way, proof }: &BlockedWay) -> Option<Self> {
+        let Blocks::Corners { lefts, rights } = proof else { return None };
+        let end = |c: &Corner| End { portal: c.portal.0, point: [c.point.x, c.point.y] };
+        let [lefts, rights] = [lefts, rights].map(|corners| corners.iter().map(end).collect());
+        Some(Self { portals: numbers(&way.portals), lefts, rights })
     }
 }
 
-/// A sequence of portals that no line passes.
-#[derive(Serialize)]
-#[serde(untagged)]
-enum Blocked {
-    /// In a plan, with the ends that no line separates.
-    Plan {
-        portals: Vec<u32>,
-        lefts: Vec<End>,
-        rights: Vec<End>,
-    },
-    Clusters {
-        portals: Vec<Passed>,
-        certificate: Value,
-    },
+impl BlockedClusters {
+    fn new(BlockedWay { way, proof }: &BlockedWay) -> Option<Self> {
+        let Blocks::Convex(why) = proof else { return None };
+        Some(Self { portals: all_passed(way), certificate: certificate(why) })
+    }
 }
 
-/// An end of a portal.
-#[derive(Serialize)]
-struct End {
-    portal: u32,
-    point: [f64; 2],
-}
-
-impl Blocked {
-    fn new(BlockedWay { way, proof }: &BlockedWay) -> Self {
-        match proof {
-            Blocks::Corners { lefts, rights } => {
-                let end = |c: &Corner| End { portal: c.portal.0, point: [c.point.x, c.point.y] };
-                let [lefts, rights] = [lefts, rights].map(|corners| corners.iter().map(end).collect());
-                Self::Plan { portals: numbers(&way.portals), lefts, rights }
-            }
-            Blocks::Convex(why) => Self::Clusters { portals: all_passed(way), certificate: certificate(why) },
+impl Walls {
+    fn new(found: &AxialProof) -> Self {
+        let size = found.proof.size();
+        let walls = found.walls.iter().zip(found.n_steps());
+        let octant = |(signs, branch): &([bool; 3], Branch)| json!({"forward": signs, "branch": tree(branch)});
+        Self {
+            n_blockers: found.n_blockers,
+            n_nodes: size.n_nodes,
+            n_contradictions: size.n_leaves,
+            depth: size.depth,
+            walls: walls.map(|(wall, n_nodes)| Wall { min: wall.min, max: wall.max, n_nodes }).collect(),
+            proof: found.proof.octants.iter().map(octant).collect(),
         }
     }
 }
@@ -195,27 +443,6 @@ fn node(node: &ConvexNode) -> Value {
 
 fn term(term: &ConvexTerm) -> Value {
     json!({"portal": term.portal, "edge": term.edge, "times": term.multiplier})
-}
-
-/// A rectangle in the way.
-#[derive(Serialize)]
-struct Wall {
-    min: [f64; 3],
-    max: [f64; 3],
-    n_nodes: usize,
-}
-
-fn write_walls<M: SerializeMap>(map: &mut M, found: &AxialProof) -> Result<(), M::Error> {
-    let size = found.proof.size();
-    map.serialize_entry("n_blockers", &found.n_blockers)?;
-    map.serialize_entry("n_nodes", &size.n_nodes)?;
-    map.serialize_entry("n_contradictions", &size.n_leaves)?;
-    map.serialize_entry("depth", &size.depth)?;
-    let walls = found.walls.iter().zip(found.n_steps());
-    let walls = walls.map(|(wall, n_nodes)| Wall { min: wall.min, max: wall.max, n_nodes });
-    map.serialize_entry("walls", &walls.collect::<Vec<_>>())?;
-    let octant = |(signs, branch): &([bool; 3], Branch)| json!({"forward": signs, "branch": tree(branch)});
-    map.serialize_entry("proof", &found.proof.octants.iter().map(octant).collect::<Value>())
 }
 
 /// A branch of a proof.

@@ -1,8 +1,8 @@
 //! `explain`: the line of sight between two cells, or why there is none.
 
-mod json;
+pub(crate) mod json;
 mod picture;
-mod report;
+pub(crate) mod report;
 mod text;
 
 use crate::Answer;

@@ -4,6 +4,7 @@ use crate::Answer;
 use crate::error::Result;
 use crate::output;
 use crate::place::Place;
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::bake::explain::Explanation;
 use sightlines::pvs::{CellId, Table, TableKind};
@@ -32,7 +33,7 @@ impl<'a> Report<'a> {
 
     /// Prints the report. The answer is that of the engine, else that of the table, and yes without one.
     pub(super) fn print(&self, json: bool) -> Result<Answer> {
-        output::print(json, self)?;
+        output::print_as(json, || self.fields(), self)?;
         let verdict = self.explanation.answer.verdict();
         // A table may hide what portals let through, past walls that are no borders of cells.
         let is_hidden_by_region = self.has_regions && verdict == Some(true) && self.listed == Some(false);
@@ -41,10 +42,12 @@ impl<'a> Report<'a> {
     }
 }
 
-/// A place that is in no cell.
-#[derive(Debug, Serialize)]
-pub(super) struct Outside {
+/// Exit code 1.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct Outside {
+    /// `outside`.
     answer: &'static str,
+    /// The place, in words.
     place: String,
 }
 

@@ -1,10 +1,10 @@
 //! `info`: what a file holds.
 
-mod packed;
-mod plan;
-mod quake;
-mod scene;
-mod wad;
+pub(crate) mod packed;
+pub(crate) mod plan;
+pub(crate) mod quake;
+pub(crate) mod scene;
+pub(crate) mod wad;
 
 use crate::Answer;
 use crate::error::Result;
@@ -13,6 +13,7 @@ use crate::input;
 use crate::output::{self, bytes, count};
 use crate::plans::PlanArgs;
 use crate::surfaces::SurfaceArgs;
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::formats::InputKind;
 use sightlines::pvs::{ObjectId, Table};
@@ -69,36 +70,42 @@ pub(crate) fn run(args: &InfoArgs) -> Result<Answer> {
 }
 
 /// What a table holds.
-#[derive(Debug, Serialize)]
-struct TableInfo {
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct TableInfo {
+    /// The file.
     file: String,
+    /// `table`.
     kind: &'static str,
     #[serde(flatten)]
     summary: Summary,
-    /// If the table has any.
+    /// Its stab trees, if it has any.
     #[serde(skip_serializing_if = "Option::is_none")]
     stab: Option<StabFacts>,
     /// Objects of which node and primitive are known.
     n_objects_with_source: usize,
+    /// Its doors.
     doors: Vec<DoorFacts>,
-    /// If they are asked for.
+    /// With `--objects`: all objects.
     #[serde(skip_serializing_if = "Option::is_none")]
     objects: Option<Vec<Object>>,
-    /// If the table stands along axes of its own.
+    /// Its frame, if it has one.
     #[serde(skip_serializing_if = "Option::is_none")]
     frame: Option<FrameFacts>,
-    /// If the table has any.
+    /// Digests of what the table was made of, as hexadecimal numbers of 128 bits; older tables have none.
     #[serde(skip_serializing_if = "Option::is_none")]
     digests: Option<DigestFacts>,
-    /// How the table was made, as it states.
+    /// Keys and values that the table has for people: how it was made. All values are texts.
     #[serde(serialize_with = "as_map")]
+    #[schemars(with = "std::collections::BTreeMap<String, String>")]
     info: Vec<(String, String)>,
 }
 
 /// An object of a table.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct Object {
+    /// The object.
     id: u32,
+    /// Its name.
     name: String,
     /// If it is known.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]

@@ -5,6 +5,7 @@ use crate::error::{Result, anyhow};
 use crate::facts::{DigestFacts, DoorFacts, FrameFacts, Source, write_doors};
 use crate::output::{bytes, percent};
 use crate::tables::{self, Class};
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::pvs::ObjectId;
 use std::fmt;
@@ -13,48 +14,64 @@ use std::path::Path;
 /// Bytes of blocks that are kept while objects are listed.
 const CACHE: usize = 1 << 20;
 
-/// The numbers of a packed table.
-#[derive(Debug, Serialize)]
-pub(super) struct PackedInfo {
+/// What a packed table holds.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct PackedInfo {
+    /// The file.
     file: String,
+    /// `packed`.
     kind: &'static str,
+    /// Layout of the file, `small` or `large`.
     class: Class,
+    /// 2 in the plane, 3 in space.
     dimension: u8,
+    /// Bytes of the file.
     n_bytes: u64,
+    /// Cells.
     n_cells: usize,
+    /// Whether the cells have names.
     has_cell_names: bool,
+    /// Portals.
     n_portals: usize,
+    /// Objects.
     n_objects: usize,
-    /// Null without stab trees.
+    /// Nodes of stab trees; null without stab trees.
     n_stab_nodes: Option<u32>,
+    /// Parts of mirrors on borders of cells.
     n_mirror_parts: usize,
     /// Objects of which node and primitive are known.
     n_objects_with_source: usize,
+    /// Its doors.
     doors: Vec<DoorFacts>,
-    /// If they are asked for.
+    /// With `--objects`: all objects.
     #[serde(skip_serializing_if = "Option::is_none")]
     objects: Option<Vec<Object>>,
     /// Bytes that stay in memory as they are in the file.
     resident_bytes: usize,
+    /// The parts of the file.
     parts: Vec<Part>,
-    /// If the table stands along axes of its own.
+    /// Its frame, if it has one.
     #[serde(skip_serializing_if = "Option::is_none")]
     frame: Option<FrameFacts>,
-    /// If the table has any.
+    /// Digests of what the table was made of, as hexadecimal numbers of 128 bits; older tables have none.
     #[serde(skip_serializing_if = "Option::is_none")]
     digests: Option<DigestFacts>,
-    /// How the table was made, as it states.
+    /// As in a table.
     #[serde(serialize_with = "as_map")]
+    #[schemars(with = "std::collections::BTreeMap<String, String>")]
     info: Vec<(String, String)>,
 }
 
 /// A part of the file.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct Part {
+    /// Name of the part.
     name: String,
     /// What it is, for people.
     what: &'static str,
+    /// Bytes of the file.
     n_bytes: u64,
+    /// Whether it stays in memory.
     resident: bool,
 }
 

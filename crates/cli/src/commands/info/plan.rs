@@ -2,30 +2,38 @@
 
 use crate::error::Result;
 use crate::plans;
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::formats::{PlanReadOptions, detect_file};
 use std::fmt;
 use std::path::Path;
 
 /// The numbers of a plan.
-#[derive(Debug, Serialize)]
-pub(super) struct PlanInfo {
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct PlanInfo {
+    /// The file.
     file: String,
+    /// `geojson` or `dxf`.
     kind: &'static str,
+    /// Lines.
     n_walls: usize,
     /// Lines that do not block sight.
     n_transparent: usize,
+    /// Objects.
     n_objects: usize,
-    /// Null for a plan without lines.
+    /// Lower corner of the plan; null without lines.
     min: Option<[f64; 2]>,
+    /// Upper corner of the plan; null without lines.
     max: Option<[f64; 2]>,
     /// Whether every line is parallel to an axis.
     axial: bool,
-    /// Lines of the file that were dropped.
+    /// Lines of the file without length, which were dropped.
     n_without_length: usize,
+    /// Lines of the file that repeat others, which were dropped.
     n_doubled: usize,
+    /// Whether the file states a reference system (`crs`).
     has_crs: bool,
-    /// Of DXF.
+    /// DXF: the names of all layers.
     layers: Vec<String>,
 }
 

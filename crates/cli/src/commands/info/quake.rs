@@ -2,6 +2,7 @@
 
 use crate::error::Result;
 use crate::output::{count, percent};
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::formats::Bsp;
 use sightlines::formats::quake::visibility::read_visibility;
@@ -10,18 +11,23 @@ use std::fmt;
 use std::path::Path;
 
 /// The numbers of a portal file.
-#[derive(Debug, Serialize)]
-pub(super) struct PrtInfo {
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct PrtInfo {
+    /// The file.
     file: String,
+    /// `portals`.
     kind: &'static str,
+    /// Dialect of the portal file.
     portal_format: &'static str,
+    /// Clusters.
     n_clusters: u32,
-    /// Null where the file does not list them.
+    /// Leafs; null if the file does not list them.
     n_leafs: Option<usize>,
+    /// Portals.
     n_portals: usize,
-    /// Portals without area, through which nothing is seen; counted in `n_portals`.
+    /// Of these, portals without area, through which nothing is visible.
     n_degenerate_portals: usize,
-    /// Portals that the file has again, and that are used once; counted in `n_portals`.
+    /// Of these, portals that the file has again; they are used once.
     n_repeated_portals: usize,
     /// Clusters that no portal leads to.
     n_closed_clusters: usize,
@@ -71,29 +77,33 @@ impl fmt::Display for PrtInfo {
 }
 
 /// The numbers of a map.
-#[derive(Debug, Serialize)]
-pub(super) struct BspInfo {
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct BspInfo {
+    /// The file.
     file: String,
+    /// `bsp`.
     kind: &'static str,
+    /// Format of the map.
     format: &'static str,
     #[serde(skip)]
     game: &'static str,
-    /// All leafs, those of doors and the like and the solid one included.
+    /// Leafs, including the solid one and those of doors and the like.
     n_leafs: usize,
+    /// Leafs that can be visible.
     n_visible_leafs: usize,
-    /// Null but in Quake II and III.
+    /// Clusters of Quake II; null in other formats.
     n_clusters: Option<usize>,
     /// `none`, `there` or `damaged`.
     visibility: &'static str,
+    /// Bytes of the visibility.
     visibility_bytes: usize,
     /// What sees and is seen: `leaf`, or `cluster` in Quake II and III.
     pairs_of: &'static str,
-    /// Ordered pairs of different ones of which the first sees the second, according to the map; null without
-    /// visibility.
+    /// Ordered pairs of different ones of which the second is visible from the first, as the map lists them; null without visibility.
     n_seen_pairs: Option<u64>,
-    /// Of all ordered pairs of different ones.
+    /// The same as a share of all ordered pairs of different ones.
     seen_share: Option<f64>,
-    /// Why the visibility cannot be read.
+    /// Why the visibility cannot be read; null if it can.
     error: Option<String>,
 }
 

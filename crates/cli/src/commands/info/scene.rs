@@ -5,6 +5,7 @@ use crate::facts::Stated;
 use crate::input;
 use crate::output::count;
 use crate::surfaces::Surfaces;
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::cells::{MovingObject, Scene};
 use sightlines::formats::scene::SceneReadOptions;
@@ -13,40 +14,53 @@ use std::fmt;
 use std::path::Path;
 
 /// The numbers of a scene.
-#[derive(Debug, Serialize)]
-pub(super) struct SceneInfo {
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct SceneInfo {
+    /// The file.
     file: String,
+    /// `scene`.
     kind: &'static str,
     #[serde(flatten)]
     stated: Stated,
     #[serde(flatten)]
     surfaces: Surfaces,
+    /// Objects.
     n_objects: usize,
+    /// Of these, objects without triangles.
     n_objects_without_triangles: usize,
+    /// Triangles.
     n_triangles: usize,
-    /// Left out when the file was read.
+    /// Triangles without area, which were left out.
     n_degenerate_triangles: usize,
+    /// Lower corner of the scene.
     min: [f64; 3],
+    /// Upper corner of the scene.
     max: [f64; 3],
-    /// What moves, for the moving objects of the run time.
+    /// What moves, in the order of the objects; at run time each is a moving object that stays in its box.
     movers: Vec<Mover>,
+    /// Where viewers can be, as the file states it (role `view-volume`).
     view_volumes: Vec<Volume>,
 }
 
 /// An object that moves.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct Mover {
+    /// The object, counted from 0.
     object: u32,
+    /// Its name.
     name: String,
-    /// The box that it never leaves; none if it may be anywhere.
+    /// Lower corner of the scene.
     min: Option<[f64; 3]>,
+    /// Upper corner of the scene.
     max: Option<[f64; 3]>,
 }
 
 /// A box where viewers can be.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct Volume {
+    /// Lower corner of the box around them.
     min: [f64; 3],
+    /// Upper corner.
     max: [f64; 3],
 }
 

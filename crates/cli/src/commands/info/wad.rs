@@ -2,6 +2,7 @@
 
 use crate::error::Result;
 use crate::output::{count, percent};
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::formats::doom::{DoomMap, MapLumps, list_maps};
 use sightlines::formats::wad::WadKind;
@@ -10,28 +11,37 @@ use std::fmt;
 use std::path::Path;
 
 /// The numbers of a WAD.
-#[derive(Debug, Serialize)]
-pub(super) struct WadInfo {
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct WadInfo {
+    /// The file.
     file: String,
+    /// `iwad` or `pwad`.
     kind: &'static str,
+    /// Lumps.
     n_lumps: usize,
+    /// The maps.
     maps: Vec<MapInfo>,
 }
 
-/// The numbers of a map; null if it is damaged.
-#[derive(Debug, Serialize)]
+/// Map of a WAD; its numbers are null if it is damaged.
+#[derive(Debug, Serialize, JsonSchema)]
 struct MapInfo {
+    /// Name of the map.
     name: String,
+    /// Format of the map.
     format: String,
+    /// Sectors; this and the next two are null if the map is damaged.
     n_sectors: Option<u32>,
+    /// Lines.
     n_lines: Option<usize>,
+    /// Things.
     n_things: Option<usize>,
-    /// `none`, `empty` (nothing rejected), `odd size`, `hand-made` (effects that no line of sight explains)
-    /// or `built`.
+    /// The REJECT lump: `none`, `empty` (nothing rejected), `odd size`, `hand-made` (effects that no line of sight explains) or `built`; null if the
+    /// map is damaged.
     reject: Option<&'static str>,
-    /// Ordered pairs that are rejected.
+    /// Ordered pairs that it rejects; null without a sound lump.
     n_rejected: Option<u64>,
-    /// Why the map cannot be used.
+    /// Why the map cannot be used; null if it can.
     error: Option<String>,
 }
 

@@ -1,6 +1,6 @@
 //! `isovist`: what is seen from points of a floor plan, or of a scene in space.
 
-mod space;
+pub(crate) mod space;
 
 use crate::Answer;
 use crate::error::{ErrorAbout, Result, anyhow, bail};
@@ -10,6 +10,7 @@ use crate::picture::{PictureKind, save_picture};
 use crate::place::Point;
 use crate::plans::PlanArgs;
 use crate::surfaces::SurfaceArgs;
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::bake::Bakeable;
 use sightlines::cells::Plan;
@@ -238,16 +239,20 @@ fn areas(mesh: &WallMesh, eyes: &[Eye], limits: &Limits) -> Result<Vec<Area>> {
     eyes.iter().map(&mut area).collect()
 }
 
-/// What was written.
-#[derive(Debug, Serialize)]
-struct Outcome {
+/// Isovists of a plan.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct Outcome {
+    /// The file that was written.
     out: String,
+    /// Bytes of the file.
     n_bytes: u64,
+    /// Lines of the plan that block sight.
     n_walls: usize,
+    /// Points that were looked from.
     n_isovists: usize,
-    /// In square units of the plan.
+    /// Mean area, in square units of the plan.
     mean_area: f64,
-    /// In units of the plan.
+    /// Mean length of the edges that are no wall, in units of the plan.
     mean_occlusivity: f64,
 }
 

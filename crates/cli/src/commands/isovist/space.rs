@@ -6,6 +6,7 @@ use crate::error::{Result, bail};
 use crate::input::{self, refuse};
 use crate::output::{self, bytes, count};
 use crate::same_scene::difference;
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::isovist::{Estimate, Surroundings};
 use std::fmt::{self, Write};
@@ -83,17 +84,22 @@ fn csv(all: &[Seen], names: &[&str]) -> String {
     out
 }
 
-/// What was written.
-#[derive(Debug, Serialize)]
-struct Outcome {
+/// Isovists of a scene, by rays.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct Outcome {
+    /// The file that was written.
     out: String,
+    /// Bytes of the file.
     n_bytes: u64,
+    /// Objects of the scene.
     n_objects: usize,
+    /// Points that were looked from.
     n_isovists: usize,
+    /// Rays of each.
     n_rays: u32,
-    /// In cubic units of the scene.
+    /// Mean volume that is seen, in cubic units of the scene.
     mean_volume: f64,
-    /// Half of the interval in which a volume lies with a probability of 95 %.
+    /// Half of the interval in which a volume lies with a probability of 95 %, on average.
     mean_half_interval: f64,
     /// Objects of which something was seen, on average.
     n_seen: f64,

@@ -3,7 +3,7 @@
 mod engine;
 mod merge;
 mod numbers;
-mod outcome;
+pub(crate) mod outcome;
 mod plan;
 mod shard;
 mod status;

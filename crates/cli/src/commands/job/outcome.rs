@@ -4,6 +4,7 @@ use super::numbers::Run;
 use super::task::Made;
 use crate::output::{count, percent, seconds};
 use crate::progress::rough;
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::checkpoint::{Job, PhasePlan, ShardState};
 use std::fmt;
@@ -11,14 +12,17 @@ use std::path::Path;
 use std::time::Duration;
 
 /// A phase of a job, and its shards.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub(super) struct PhaseFacts {
+    /// Name of the phase.
     phase: String,
+    /// Units of work of the phase.
     n_units: usize,
-    /// Its shards are numbered from here.
+    /// The number of its first shard; the others follow.
     first_shard: usize,
+    /// Shards that the phase is cut into.
     n_shards: usize,
-    /// The share of the phase's cost that its most costly shard has.
+    /// The share of the phase's predicted cost that its most costly shard has.
     largest_share: f64,
 }
 
@@ -47,13 +51,14 @@ impl fmt::Display for PhaseFacts {
 }
 
 /// What was planned.
-#[derive(Debug, Serialize)]
-pub(super) struct Planned {
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct Planned {
+    /// The folder of the job.
     job: String,
     /// None if the work has nothing that can be shared.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     phase: Option<PhaseFacts>,
-    /// What was written, if there was nothing to share.
+    /// What was written.
     #[serde(skip_serializing_if = "Option::is_none")]
     out: Option<String>,
 }
@@ -76,20 +81,28 @@ impl fmt::Display for Planned {
 }
 
 /// What `job shard` has done.
-#[derive(Debug, Serialize)]
-pub(super) struct ShardsDone {
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct ShardsDone {
+    /// The folder of the job.
     pub(super) job: String,
+    /// Each shard, in ascending order.
     pub(super) shards: Vec<ShardDone>,
+    /// Seconds in all.
     pub(super) seconds: f64,
 }
 
 /// What one shard gave.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub(super) struct ShardDone {
+    /// The number of the shard.
     pub(super) shard: usize,
+    /// Its phase.
     pub(super) phase: String,
+    /// Its first unit.
     pub(super) begin: usize,
+    /// The unit behind its last one.
     pub(super) end: usize,
+    /// Whether its part was there already.
     pub(super) was_done: bool,
 }
 
@@ -105,19 +118,22 @@ impl fmt::Display for ShardsDone {
 }
 
 /// Shards of a phase that are not done.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub(super) struct Missing {
+    /// The phase of the job.
     phase: String,
-    /// Shards without a part, some perhaps begun.
+    /// Numbers of shards without a part.
     missing: Vec<usize>,
     /// Shards whose part cannot be used.
     broken: Vec<Broken>,
 }
 
 /// A shard whose part cannot be used.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub(super) struct Broken {
+    /// The number of the shard.
     shard: usize,
+    /// What is wrong, with the name of the file.
     reason: String,
 }
 
@@ -153,19 +169,23 @@ impl fmt::Display for Missing {
     }
 }
 
-/// How far a merge came.
-#[derive(Debug, Serialize)]
-pub(super) struct Merged {
+/// Exit code 3 if shards are to be done, first or again.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct Merged {
+    /// The folder of the job.
     job: String,
-    /// `written`, `shared` (another worker has written it), `planned` (another phase is to be done) or `missing` (shards are to be done).
+    /// `written`, `planned` (the shards of the next phase are to be done) or `missing` (shards are to be done, or done again).
     status: &'static str,
+    /// What was written.
     #[serde(skip_serializing_if = "Option::is_none")]
     out: Option<String>,
+    /// With `planned`: the next phase.
     #[serde(skip_serializing_if = "Option::is_none")]
     next: Option<PhaseFacts>,
+    /// With `missing`: which shards.
     #[serde(skip_serializing_if = "Option::is_none")]
     undone: Option<Missing>,
-    /// What the command itself prints.
+    /// With `written`: what the command prints.
     #[serde(skip_serializing_if = "Option::is_none")]
     text: Option<String>,
 }
@@ -209,25 +229,28 @@ impl fmt::Display for Merged {
 }
 
 /// What there is of a phase.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub(super) struct PhaseStatus {
     #[serde(flatten)]
     pub(super) facts: PhaseFacts,
+    /// Shards with a part that can be used.
     pub(super) n_done: usize,
-    /// The share of the phase's cost that is done.
+    /// The share of the phase's predicted cost that they have.
     pub(super) done_share: f64,
-    /// Shards without a part that were begun.
+    /// Numbers of shards without a part that were begun.
     pub(super) begun: Vec<usize>,
     #[serde(flatten)]
     pub(super) undone: Undone,
-    /// The time left, if the rest takes as long as what was done since the phase was planned; null if unknown.
+    /// Seconds that are left, if the rest takes as long as what was done since the phase was planned; null if unknown.
     pub(super) seconds_left: Option<f64>,
 }
 
 /// The same as [`Missing`], without the name of the phase.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub(super) struct Undone {
+    /// Numbers of shards without a part.
     pub(super) missing: Vec<usize>,
+    /// Shards whose part cannot be used.
     pub(super) broken: Vec<Broken>,
 }
 
@@ -238,10 +261,13 @@ impl From<Missing> for Undone {
 }
 
 /// What there is of a job.
-#[derive(Debug, Serialize)]
-pub(super) struct Status {
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct Status {
+    /// The folder of the job.
     pub(super) job: String,
+    /// The command, in words.
     pub(super) command: Vec<String>,
+    /// The phases that are known.
     pub(super) phases: Vec<PhaseStatus>,
 }
 
@@ -274,10 +300,12 @@ impl fmt::Display for Status {
     }
 }
 
-/// What `job submit --dry-run` has written.
-#[derive(Debug, Serialize)]
-pub(super) struct Submitted {
+/// The files that would be given to Slurm.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct Submitted {
+    /// The folder of the job.
     pub(super) job: String,
+    /// With `--dry-run`: the files that were written.
     pub(super) files: Vec<String>,
 }
 

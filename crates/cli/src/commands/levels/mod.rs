@@ -1,6 +1,6 @@
 //! `levels`: simplified variants of a scene for the cells of its table.
 
-mod outcome;
+pub(crate) mod outcome;
 
 use crate::Answer;
 use crate::error::{Result, anyhow};

@@ -4,6 +4,7 @@ use super::LevelsArgs;
 use crate::memory;
 use crate::output::{bytes, count, percent, seconds};
 use crate::simplification::{Rounded, SingleSided};
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::cells::Scene;
 use sightlines::formats::LevelsIndex;
@@ -11,32 +12,46 @@ use sightlines::formats::scene::Rounding;
 use std::fmt;
 use std::time::Duration;
 
-/// The result.
-#[derive(Debug, Serialize)]
-pub(super) struct Outcome {
+/// The levels that were written.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct Outcome {
+    /// The scene.
     scene: String,
+    /// The table.
     table: String,
+    /// The folder that was written.
     out: String,
+    /// The method that proved triangles hidden, or `none`.
     method: &'static str,
+    /// Share of the sphere of directions that was allowed to change.
     budget: f64,
+    /// Bytes allowed for the triangles of all levels.
     memory: u64,
+    /// Cells of the table.
     n_cells: usize,
+    /// Levels.
     n_levels: usize,
+    /// Triangles of the scene.
     n_triangles: u64,
-    /// What levels take by the measure of the memory, and as files.
+    /// Bytes of the triangles of all levels, measured as `memory` is.
     n_bytes: u64,
+    /// Bytes of the files of all levels.
     n_file_bytes: u64,
-    /// Triangles of the levels, each cell of the same weight, and of the largest one.
+    /// Triangles of a cell's level, averaged over cells.
     mean_triangles: f64,
+    /// Triangles of the largest level.
     most_triangles: u64,
-    /// The largest share that changes, of all levels.
+    /// Proven: the largest share of the sphere of directions that changes, of all levels; with `single_sided`, for every eye that sees the back of
+    /// no such face.
     bound: f64,
+    /// Whether the scene has faces of which engines draw the fronts only.
     single_sided: SingleSided,
-    /// What the files do not hold exactly, of all levels.
+    /// As in [`simplify`](#simplify), of all levels.
     #[serde(skip_serializing_if = "Option::is_none")]
     rounded: Option<Rounded>,
+    /// Seconds in all.
     seconds: f64,
-    /// The most memory that was in use at once; null where the system does not report it.
+    /// The largest memory in use; null if the system does not report it.
     peak_bytes: Option<u64>,
 }
 

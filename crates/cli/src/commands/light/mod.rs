@@ -1,7 +1,7 @@
 //! `light`: the soft shadows of an area light, with rays only where nothing is proven.
 
 mod method;
-mod outcome;
+pub(crate) mod outcome;
 
 use crate::Answer;
 use crate::buffers::method_failed;
@@ -108,20 +108,27 @@ pub(crate) fn run(args: &LightArgs) -> Result<Answer> {
     let pixels: Vec<LightPixel> = picture.shades.iter().map(|&shade| pixel(shade)).collect();
     let png = light_png(picture.size, &pixels, args.grey);
     let png = png.in_file(&args.output)?;
-    let (counts, rays) = Outcome::counts(&picture);
+    let [pixels_umbra, pixels_lit, pixels_in_doubt] = picture.counts();
+    let areas = lighting.areas();
     let outcome = Outcome {
         scene: args.scene.display().to_string(),
         n_faces: faces.len(),
         n_shown: chosen.len(),
-        light: args.light.0,
+        light: [args.light.0.min, args.light.0.max],
         method: method.name(),
         n_pieces: lighting.pieces().len(),
-        areas: *lighting.areas(),
+        area_umbra: areas.umbra,
+        area_lit: areas.lit,
+        area_in_doubt: areas.in_doubt,
+        area_mixed: areas.mixed,
         size: picture.size,
-        pixels: counts,
-        rays,
-        decided,
-        drawn,
+        pixels_umbra,
+        pixels_lit,
+        pixels_in_doubt,
+        rays: picture.n_rays,
+        rays_else: picture.n_rays_else,
+        decide_seconds: decided.as_secs_f64(),
+        draw_seconds: drawn.as_secs_f64(),
         file: args.output.display().to_string(),
     };
     output::save(&args.output, &png)?;

@@ -10,9 +10,9 @@ use std::path::Path;
 const AXES: [char; 3] = ['x', 'y', 'z'];
 
 /// The picture of a buffer, with the axis up that is up in the scene, and as it is seen from the volume.
-pub(super) fn svg(path: &Path, outcome: &Outcome, buffer: &Buffer, up: Axis) -> Result<String> {
-    let plane = outcome.plane;
-    let across = [(plane.axis() + 1) % 3, (plane.axis() + 2) % 3];
+pub(super) fn svg(path: &Path, outcome: &Outcome, buffer: &Buffer, white: u32, up: Axis) -> Result<String> {
+    let &Outcome { axis, at, window, texels, unit, .. } = outcome;
+    let across = [(axis + 1) % 3, (axis + 2) % 3];
     let up = match up {
         Axis::X => 0,
         Axis::Y => 1,
@@ -21,18 +21,18 @@ pub(super) fn svg(path: &Path, outcome: &Outcome, buffer: &Buffer, up: Axis) -> 
     let is_first_up = across[0] == up;
     // To the right of who looks along the plane's axis is that axis times up; the axes of the window follow it in turn. So the second is to the
     // right of who looks forwards with the first up, and the first to the left with the second up.
-    let is_forwards = plane.at() > outcome.volume.max[plane.axis()];
-    let title = format!("Multifocal buffer on the plane {} = {}", AXES[plane.axis()], plane.at());
+    let is_forwards = at > outcome.volume[1][axis];
+    let title = format!("Multifocal buffer on the plane {} = {}", AXES[axis], at);
     let values_are = format!("{}, in scene units", outcome.measure);
     let chart = BufferChart {
         title: &title,
         values_are: &values_are,
-        texels: plane.texels(),
+        texels,
         values: buffer.values(),
-        white: outcome.white,
-        unit: outcome.unit,
+        white,
+        unit,
         axes: across.map(|k| AXES[k]),
-        window: [plane.origin(), plane.end()],
+        window,
         is_first_up,
         is_mirrored: is_forwards != is_first_up,
     };

@@ -2,7 +2,7 @@
 
 mod backend;
 mod chart;
-mod outcome;
+pub(crate) mod outcome;
 mod target;
 
 use crate::Answer;
@@ -98,21 +98,26 @@ pub(crate) fn run(args: &MultifocalArgs) -> Result<Answer> {
         let field = Field::new(&features, &plane);
         (features, field)
     });
+    let white = white(&buffer);
     let outcome = Outcome {
         scene: args.scene.display().to_string(),
         n_triangles: triangles.len(),
         n_occluders: occluders.len(),
-        volume: args.volume.0,
-        plane,
+        volume: [args.volume.0.min, args.volume.0.max],
+        axis: plane.axis(),
+        at: plane.at(),
+        window: [plane.origin(), plane.end()],
+        texels: plane.texels(),
         measure: job.measure().name(),
         backend: by,
         unit: job.unit(),
+        n_texels: plane.texels().map(u64::from).iter().product(),
         n_blocked: buffer.n_blocked(),
-        white: white(&buffer),
+        white: f64::from(white) * job.unit(),
         fields: fields.as_ref().map(|(features, field)| FieldInfo::new(features, field)),
         files: outputs(args).map(|path| path.display().to_string()).collect(),
     };
-    let chart = args.chart.as_deref().map(|path| chart::svg(path, &outcome, &buffer, up).map(|svg| (path, svg)));
+    let chart = args.chart.as_deref().map(|path| chart::svg(path, &outcome, &buffer, white, up).map(|svg| (path, svg)));
     let chart = chart.transpose()?;
     write(args, &plane, &buffer, fields.as_ref())?;
     if let Some((path, svg)) = chart {

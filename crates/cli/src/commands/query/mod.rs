@@ -1,6 +1,6 @@
 //! `query`: what may be seen from a point.
 
-mod sight;
+pub(crate) mod sight;
 
 use crate::Answer;
 use crate::error::{ErrorAbout, Result};
@@ -9,6 +9,7 @@ use crate::output::{self, count};
 use crate::place::Point;
 use crate::tables::{self, Cells, Opened};
 use crate::view::lifted;
+use schemars::JsonSchema;
 use serde::Serialize;
 use sight::ViewerArgs;
 use sightlines::pvs::{CellId, ObjectId, PlaceBuffer};
@@ -86,14 +87,15 @@ fn named<C: Cells>(cells: &C, objects: impl IntoIterator<Item = ObjectId>) -> Re
 }
 
 /// Where the viewer is.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct Place {
+    /// The eye.
     eye: Vec<f64>,
-    /// The first of `cells`.
+    /// The first of `cells`; null outside every cell.
     cell: Option<u32>,
-    /// All cells that contain the point: several on a border.
+    /// The cells that contain the eye: several on a border, none outside, where everything may be visible.
     cells: Vec<u32>,
-    /// What they are called; empty and left out if the cells of the table have no names.
+    /// Their names, if the cells have names and the eye is in one.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     cell_names: Vec<String>,
 }
@@ -133,21 +135,25 @@ fn ids(ids: &[u32]) -> String {
     ids.iter().map(u32::to_string).collect::<Vec<_>>().join(" ")
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct Object {
+    /// Number of the object.
     id: u32,
+    /// Name of the object.
     name: String,
     /// If it is known.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     source: Option<Source>,
 }
 
-/// What was found at a point.
-#[derive(Debug, Serialize)]
-struct Found {
+/// Without an option that describes the view. Exit code 1 outside every cell.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct Found {
     #[serde(flatten)]
     place: Place,
+    /// Cells that may be visible from any place in `cells`; empty outside.
     visible: Vec<u32>,
+    /// Objects that may be visible from there; empty outside.
     objects: Vec<Object>,
     /// Number of cells and of objects of the table.
     #[serde(skip)]

@@ -6,6 +6,7 @@ use crate::output::count;
 use crate::sight::{Sight, SightArgs, without_direction};
 use crate::tables::Cells;
 use crate::view::Methods;
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::eye_to_cell::{Budget, Method, View};
 use sightlines::pvs::CellId;
@@ -85,9 +86,9 @@ fn answer<C: Cells>(viewer: &mut Viewer<C>, method: Method, view: &View, bounces
     })
 }
 
-/// What a viewer sees.
-#[derive(Debug, Serialize)]
-pub(super) struct Seen {
+/// With an option that describes the view: the answer of one method, or with `--method all` those of all.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct Seen {
     #[serde(flatten)]
     place: Place,
     /// Outside of every cell everything may be seen.
@@ -107,24 +108,31 @@ pub(super) struct Seen {
     all: [usize; 2],
 }
 
-/// What a method finds.
-#[derive(Debug, Serialize)]
+/// Answer of a method.
+#[derive(Debug, Serialize, JsonSchema)]
 struct Answered {
+    /// The eye-to-cell method.
     method: &'static str,
+    /// Cells that may be visible; all of them outside every cell.
     visible: Vec<u32>,
+    /// Objects that may be visible; all of them outside every cell.
     objects: Vec<Object>,
+    /// What may be visible in mirrors; needs `--bounces`.
     images: Vec<ImageSeen>,
-    /// The median of several looks, with everything prepared and warm.
+    /// Median time of a query with everything prepared, in microseconds.
     microseconds: f64,
 }
 
-/// What is seen by way of mirrors.
-#[derive(Debug, Serialize)]
+/// Objects seen by way of mirrors.
+#[derive(Debug, Serialize, JsonSchema)]
 struct ImageSeen {
     /// The mirrors, in the order in which a line from the eye meets them.
     mirrors: Vec<u32>,
+    /// Cells that may be visible in them.
     cells: Vec<u32>,
+    /// Objects that may be visible; all of them outside every cell.
     objects: Vec<u32>,
+    /// Whether the lists are known to be complete.
     complete: bool,
 }
 

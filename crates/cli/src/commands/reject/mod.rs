@@ -1,7 +1,7 @@
 //! `reject`: the REJECT lumps of a WAD, or of all WADs in a folder.
 
 mod folder;
-mod outcome;
+pub(crate) mod outcome;
 
 pub(crate) use outcome::Outcome;
 

@@ -1,13 +1,14 @@
 //! What is printed about REJECT lumps.
 
 use crate::output::{count, percent, seconds};
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::bake::{MapOutcome, MapStatus};
 use std::fmt;
 use std::time::Duration;
 
 /// What was done.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub(crate) enum Outcome {
     Wad(WadOutcome),
@@ -15,28 +16,32 @@ pub(crate) enum Outcome {
 }
 
 /// What became of a folder.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub(crate) struct FolderOutcome {
+    /// The folder that was written.
     pub(super) out: String,
+    /// The WADs of the folder that was read, in the order of their names.
     pub(super) files: Vec<FileOutcome>,
-    /// The most memory that was in use at once; null where the system does not report it.
+    /// The largest memory in use; null if the system does not report it.
     pub(super) peak_bytes: Option<u64>,
 }
 
-/// What became of a WAD of a folder.
-#[derive(Debug, Serialize)]
+/// WAD of a folder, and what became of it.
+#[derive(Debug, Serialize, JsonSchema)]
 pub(super) struct FileOutcome {
+    /// Name of the file.
     pub(super) name: String,
-    /// Null unless it was written.
+    /// The folder that was written.
     pub(super) out: Option<String>,
+    /// `written`, `skipped` (it has no maps, or none of those that were named) or `failed` (it cannot be done, or is no WAD; the others are).
     pub(super) status: FileStatus,
     /// Why it was not written; null if it was.
     pub(super) reason: Option<String>,
-    /// None unless it was written.
+    /// The maps that were looked at; empty unless the file was written.
     pub(super) maps: Vec<Map>,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum FileStatus {
     Written,
@@ -46,30 +51,41 @@ pub(super) enum FileStatus {
 }
 
 /// What became of a WAD.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub(crate) struct WadOutcome {
+    /// The WAD that was written.
     pub(super) out: String,
+    /// The maps that were looked at.
     pub(super) maps: Vec<Map>,
-    /// The most memory that was in use at once; null where the system does not report it.
+    /// The largest memory in use; null if the system does not report it.
     pub(super) peak_bytes: Option<u64>,
 }
 
-/// What became of a map.
-#[derive(Debug, Serialize)]
+/// Map with a REJECT lump.
+#[derive(Debug, Serialize, JsonSchema)]
 pub(super) struct Map {
+    /// Name of the map.
     name: String,
-    /// `written`, `kept` (effects made by hand), `skipped` (a format that is not read) or `failed`.
+    /// `written`, `kept` (its table has effects made by hand), `skipped` (its format is not supported) or `failed` (it cannot be done; the other
+    /// maps are).
     status: &'static str,
     /// Why it failed; null unless it did.
     reason: Option<String>,
+    /// Sectors.
     n_sectors: u32,
-    /// Ordered pairs; null unless written.
+    /// Ordered pairs of sectors that are rejected; this and the next five are null unless written.
     n_rejected: Option<u64>,
+    /// Ordered pairs whose answer the option file of `--rmb` has changed.
     n_effects: Option<u64>,
+    /// Cells in regions whose lines disagree about the sector.
     n_disputed_cells: Option<usize>,
+    /// Lines whose ends are one point, which were left out.
     n_lines_without_length: Option<usize>,
+    /// Crossings of lines whose point was rounded, towards visible.
     n_rounded_crossings: Option<usize>,
+    /// Pieces of lines that block nothing because rounding could have closed a gap beside them.
     n_dropped_pieces: Option<usize>,
+    /// Seconds for this map.
     seconds: f64,
 }
 

@@ -2,13 +2,15 @@
 
 use crate::error::{ErrorAbout, Result, bail};
 use crate::tables::{Cells, Opened};
+use schemars::JsonSchema;
+use serde::Serialize;
 use sightlines::cells::{Scene, unlike};
 use sightlines::geometry::Point3;
 use sightlines::pvs::{ObjectId, Place, PlaceBuffer};
 use sightlines::visible_surface::hierarchical::{self, DepthPyramid};
 use sightlines::visible_surface::{Camera, DepthFormat, FaceMask, Faces, RenderInput, VisibleSurface, ZBuffer, cull};
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 /// Bytes of blocks of a packed table that are kept.
 pub(super) const CACHE: usize = 64 << 20;
@@ -37,12 +39,15 @@ impl Cull {
     }
 }
 
-/// What one way left out of what those before it had left.
-#[derive(Debug)]
+/// Faces that were left out in one way.
+#[derive(Debug, Serialize, JsonSchema)]
 pub(super) struct Gone {
-    pub(super) by: Cull,
-    pub(super) n: u64,
-    pub(super) time: Duration,
+    /// The way of culling.
+    pub(super) by: &'static str,
+    /// Its faces.
+    pub(super) n_faces: u64,
+    /// Seconds it took.
+    pub(super) seconds: f64,
 }
 
 /// Leaves faces out of `chosen`, by each way in turn. `seen` has, for each object of the scene, whether the table shows
@@ -65,7 +70,7 @@ pub(super) fn leave_out(
                 hierarchical::cull(faces, chosen, &DepthPyramid::sampled(faces, camera, &image))
             }
         };
-        Gone { by, n, time: start.elapsed() }
+        Gone { by: by.name(), n_faces: n, seconds: start.elapsed().as_secs_f64() }
     };
     ways.iter().map(each).collect()
 }

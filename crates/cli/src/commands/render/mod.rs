@@ -2,7 +2,7 @@
 
 mod cull;
 mod method;
-mod outcome;
+pub(crate) mod outcome;
 
 use crate::Answer;
 use crate::error::{ErrorAbout, Result, anyhow};
@@ -17,7 +17,8 @@ use crate::tables;
 use crate::view::Up;
 use cull::{CACHE, Cull, leave_out, seen_by_table};
 use method::{Drawn, Kind, Readied, Ready, compared};
-use outcome::{Outcome, Row};
+use outcome::Outcome;
+use outcome::Row;
 use sightlines::report::{PngError, SheetPicture, faces_png, sheet_png, sheet_size};
 use sightlines::visible_surface::{Camera, Comparison, DepthFormat, FaceMask, Faces, NOTHING, RenderInput, compare};
 use std::path::{Path, PathBuf};
@@ -116,7 +117,8 @@ pub(crate) fn run(args: &RenderArgs, show_progress: bool) -> Result<Answer> {
         up,
         fov: args.eye.fov,
         size: camera.size(),
-        depths: camera.depths(),
+        near: camera.depths()[0],
+        far: Some(camera.depths()[1]).filter(|far| far.is_finite()),
         culled,
         compared: args.compare,
         pictures: rows,
@@ -190,7 +192,7 @@ fn side_by_side(
     }
     let notes: Vec<String> = all.iter().map(|(_, c)| count(c.wrong.len() as u64, "wrong pixel")).collect();
     let pictures: Vec<SheetPicture<'_>> = (0..all.len())
-        .map(|k| SheetPicture { title: rows[k].method(), note: &notes[k], faces: &all[k].0, marked: &all[k].1.wrong })
+        .map(|k| SheetPicture { title: rows[k].method, note: &notes[k], faces: &all[k].0, marked: &all[k].1.wrong })
         .collect();
     let png = sheet_png(camera.size(), &pictures);
     (rows, png)

@@ -1,120 +1,106 @@
 //! What was drawn.
 
 use super::cull::Gone;
-use super::method::{Drawn, Prepared};
-use crate::error::Result;
-use crate::output::{count, percent, seconds};
-use serde::ser::SerializeStruct;
-use serde::{Serialize, Serializer};
+use super::method::Drawn;
+use crate::output::{count, percent, seconds_of};
+use schemars::JsonSchema;
+use serde::Serialize;
 use sightlines::geometry::Point3;
-use sightlines::visible_surface::{Comparison, Counters};
+use sightlines::visible_surface::Comparison;
+use std::collections::BTreeMap;
 use std::fmt;
-use std::time::Duration;
 
-/// What was drawn, for people and as JSON.
-#[derive(Debug)]
-pub(super) struct Outcome {
+/// Pictures of a scene.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct Outcome {
+    /// The scene.
     pub(super) scene: String,
+    /// Its objects.
     pub(super) n_objects: usize,
+    /// Its faces.
     pub(super) n_faces: usize,
-    /// Faces that have an area and were not left out.
+    /// Faces that have an area and were not culled.
     pub(super) n_drawn: usize,
+    /// The eye.
     pub(super) eye: Point3,
+    /// The point in the middle of the picture.
     pub(super) look_at: Point3,
+    /// The direction that points up in the picture.
     pub(super) up: Point3,
-    /// In degrees.
+    /// Vertical angle of view in degrees.
     pub(super) fov: f64,
+    /// Width and height in pixels.
     pub(super) size: [u32; 2],
-    /// In JSON `far` is null where there is no end.
-    pub(super) depths: [f64; 2],
+    /// Smallest visible depth.
+    pub(super) near: f64,
+    /// Greatest visible depth; null without a far plane.
+    pub(super) far: Option<f64>,
+    /// What was culled, in this order.
     pub(super) culled: Vec<Gone>,
-    pub(super) compared: bool,
+    /// The methods that drew.
     pub(super) pictures: Vec<Row>,
+    /// The picture that was written.
     pub(super) file: String,
+    #[serde(skip)]
+    pub(super) compared: bool,
 }
 
-/// What one method drew.
-#[derive(Debug)]
+/// What one method drew
+#[derive(Debug, Serialize, JsonSchema)]
 pub(super) struct Row {
-    method: &'static str,
-    /// Pixels that are not as the reference's, and those of which it does not matter; `None` without a reference.
-    wrong: Option<(usize, u64)>,
-    prepared: Prepared,
-    time: Duration,
-    counters: Counters,
+    /// The method, with its depth format.
+    pub(super) method: &'static str,
+    /// With `--compare`: pixels that differ from the ray caster; null without.
+    wrong: Option<usize>,
+    /// With `--compare`: pixels where faces have the same depth, so that either is right; null without.
+    in_doubt: Option<u64>,
+    /// Seconds to prepare, independent of the eye.
+    prepare_seconds: f64,
+    /// Splits of faces in preparation.
+    prepare_splits: u64,
+    /// Seconds to draw.
+    draw_seconds: f64,
+    /// Faces of which at least a part was drawn or tried.
+    polygons: u64,
+    /// Pieces given to the rasteriser, those outside the picture included.
+    fragments: u64,
+    /// Splits of faces for this picture.
+    splits: u64,
+    /// Pixels written, each as often as it was.
+    written: u64,
+    /// Pixels that show a face.
+    covered: u64,
+    /// `written` by `covered`; 0 if nothing is covered.
+    overdraw: f64,
+    /// Decisions that needed exact numbers.
+    exact: u64,
+    /// How often each test was made, by its name.
+    tests: BTreeMap<&'static str, u64>,
 }
 
 impl Row {
-    pub(super) fn new(drawn: &Drawn, comparison: Option<&Comparison>) -> Self {
+    pub(super) fn new(Drawn { method, prepared, time, counters, .. }: &Drawn, comparison: Option<&Comparison>) -> Self {
         Self {
-            method: drawn.method,
-            wrong: comparison.map(|c| (c.wrong.len(), c.ties)),
-            prepared: drawn.prepared,
-            time: drawn.time,
-            counters: drawn.counters.clone(),
+            method,
+            wrong: comparison.map(|c| c.wrong.len()),
+            in_doubt: comparison.map(|c| c.ties),
+            prepare_seconds: prepared.time.as_secs_f64(),
+            prepare_splits: prepared.splits,
+            draw_seconds: time.as_secs_f64(),
+            polygons: counters.polygons,
+            fragments: counters.fragments,
+            splits: counters.splits,
+            written: counters.written,
+            covered: counters.covered,
+            overdraw: counters.overdraw(),
+            exact: counters.exact,
+            tests: counters.tests.clone(),
         }
     }
 
-    pub(super) fn method(&self) -> &'static str {
-        self.method
-    }
-
     /// Splits for the picture, and before.
-    fn splits(&self) -> u64 {
-        self.prepared.splits + self.counters.splits
-    }
-}
-
-impl Serialize for Row {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let c = &self.counters;
-        let mut s = serializer.serialize_struct("Row", 14)?;
-        s.serialize_field("method", self.method)?;
-        s.serialize_field("wrong", &self.wrong.map(|(wrong, _)| wrong))?;
-        s.serialize_field("in_doubt", &self.wrong.map(|(_, in_doubt)| in_doubt))?;
-        s.serialize_field("prepare_seconds", &self.prepared.time.as_secs_f64())?;
-        s.serialize_field("prepare_splits", &self.prepared.splits)?;
-        s.serialize_field("draw_seconds", &self.time.as_secs_f64())?;
-        s.serialize_field("polygons", &c.polygons)?;
-        s.serialize_field("fragments", &c.fragments)?;
-        s.serialize_field("splits", &c.splits)?;
-        s.serialize_field("written", &c.written)?;
-        s.serialize_field("covered", &c.covered)?;
-        s.serialize_field("overdraw", &c.overdraw())?;
-        s.serialize_field("exact", &c.exact)?;
-        s.serialize_field("tests", &c.tests)?;
-        s.end()
-    }
-}
-
-impl Serialize for Gone {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut s = serializer.serialize_struct("Gone", 3)?;
-        s.serialize_field("by", self.by.name())?;
-        s.serialize_field("n_faces", &self.n)?;
-        s.serialize_field("seconds", &self.time.as_secs_f64())?;
-        s.end()
-    }
-}
-
-impl Serialize for Outcome {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut s = serializer.serialize_struct("Outcome", 14)?;
-        s.serialize_field("scene", &self.scene)?;
-        s.serialize_field("n_objects", &self.n_objects)?;
-        s.serialize_field("n_faces", &self.n_faces)?;
-        s.serialize_field("n_drawn", &self.n_drawn)?;
-        s.serialize_field("eye", &self.eye)?;
-        s.serialize_field("look_at", &self.look_at)?;
-        s.serialize_field("up", &self.up)?;
-        s.serialize_field("fov", &self.fov)?;
-        s.serialize_field("size", &self.size)?;
-        s.serialize_field("near", &self.depths[0])?;
-        s.serialize_field("far", &Some(self.depths[1]).filter(|far| far.is_finite()))?;
-        s.serialize_field("culled", &self.culled)?;
-        s.serialize_field("pictures", &self.pictures)?;
-        s.serialize_field("file", &self.file)?;
-        s.end()
+    const fn all_splits(&self) -> u64 {
+        self.prepare_splits + self.splits
     }
 }
 
@@ -124,8 +110,8 @@ impl fmt::Display for Outcome {
         let [width, height] = self.size;
         writeln!(f, "{}: {} of {}, {width} x {height} pixels", self.scene, of[0], of[1])?;
         for gone in &self.culled {
-            let (n, by) = (count(gone.n, "face"), gone.by.name());
-            writeln!(f, "left out       {n} by {by}, in {}", seconds(gone.time))?;
+            let Gone { by, n_faces, seconds } = gone;
+            writeln!(f, "left out       {} by {by}, in {}", count(*n_faces, "face"), seconds_of(*seconds))?;
         }
         writeln!(f, "to draw        {}", count(self.n_drawn as u64, "face"))?;
         if self.compared {
@@ -140,23 +126,27 @@ impl fmt::Display for Outcome {
 impl Outcome {
     /// The lines about the one picture.
     fn write_one(&self, f: &mut fmt::Formatter<'_>, row: &Row) -> fmt::Result {
-        let c = &row.counters;
         let [polygons, fragments, splits] =
-            [(c.polygons, "face"), (c.fragments, "fragment"), (row.splits(), "split")].map(|(n, noun)| count(n, noun));
+            [(row.polygons, "face"), (row.fragments, "fragment"), (row.all_splits(), "split")]
+                .map(|(n, noun)| count(n, noun));
         writeln!(f, "drawn          by {}: {polygons}, {fragments}, {splits}", row.method)?;
-        if !c.tests.is_empty() {
-            let tests: Vec<String> = c.tests.iter().map(|(name, n)| format!("{name} {n}")).collect();
+        if !row.tests.is_empty() {
+            let tests: Vec<String> = row.tests.iter().map(|(name, n)| format!("{name} {n}")).collect();
             writeln!(f, "tests          {}", tests.join(", "))?;
         }
         let n_pixels = self.size.map(u64::from).iter().product::<u64>();
-        let share = percent(c.covered as f64 / n_pixels as f64);
+        let share = percent(row.covered as f64 / n_pixels as f64);
         writeln!(
             f,
             "pixels         {share} covered, each written {:.2} times; {} exact decisions",
-            c.overdraw(),
-            c.exact
+            row.overdraw, row.exact
         )?;
-        writeln!(f, "time           {} to prepare, {} to draw", seconds(row.prepared.time), seconds(row.time))
+        writeln!(
+            f,
+            "time           {} to prepare, {} to draw",
+            seconds_of(row.prepare_seconds),
+            seconds_of(row.draw_seconds)
+        )
     }
 
     /// A line for each method, with the number of its picture in the sheet.
@@ -166,18 +156,18 @@ impl Outcome {
         names.iter().try_for_each(|name| write!(f, " {name:>9}"))?;
         writeln!(f, " {:>10}", "tests")?;
         for (no, row) in (1..).zip(&self.pictures) {
-            let (c, (wrong, in_doubt)) = (&row.counters, row.wrong.unwrap_or_default());
-            let [prepare, draw] = [row.prepared.time, row.time].map(seconds);
-            let tests: u64 = c.tests.values().sum();
+            let (wrong, in_doubt) = (row.wrong.unwrap_or_default(), row.in_doubt.unwrap_or_default());
+            let [prepare, draw] = [row.prepare_seconds, row.draw_seconds].map(seconds_of);
+            let tests: u64 = row.tests.values().sum();
             writeln!(
                 f,
                 "{no:>3} {:<20} {wrong:>9} {in_doubt:>9} {prepare:>9} {draw:>9} {:>9} {:>9} {:>9} {:>9.2} {:>9} {tests:>10}",
                 row.method,
-                c.polygons,
-                c.fragments,
-                row.splits(),
-                c.overdraw(),
-                c.exact
+                row.polygons,
+                row.fragments,
+                row.all_splits(),
+                row.overdraw,
+                row.exact
             )?;
         }
         Ok(())

@@ -1,7 +1,7 @@
 //! `simplify`: a scene with fewer triangles for eyes in a volume.
 
 mod eyes;
-mod outcome;
+pub(crate) mod outcome;
 
 use crate::Answer;
 use crate::error::{Result, anyhow};

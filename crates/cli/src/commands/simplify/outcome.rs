@@ -4,6 +4,7 @@ use super::SimplifyArgs;
 use crate::error::Result;
 use crate::output::{bytes, count, percent, seconds};
 use crate::simplification::{Rounded, SingleSided, Written};
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::cells::Scene;
 use sightlines::geometry::Point3;
@@ -13,58 +14,79 @@ use sightlines::visible_surface::Faces;
 use std::fmt;
 use std::time::Duration;
 
-/// The result.
-#[derive(Debug, Serialize)]
-pub(super) struct Outcome {
+/// The scene that is left.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct Outcome {
+    /// The scene.
     scene: String,
+    /// The scene that was written.
     out: String,
+    /// Its size.
     n_bytes: usize,
-    /// Boxes where eyes may be.
+    /// View volumes: boxes where eyes may be.
     n_volumes: usize,
+    /// The method that proved triangles hidden, or `none`.
     method: &'static str,
+    /// The table that was used; null without.
     table: Option<String>,
+    /// Share of the sphere of directions that was allowed to change.
     budget: f64,
-    /// Triangles before, and what became of them.
+    /// Triangles before.
     n_before: usize,
+    /// Triangles without area, which were removed.
     n_without_area: usize,
+    /// Triangles removed because no eye sees them.
     n_hidden: usize,
+    /// Triangles removed for the budget.
     n_deleted: usize,
+    /// Triangles removed or replaced by collapsing edges.
     n_collapsed: usize,
+    /// Triangles that replace these.
     n_new: usize,
-    /// Saved by merging triangles in one plane, and what merged ones there are.
+    /// Triangles saved by merging coplanar ones.
     n_merged_away: usize,
+    /// Triangles that are the result of merging.
     n_merged: usize,
+    /// Triangles after.
     n_left: usize,
-    /// The share of the sphere of directions that changes at most, for every eye; if the scene has single-sided faces, for every eye that
-    /// sees the back of none.
+    /// Proven: the share of the sphere of directions that changes at most, for every eye; with `single_sided`, for every eye that sees the back of
+    /// no such face.
     bound: f64,
+    /// Whether the scene has faces of which engines draw the fronts only.
     single_sided: SingleSided,
-    /// How far surfaces were moved at most, in scene units.
+    /// The greatest distance that a surface was moved, before rounding.
     deviation: f64,
-    /// What the file does not hold exactly.
+    /// If coordinates were rounded to single precision, which moves surfaces beside what `bound` allows.
     #[serde(skip_serializing_if = "Option::is_none")]
     rounded: Option<Rounded>,
-    /// Whether the result may be used to hide.
+    /// Whether the result may be used as an occluder.
     occluder: bool,
+    /// With `--report`: what fresh rays measured; null without.
     report: Option<Report>,
+    /// Seconds in all.
     seconds: f64,
 }
 
 /// What rays say.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub(super) struct Report {
+    /// Rays.
     n_rays: u64,
-    /// Shares of rays that meet another face first, of all eyes and of the worst one.
+    /// Share of the rays that meet another face first, of all eyes.
     changed: f64,
+    /// The same for the worst eye.
     worst: f64,
+    /// This eye.
     worst_eye: Point3,
-    /// Shares that meet another object, or a place that differs in depth by more than a hundredth.
+    /// Share of the rays that meet another object.
     other_object: f64,
+    /// Share of the rays that meet a place whose depth differs by more than a hundredth.
     moved: f64,
-    /// Share of rays that what is gone, or was merged with others, intercepted before, by other rays, and an interval in which it lies with a
-    /// probability of 99 %.
+    /// Share of other rays that met, before, what was removed or merged.
     estimate: f64,
+    /// An interval that contains the true share with a probability of 99 %.
     estimate_interval: [f64; 2],
+    /// Rays of this estimate.
     n_estimate_rays: u64,
 }
 

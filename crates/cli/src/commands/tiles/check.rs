@@ -4,6 +4,7 @@ use crate::Answer;
 use crate::error::Result;
 use crate::output::{self, bytes, count};
 use crate::progress::Bar;
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::tiles::{TileTables, World};
 use std::fmt;
@@ -21,13 +22,17 @@ pub(crate) struct TilesCheckArgs {
 }
 
 /// What was read.
-#[derive(Debug, Serialize)]
-struct Checked {
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct Checked {
+    /// The folder of the world.
     world: String,
+    /// Tiles.
     n_tiles: usize,
+    /// Cells of all tiles.
     n_cells: usize,
+    /// Objects of all tiles.
     n_objects: usize,
-    /// What all tiles take in memory without blocks that are kept.
+    /// Bytes in memory if all tiles were loaded, without blocks that are kept.
     n_resident_bytes: usize,
 }
 

@@ -2,10 +2,10 @@
 
 mod bake;
 mod build;
-mod check;
+pub(crate) mod check;
 mod input;
-mod outcome;
-mod query;
+pub(crate) mod outcome;
+pub(crate) mod query;
 mod scenes;
 
 pub(crate) use build::{TilesBuildArgs, make};

@@ -1,28 +1,36 @@
 //! What became of the tiles of a world.
 
 use crate::output::{bytes, count, seconds};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt;
 use std::path::Path;
 use std::time::Duration;
 
 /// The result.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub(crate) struct Outcome {
+    /// The plan of the world.
     world: String,
+    /// The folder that was written.
     out: String,
+    /// Tiles.
     n_tiles: usize,
     /// Tiles that were baked.
     n_baked: usize,
-    /// Tiles of which only was decided which tiles far away they see.
+    /// Tiles of which only was decided what they see of those farther away.
     n_far_only: usize,
-    /// Tiles that have not changed.
+    /// Tiles that were kept from an earlier bake.
     n_kept: usize,
-    /// Older tables that were removed.
+    /// Tables of earlier bakes that were removed.
     pub(super) n_removed: usize,
+    /// Cells of all tiles.
     n_cells: usize,
+    /// Objects of all tiles.
     n_objects: usize,
+    /// Bytes of all files of tiles.
     pub(super) n_bytes: u64,
+    /// Seconds in all.
     pub(super) seconds: f64,
 }
 

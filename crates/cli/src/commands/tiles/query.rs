@@ -3,6 +3,7 @@
 use crate::error::Result;
 use crate::output::{self, count};
 use crate::{Answer, place::Point};
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::tiles::{Seen, TileId, TileScratch, TileTables, World};
 use std::collections::BTreeMap;
@@ -27,7 +28,7 @@ pub(crate) struct TilesQueryArgs {
 }
 
 /// What is seen of a tile.
-#[derive(Debug, Default, Serialize)]
+#[derive(Debug, Default, Serialize, JsonSchema)]
 struct OfTile {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     cells: Vec<u32>,
@@ -37,14 +38,16 @@ struct OfTile {
     whole: bool,
 }
 
-/// What is seen.
-#[derive(Debug, Serialize)]
-struct Found {
+/// Exit code 1 if the eye is outside every cell.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct Found {
+    /// The eye.
     eye: [f64; 3],
     /// The tiles in which the eye is in a cell.
     tiles: Vec<String>,
-    /// Tile by tile; nothing outside of every cell.
+    /// What may be seen, by the names of tiles; empty outside every cell.
     seen: BTreeMap<String, OfTile>,
+    /// Tiles of the world.
     n_tiles: usize,
 }
 

@@ -1,7 +1,7 @@
 //! `verify`: is a table true to its scene?
 
 mod drawing;
-mod outcome;
+pub(crate) mod outcome;
 mod own;
 mod proofs;
 mod truth;

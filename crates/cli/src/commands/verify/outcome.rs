@@ -6,6 +6,7 @@ use super::violations::{ReportedViolation, Violations};
 use crate::facts::FrameFacts;
 use crate::output::{count, percent, seconds};
 use crate::unproven::Unproven;
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::pvs::Frame;
 use sightlines::verify::{Confirmed, Findings, Remarks, Violation};
@@ -15,25 +16,32 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// What was looked at and found.
-#[derive(Debug, Serialize)]
-pub(super) struct Outcome {
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct Outcome {
+    /// What was checked: a table, or a map with its own visibility.
     table: String,
+    /// What it was checked against.
     scene: String,
-    /// Whether nothing was found that a true table must not have, by the proofs too if there are any.
+    /// Whether no violation was found, by rays, structure or proofs. Rays find violations; they do not prove that there are none.
     is_true: bool,
+    /// Cells whose structure was checked.
     n_cells: usize,
+    /// Portals whose structure was checked.
     n_portals: usize,
+    /// Objects whose structure was checked.
     n_objects: usize,
+    /// Doors of the table.
     n_doors: usize,
+    /// Random rays.
     n_rays: u64,
-    /// Free segments that were followed through the portals of the table.
+    /// Segments, free as far as doubles tell, that were followed through the portals of the table, and its stab trees if it has any.
     n_followed: u64,
     /// Sequences of portals, which stab trees do not have, that rays were aimed along.
     n_sequences: u64,
     /// The frame of the table, if it has one: the scene was moved into it, and places are along its axes.
     #[serde(skip_serializing_if = "Option::is_none")]
     frame: Option<FrameFacts>,
-    /// What else than the structure was looked at.
+    /// What was checked besides the structure.
     checked: Checked,
     /// The lump that was checked, of a map's own visibility.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -41,47 +49,65 @@ pub(super) struct Outcome {
     /// Why no rays were shot.
     #[serde(skip_serializing_if = "Option::is_none")]
     no_rays: Option<&'static str>,
+    /// Of unordered pairs of different cells.
     cells: Pairs,
+    /// Of pairs of a cell and an object.
     objects: Pairs,
-    /// Hidden pairs next to visible ones, that random segments were shot at, and how many at each.
+    /// Hidden pairs at which random segments were shot, everywhere alike: those of which each is next to something visible from the other, as any
+    /// free segment of a hidden pair passes such a pair; where cells leave gaps all, or some chosen at random.
     n_sampled_pairs: u64,
+    /// Random segments for each of them.
     n_segments_each: u64,
-    /// The share of free segments from which on such a pair is found in 99 of 100 runs.
+    /// The share of free segments from which on such a pair is found in 99 of 100 runs, unless a nearer pair is wrong as well; 1 if none were shot.
     share_found: f64,
+    /// Portals of plans that an opaque line crosses or runs along, where more is listed than needed; no violation.
     n_portals_in_walls: u64,
+    /// Objects listed in a cell that they do not touch; no violation.
     n_listed_apart: u64,
+    /// Cells from which no ray was shot: too thin to contain a place, or without a portal where only portals are known.
     n_cells_without_places: u64,
-    /// Doors that are not compared with the scene.
+    /// Of the doors, those that were not compared with the scene, as it does not have them: doors that were given as boxes, and those of plans and
+    /// maps; no violation.
     n_doors_as_boxes: u64,
-    /// Portals that a door does not close though its leaf covers them.
+    /// Pairs of a door and a portal that its leaf covers, and that the door does not close; no violation.
     n_unlisted_door_portals: u64,
-    /// With a frame: hidden pairs that only openings narrower than the gap join.
+    /// With a frame: hidden pairs that rays join in the scene of the file and not along the frame, through openings narrower than the gap or past
+    /// things thinner than it; no violation. Rays stop once they have found 1,000 hidden pairs, so there may be more.
     #[serde(skip_serializing_if = "Option::is_none")]
     n_cracks: Option<u64>,
-    /// With a frame: triangles that are thinner than the gap.
+    /// With a frame: triangles that have an area in the file and none along the frame, as they are thinner than the gap; no violation.
     #[serde(skip_serializing_if = "Option::is_none")]
     n_flattened: Option<u64>,
     /// How many times what single precision explains the gap is, if that is much.
     #[serde(skip)]
     wide_gap: Option<f64>,
+    /// Violations found, including those that are not listed.
     n_violations: usize,
-    /// Whether there were so many that no more rays were shot.
+    /// Whether there were so many that rays were stopped.
     has_more_violations: bool,
+    /// The same number for each kind.
     n_violations_by_kind: BTreeMap<&'static str, usize>,
+    /// Violations, a limited number of each kind.
     violations: Vec<ReportedViolation>,
+    /// With `--draw` and a violation to draw: the picture that was written.
     #[serde(skip_serializing_if = "Option::is_none")]
     picture: Option<String>,
+    /// Seconds in all.
     seconds: f64,
 }
 
-/// What was checked besides the structure of the table. Without any of these the visibility is unchecked.
-#[derive(Debug, Clone, Copy, Serialize)]
+/// Checks besides the structure of the table.
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
 struct Checked {
-    /// Whether the scene is what the table was made of, by the digests of the table.
+    /// Whether the scene was compared with the digests of what the table was made of; older tables have none.
     digests: bool,
+    /// Whether random rays were shot.
     random_rays: bool,
+    /// Whether random segments were shot at hidden pairs.
     random_segments: bool,
+    /// Whether rays were aimed at hidden pairs.
     aimed_rays: bool,
+    /// What the proofs show, if there are any.
     proofs: bool,
 }
 
@@ -95,13 +121,18 @@ impl Checked {
     }
 }
 
-/// Pairs that the table shows and hides, and what rays did with them.
-#[derive(Debug, Serialize)]
+/// Checked pairs, and what rays did with them.
+#[derive(Debug, Serialize, JsonSchema)]
 struct Pairs {
+    /// Pairs that the table lists as visible.
     n_visible: u64,
+    /// Of these, pairs that a ray joined.
     n_confirmed: u64,
+    /// `n_confirmed` by `n_visible`; 1 if there are none.
     confirmed_share: f64,
+    /// Pairs that the table lists as hidden.
     n_hidden: u64,
+    /// Of these, pairs that rays were aimed at.
     n_aimed_at: u64,
 }
 
@@ -320,14 +351,15 @@ impl fmt::Display for Outcome {
     }
 }
 
-/// What was found, with the result of the proofs.
-#[derive(Debug, Serialize)]
-pub(super) struct With {
+/// Exit code 1 if `is_true` is false.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct With {
     #[serde(flatten)]
     pub(super) outcome: Outcome,
+    /// The file of proofs that was written.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) proofs: Option<ProofOutcome>,
-    /// Of a table that can have no proofs.
+    /// What none of the proofs speaks of.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) unproven: Option<Unproven>,
 }

@@ -4,6 +4,7 @@ use crate::error::{Result, anyhow, bail};
 use crate::input;
 use crate::map_portals::{do_not_fit, portals_for};
 use crate::output::{bytes, count};
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::bake::BakeError;
 use sightlines::formats::InputKind;
@@ -14,22 +15,24 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 /// What was looked at.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub(super) struct About {
-    /// The name of the lump.
+    /// Name of the lump.
     lump: &'static str,
+    /// Its size.
     n_bytes: usize,
     /// Leafs of a Quake map.
     #[serde(skip_serializing_if = "Option::is_none")]
     n_leafs: Option<usize>,
     /// What is hidden from each other: clusters of leafs, or sectors.
     sides: &'static str,
+    /// How many of these there are.
     n_sides: usize,
-    /// Unordered pairs of sides.
+    /// Unordered pairs of them of which at least one is hidden from the other.
     n_hidden_pairs: u64,
     /// Of these, pairs of which only one is hidden from the other.
     n_hidden_one_way: u64,
-    /// Clusters whose leafs have different rows; what one of them sees counts for all.
+    /// Clusters whose leafs have different rows; what is visible from one leaf counts for all.
     n_uneven_clusters: usize,
 }
 

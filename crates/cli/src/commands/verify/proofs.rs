@@ -2,6 +2,7 @@
 
 use crate::error::{ErrorAbout, Result, anyhow, bail};
 use crate::output::{bytes, count, seconds};
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::certificates::Refusal;
 use sightlines::pvs::Table;
@@ -43,40 +44,46 @@ const SHOWN: usize = 5;
 /// Pairs and violations that JSON lists.
 const LISTED: usize = 1000;
 
-/// The result of checking proofs.
-#[derive(Debug, Serialize)]
+/// Checked proofs.
+#[derive(Debug, Serialize, JsonSchema)]
 pub(super) struct ProofOutcome {
+    /// The file of proofs.
     file: String,
+    /// Its size.
     n_bytes: usize,
-    /// Whether they were found beside the table and are of another one, with other cells or portals: then nothing was checked.
+    /// Whether the file was found beside the table but belongs to another one; then nothing of it was checked.
     pub(super) is_stale: bool,
-    /// Whether nothing contradicts the table and, with `--strict`, everything hidden is proven.
+    /// Whether no violation was found, by rays, structure or proofs. Rays find violations; they do not prove that there are none.
     pub(super) is_true: bool,
-    /// Pairs that the table shows and a line joins.
+    /// Pairs that the table lists as visible and that a line joins.
     n_visible: u64,
-    /// Pairs that the table hides and that are proven.
+    /// Pairs that the table lists as hidden and that are proven.
     n_hidden: u64,
-    /// Pairs that the table shows although they are proven to be hidden.
+    /// Pairs listed as visible and proven to be hidden; only in tables of scenes in space, which show pairs that they do not decide.
     n_excess: u64,
-    /// Pairs that the table shows without a proof.
+    /// Pairs listed as visible without a proof.
     n_unproven_visible: u64,
-    /// Pairs that the table hides without a proof.
+    /// Pairs listed as hidden without a proof.
     n_unproven_hidden: u64,
     /// Of these, pairs that a line through portals joins: only a from-region method hides them.
     n_hidden_past_portals: u64,
+    /// Some of these, by their cells.
     unproven_hidden: Vec<[u32; 2]>,
-    /// Pairs of a cell and an object that the table hides and that are proven.
+    /// Pairs of a cell and an object listed as hidden, with a proof.
     n_hidden_objects: u64,
-    /// Those without a proof.
+    /// The same, without a proof.
     n_unproven_hidden_objects: u64,
+    /// Violations found, including those that are not listed.
     n_violations: u64,
+    /// Violations, a limited number of each kind.
     violations: Vec<String>,
-    /// Parts of borders of cells that are not portals: the proofs take them for walls.
+    /// Parts of borders of cells that are not portals: the proofs rely on them as walls.
     n_walls: u64,
     /// Of these, parts that nothing in the scene covers exactly.
     n_bare_walls: u64,
-    /// Where: the cell, and a point.
+    /// Some of these: the cell, and a point with three coordinates.
     bare_walls: Vec<(u32, [f64; 3])>,
+    /// Seconds in all.
     seconds: f64,
 }
 

@@ -1,22 +1,27 @@
 //! The violations that are reported.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::verify::{Findings, OwnViolation, OwnVisibility, VerifyOptions, Violation};
 use std::collections::BTreeMap;
 
 /// A violation.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub(super) struct ReportedViolation {
+    /// The kind, such as `hidden-cell`.
     pub(super) kind: &'static str,
+    /// Of unordered pairs of different cells.
     cells: Vec<u32>,
     /// What the cells are in the map, of a map's own visibility.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     names: Vec<String>,
+    /// The object concerned.
     #[serde(skip_serializing_if = "Option::is_none")]
     object: Option<u32>,
-    /// From where to where the ray goes, in scene units.
+    /// Start and end of the ray, three coordinates each.
     #[serde(skip_serializing_if = "Option::is_none")]
     segment: Option<[[f64; 3]; 2]>,
+    /// The violation in a sentence.
     pub(super) text: String,
 }
 

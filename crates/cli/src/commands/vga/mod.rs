@@ -1,7 +1,7 @@
 //! `vga`: visibility graph analysis of a floor plan.
 
 mod kind;
-mod outcome;
+pub(crate) mod outcome;
 mod points;
 
 use crate::Answer;

@@ -1,46 +1,61 @@
 //! What was measured.
 
 use crate::output::{bytes, count, seconds};
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::visibility_graph::{Measure, UNDEFINED};
 use std::fmt;
 use std::time::Duration;
 
-/// What was measured, for people and as JSON.
-#[derive(Debug, Serialize)]
-pub(super) struct Outcome {
+/// The measures of the points of a plan.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct Outcome {
+    /// The plan.
     pub(super) plan: String,
+    /// Its lines that block sight.
     pub(super) n_walls: usize,
-    /// Null for points of a file.
+    /// Distance of neighbouring points of the grid; null for points of a file.
     pub(super) spacing: Option<f64>,
-    /// Columns and rows of the grid; null for points of a file.
+    /// Columns and rows of the grid, filled or not; null for points of a file.
     pub(super) grid: Option<[usize; 2]>,
+    /// Points.
     pub(super) n_points: usize,
-    /// Unordered pairs that see each other.
+    /// Unordered pairs of different points that see each other.
     pub(super) n_visible_pairs: u64,
+    /// Runs of consecutive points in the rows of the graph.
     pub(super) n_runs: usize,
+    /// Memory that the graph takes.
     pub(super) n_graph_bytes: usize,
+    /// The measures that were computed.
     pub(super) measures: Vec<Range>,
+    /// Seconds to build the graph.
     pub(super) graph_seconds: f64,
+    /// Seconds to compute the measures.
     pub(super) measure_seconds: f64,
-    /// The measure of a picture; null for tables.
+    /// The measure that a picture shows; null for tables.
     pub(super) drawn: Option<&'static str>,
+    /// The file that was written.
     pub(super) file: String,
-    /// The most memory that was in use at once; null where the system does not report it.
+    /// The largest memory in use; null if the system does not report it.
     pub(super) peak_bytes: Option<u64>,
 }
 
-/// The values of a measure.
-#[derive(Debug, Serialize)]
+/// Values of a measure.
+#[derive(Debug, Serialize, JsonSchema)]
 pub(super) struct Range {
+    /// Its name on command lines and in tables.
     name: &'static str,
+    /// Its name for people.
     title: &'static str,
+    /// Its unit, `u` being a scene unit; empty if it has none.
     unit: &'static str,
     /// Points that have a value.
     n_values: usize,
-    /// Null without values, as the next two.
+    /// Smallest value; null without values.
     minimum: Option<f64>,
+    /// Mean of all values.
     mean: Option<f64>,
+    /// Largest value.
     maximum: Option<f64>,
 }
 

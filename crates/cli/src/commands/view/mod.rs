@@ -9,6 +9,7 @@ use crate::plans::PlanArgs;
 use crate::reasons::reasons;
 use crate::surfaces::SurfaceArgs;
 use crate::{input, tables, walk_path};
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::formats::InputKind;
 use sightlines::pvs::Table;
@@ -130,20 +131,22 @@ fn open(path: &Path) -> std::io::Result<()> {
     command.spawn().map(drop)
 }
 
-/// What was written.
-#[derive(Debug, Serialize)]
-struct Outcome {
+/// The page that was written.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct Outcome {
+    /// The page that was written.
     out: String,
+    /// Its bytes.
     n_bytes: u64,
-    /// On the page.
+    /// Triangles on it.
     n_triangles: usize,
-    /// Left out to keep the page small.
+    /// Triangles of the scene that are left out, to stay below `--max-mb`.
     n_left_out: usize,
-    /// Lines of sight on the page.
+    /// Lines of sight on it; 0 too if they do not fit below `--max-mb`.
     n_lines: usize,
-    /// Visible pairs of cells; 0 if no lines were looked for.
+    /// Visible pairs of two cells; 0 if no lines were looked for, or the table has no portals.
     n_pairs: usize,
-    /// Those that some line joins.
+    /// Those that a line was found for.
     n_joined: usize,
 }
 

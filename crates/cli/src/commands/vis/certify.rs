@@ -3,6 +3,7 @@
 use crate::error::{Result, anyhow};
 use crate::output::count;
 use crate::progress::Bar;
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::cells::{CellGraph, CellId, Convex};
 use sightlines::sightline::Verdict;
@@ -11,24 +12,26 @@ use std::fmt;
 use std::path::Path;
 
 /// What was proven of the pairs that were picked.
-#[derive(Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Debug, Default, PartialEq, Eq, Serialize, JsonSchema)]
 pub(super) struct Certified {
+    /// Of the visible pairs that were picked.
     visible: Proven,
-    /// Hidden pairs are picked where one cluster borders on a cluster that the other one sees.
+    /// Of the hidden pairs that were picked: those where one cluster is next to another that the other one sees.
     hidden: Proven,
 }
 
-/// How many pairs of a kind.
-#[derive(Debug, Default, PartialEq, Eq, Serialize)]
+/// Proven pairs of a kind.
+#[derive(Debug, Default, PartialEq, Eq, Serialize, JsonSchema)]
 struct Proven {
+    /// Pairs that were picked.
     n_picked: usize,
-    /// Proven as listed, and the independent checker accepts the proof.
+    /// Pairs proven as listed, with a proof that the independent checker accepts.
     n_accepted: usize,
-    /// Listed as visible, but proven to be hidden: of a fast search, or undecided pairs.
+    /// Pairs listed as visible but proven hidden: by a fast search, or undecided.
     n_loose: usize,
-    /// Given up, as there were too many sequences.
+    /// Pairs given up because there were too many sequences of portals.
     n_too_many: usize,
-    /// Undecided sequences of portals.
+    /// Pairs with a sequence of portals that was not decided.
     n_undecided: usize,
 }
 

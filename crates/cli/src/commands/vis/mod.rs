@@ -1,7 +1,7 @@
 //! `vis`: the visibility of a Quake map.
 
 mod certify;
-mod outcome;
+pub(crate) mod outcome;
 mod sounds;
 
 use crate::error::{Result, anyhow, bail};

@@ -4,6 +4,7 @@ use super::certify::Certified;
 use crate::clusters::Clusters;
 use crate::memory;
 use crate::output::{bytes, count, seconds};
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::bake::VisMap;
 use sightlines::formats::quake::Bsp;
@@ -11,24 +12,30 @@ use std::fmt;
 use std::path::Path;
 use std::time::Duration;
 
-/// What was written.
-#[derive(Debug, Serialize)]
+/// The map that was written.
+#[derive(Debug, Serialize, JsonSchema)]
 pub(crate) struct Outcome {
+    /// The map that was written.
     out: String,
+    /// Format of the map.
     format: &'static str,
+    /// Dialect of the portal file, or `made from the map`.
     portal_format: &'static str,
-    /// Leafs that can be seen.
+    /// Leafs that can be visible.
     n_leafs: usize,
     #[serde(flatten)]
     pub(crate) clusters: Clusters,
+    /// Whether only a coarse bound was computed.
     pub(super) fast: bool,
-    /// Whether it resumed an earlier run.
+    /// Whether an interrupted run was resumed.
     pub(super) resumed: bool,
-    /// What was proven, if `--certify` was given.
+    /// With `--certify`: what was proven; null without.
     pub(super) certified: Option<Certified>,
+    /// Bytes of the map.
     pub(crate) n_bytes: usize,
-    /// Reading and writing included.
+    /// Seconds in all, reading and writing included.
     pub(crate) seconds: f64,
+    /// The largest memory in use; null if the system does not report it.
     peak_bytes: Option<u64>,
     #[serde(skip)]
     pub(super) verbose: bool,

@@ -3,6 +3,7 @@
 use crate::error::{ErrorAbout, Result, bail};
 use crate::output::percent;
 use crate::tables::Cells;
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::eye_to_cell::View;
 use sightlines::formats::levels::{INDEX_NAME, read_levels_index};
@@ -12,16 +13,21 @@ use std::fmt;
 use std::path::Path;
 
 /// Triangles that are drawn, on average over the frames with the eye in a cell.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub(super) struct Drawn {
+    /// The folder of levels.
     folder: String,
+    /// Levels in it.
     n_levels: usize,
+    /// Frames.
     n_frames: usize,
-    /// Frames in which all cells that the eye is in have the same level.
+    /// Of these, frames in which all cells of the eye have the same level.
     n_with_level: usize,
-    /// Without levels all of the scene is drawn.
+    /// Triangles drawn in each frame without levels: all of the scene.
     without: u64,
+    /// Triangles drawn in a frame with levels, on average.
     with_mean: f64,
+    /// Triangles drawn in a frame with levels, at most.
     with_most: u64,
 }
 

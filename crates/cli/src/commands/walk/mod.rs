@@ -3,7 +3,7 @@
 mod levels;
 mod measure;
 mod nesting;
-mod outcome;
+pub(crate) mod outcome;
 
 use crate::Answer;
 use crate::error::{ErrorAbout, Result, anyhow, bail};

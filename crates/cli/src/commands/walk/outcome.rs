@@ -5,6 +5,7 @@ use super::levels::Drawn;
 use super::measure::{Measured, MethodSums};
 use crate::output::{bytes, count};
 use crate::tables::Cells;
+use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::eye_to_cell::Budget;
 use sightlines::report::WalkBar;
@@ -12,65 +13,85 @@ use std::fmt;
 use std::fmt::Write;
 use std::time::Duration;
 
-/// The result of a walk. Averages are over the frames that every method answered in full.
-#[derive(Debug, Serialize)]
-pub(super) struct Outcome {
+/// Averages are over the frames that every method answered in full.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct Outcome {
+    /// The table.
     file: String,
+    /// Its cells.
     n_cells: usize,
+    /// Its objects.
     n_objects: usize,
+    /// Polygons of its objects.
     n_polygons: u64,
-    /// In degrees.
+    /// Angle of view in degrees.
     fov: f64,
-    /// In scene units; null for a walk from a file.
+    /// Distance from frame to frame; null for a walk from a file.
     step: Option<f64>,
+    /// Frames.
     n_frames: usize,
-    /// Frames that count.
+    /// Frames that every method answered in full.
     n_full: usize,
-    /// Frames with the eye outside of every cell, where everything is drawn.
+    /// Frames with the eye outside every cell, where everything is drawn.
     n_outside: usize,
     /// Frames for which the budget was too small.
     n_starved: usize,
+    /// Bytes allowed for prepared data.
     budget: usize,
     /// Steps allowed to the queries of a frame; null for no bound.
     steps: Option<u64>,
-    /// The most bytes of prepared subgraphs that were kept at once.
+    /// The most bytes of prepared data in memory at once.
     most_bytes_kept: usize,
+    /// Subgraphs that were prepared.
     n_prepared: u64,
+    /// Subgraphs that were dropped again.
     n_dropped: u64,
-    /// Of a packed table: bytes that stay in memory, and bytes of its blocks that are kept at the end.
+    /// Of a packed table: bytes that stay in memory, and bytes of its blocks in memory at the end.
     packed_bytes: Option<[usize; 2]>,
+    /// The methods.
     methods: Vec<MethodLine>,
+    /// With `--levels`: triangles drawn with levels of detail.
     #[serde(skip_serializing_if = "Option::is_none")]
     levels: Option<Drawn>,
 }
 
-/// What a method leaves to draw, and costs, on average.
-#[derive(Debug, Serialize)]
+/// Method on a walk: what it leaves to draw, and what it costs, on average.
+#[derive(Debug, Serialize, JsonSchema)]
 struct MethodLine {
+    /// Name of the method.
     method: &'static str,
+    /// Cells to draw in a frame.
     cells: Kept,
+    /// Objects to draw in a frame.
     objects: Kept,
-    /// Of the objects; an object counts as one where the table stores no number.
+    /// Polygons of these objects; an object counts as one if the table does not know.
     polygons: Kept,
-    /// Images in mirrors, and polygons of the objects in them, which come on top.
+    /// Images in mirrors in a frame.
     images: f64,
+    /// Polygons of the objects in them, to be drawn in addition.
     image_polygons: f64,
+    /// Mean time of a frame, in microseconds.
     mean_us: f64,
+    /// Median time of a frame, in microseconds.
     median_us: f64,
+    /// Time that 99 % of the frames stay within, in microseconds.
     p99_us: f64,
+    /// Time of the longest frame, in microseconds.
     longest_us: f64,
-    /// Frames that had more to do than the steps allow, or than is in proportion, so that a coarser method answered in part.
+    /// Frames that had more to do than the steps allow, or than is in proportion: exact near the eye only, and as `incident-portals` farther away.
     n_fell_back: u64,
-    /// Frames of a walk without waiting whose answer was not ready in time.
+    /// Frames that came before everything was prepared, in a walk that does not wait.
     n_late: u64,
 }
 
 /// How much is kept in a frame.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
 struct Kept {
+    /// Number in a frame, on average.
     mean: f64,
-    /// Of what the cell-to-cell set has: the quotient of the averages.
+    /// The same by that of the method `cell-to-cell`.
     share_of_cell_to_cell: f64,
+    /// The same by the number in the table.
     share_of_all: f64,
 }
 

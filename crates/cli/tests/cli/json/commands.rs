@@ -89,7 +89,7 @@ fn plans(all: &mut Results) {
     add("query of a point", "query o.pvs --eye 3,3");
     add("query of a point", "query o.pvs --eye 1e5,3");
     add("query of a view", "query o.pvs --eye 1e5,3 --dir 1,0");
-    add("query of a view by all methods", "query o.pvs --eye 3,3 --method all");
+    add("query of a view", "query o.pvs --eye 3,3 --method all");
     add("walk", "walk o.pvs --random 20");
     add("view", "view o.pvs -o o.html");
     add("pack", "pack o.pvs -o o.pvz");
@@ -111,7 +111,7 @@ fn plans(all: &mut Results) {
     parts.cell_names = (0..parts.cells.len()).map(|k| format!("room {k}")).collect();
     folder.write("named.pvs", Table::new(parts).expect("a sound table").to_bytes());
     all.line(&folder, "query of a point", "query named.pvs --eye 3,3");
-    all.line(&folder, "query of a view by all methods", "query named.pvs --eye 3,3 --method all");
+    all.line(&folder, "query of a view", "query named.pvs --eye 3,3 --method all");
     all.0.push(("demo of the office", DEMO.0.json()));
 
     let line = |points: &str, mirror: bool| {
@@ -128,11 +128,7 @@ fn plans(all: &mut Results) {
     let look = ["--dir", "0,-1", "--bounces", "1"];
     all.add(&folder, "query of a view", &[&["query", "hall.pvs", "--eye", "0.5,2"][..], &look].concat());
     all.add(&folder, "query of a view", &["query", "o.pvs", "--eye", "3,3", "--method", "exact"]);
-    all.add(
-        &folder,
-        "query of a view by all methods",
-        &["query", "hall.pvs", "--eye", "0.5,2", "--method", "all", "--bounces", "1"],
-    );
+    all.add(&folder, "query of a view", &["query", "hall.pvs", "--eye", "0.5,2", "--method", "all", "--bounces", "1"]);
 }
 
 /// Four slanted, flat squares, far from one another.
@@ -153,7 +149,7 @@ fn jobs(all: &mut Results) {
         "job plan",
         "job plan --json -o j --shards 3 build tower.glb --method shafts --grid 3,1,1 -o o.pvs --threads 1",
     );
-    add("job submit", "job submit j --dry-run");
+    add("job submit --dry-run", "job submit j --dry-run");
     add("job shard", "job shard j 0");
     add("job merge", "job merge j");
     folder.write("j/parts/1.part", "no part");
@@ -202,7 +198,7 @@ fn scenes(all: &mut Results) {
     add("build of a scene", "build least.glb -o least.pvs --door all=-99,-99,-99,99,99,99");
     add("query of a point", "query least.pvs --eye 2,1,2");
     add("query of a view", "query least.pvs --eye 2,1,2 --closed all");
-    add("query of a view by all methods", "query least.pvs --eye 2,1,2 --method all");
+    add("query of a view", "query least.pvs --eye 2,1,2 --method all");
     add("pack", "pack least.pvs -o least.pvz");
     add("info of a table", "info least.pvs --objects");
     add("info of a packed table", "info least.pvz --objects");

@@ -7,7 +7,6 @@ use commands::Results;
 use serde_json::{Map, Value};
 use std::collections::{BTreeMap, BTreeSet};
 
-const PAGE: &str = include_str!("../../../../../docs/json.md");
 /// The section of the fields that all objects have.
 const COMMON: &str = "Every command";
 
@@ -20,13 +19,20 @@ struct Field {
     optional: bool,
     /// Whether the fields below it are not on the page.
     free: bool,
+    /// Its name and meaning: the same in all sections that share it.
+    row: String,
 }
 
 impl Field {
-    fn new(cell: &str) -> Self {
+    fn new(field: &str, cell: &str, meaning: &str) -> Self {
         let kind = |part: &str| part.split([' ', ',']).next().unwrap_or_default().to_owned();
         let says = |word: &str| cell.split(", ").any(|part| part == word);
-        Self { kinds: cell.split(" or ").map(kind).collect(), optional: says("optional"), free: says("free keys") }
+        Self {
+            kinds: cell.split(" or ").map(kind).collect(),
+            optional: says("optional"),
+            free: says("free keys"),
+            row: format!("{field}: {meaning}"),
+        }
     }
 
     fn fits(&self, value: &Value) -> bool {
@@ -48,7 +54,7 @@ impl Field {
 type Section = BTreeMap<String, Field>;
 
 /// A row of a section: a field, or the anchor of a part whose fields are below it, or both.
-type Row<'a> = (Option<&'a str>, Option<&'a str>, &'a str);
+type Row<'a> = (Option<&'a str>, Option<&'a str>, &'a str, &'a str);
 
 /// The rows of all sections of the page, by headings without code marks.
 fn rows(page: &str) -> BTreeMap<String, Vec<Row<'_>>> {
@@ -63,7 +69,7 @@ fn rows(page: &str) -> BTreeMap<String, Vec<Row<'_>>> {
         let part = first.split_once("](#").map(|(_, rest)| rest.trim_end_matches(')'));
         if field.is_some() || part.is_some() {
             assert!(field.is_none() || !(kind.is_empty() || meaning.is_empty()), "{heading}: {line}");
-            all.entry(heading.clone()).or_default().push((field, part, kind));
+            all.entry(heading.clone()).or_default().push((field, part, kind, meaning));
         }
     }
     all
@@ -78,10 +84,13 @@ fn anchor(heading: &str) -> String {
 /// The sections of all commands, with the fields of parts in their places.
 fn sections(page: &str) -> BTreeMap<String, Section> {
     fn add(heading: &str, below: &str, all: &BTreeMap<String, Vec<Row<'_>>>, out: &mut Section) {
-        for &(field, part, kind) in all.get(heading).into_iter().flatten() {
+        for &(field, part, kind, meaning) in all.get(heading).into_iter().flatten() {
             if let Some(field) = field {
                 let path = format!("{below}{}", field.trim_end_matches("[]"));
-                assert!(out.insert(path.clone(), Field::new(kind)).is_none(), "{heading}: {path} twice");
+                assert!(
+                    out.insert(path.clone(), Field::new(field, kind, meaning)).is_none(),
+                    "{heading}: {path} twice"
+                );
             }
             if let Some(part) = part {
                 let part = all.keys().find(|other| anchor(other) == part).expect("the part of a link");
@@ -136,7 +145,7 @@ fn missing(section: &Section, members: &Map<String, Value>, below: &str, wrong: 
 /// Everything in which the page and results differ: also fields, optional ones too, that no result has.
 fn differences(page: &str, results: &[(&str, Value)]) -> Vec<String> {
     let sections = sections(page);
-    let mut all = Vec::new();
+    let (mut all, mut rows, mut found) = (Vec::new(), BTreeSet::new(), BTreeSet::new());
     let names: BTreeSet<&str> =
         sections.keys().map(String::as_str).chain(results.iter().map(|(name, _)| *name)).collect();
     for name in names {
@@ -149,24 +158,27 @@ fn differences(page: &str, results: &[(&str, Value)]) -> Vec<String> {
         for value in of_name() {
             compare(section, value, "", &mut seen, &mut wrong);
             if value["version"] != 3 {
-                wrong.insert("the version is not 1".to_owned());
+                wrong.insert("the version is not 3".to_owned());
             }
         }
-        wrong.extend(section.keys().filter(|path| !seen.contains(*path)).map(|path| format!("{path} is in no result")));
         all.extend(wrong.into_iter().map(|what| format!("{name}: {what}")));
+        rows.extend(section.values().map(|field| field.row.clone()));
+        found.extend(seen.iter().filter_map(|path| section.get(path)).map(|field| field.row.clone()));
     }
+    all.extend(rows.difference(&found).map(|row| format!("{row} is in no result")));
     all
 }
 
 #[test]
 fn results_have_a_version_and_the_fields_on_the_page() {
     let results = Results::of_all_commands();
-    let wrong = differences(PAGE, &results);
+    let page = &sightlines_cli::json_page();
+    let wrong = differences(page, &results);
     assert!(wrong.is_empty(), "{} differences:\n{}", wrong.len(), wrong.join("\n"));
-    assert!(results.len() > 60 && sections(PAGE).len() > 30, "{} results", results.len());
+    assert!(results.len() > 60 && sections(page).len() > 30, "{} results", results.len());
 
     // Impostors. A page without a row: its field is noticed.
-    let lines: Vec<&str> = PAGE.lines().collect();
+    let lines: Vec<&str> = page.lines().collect();
     let is_row = |line: &str| line.starts_with("| `");
     let fields: Vec<usize> = (0..lines.len()).filter(|&k| is_row(lines[k])).collect();
     assert!(fields.len() > 400, "{} rows", fields.len());
@@ -180,19 +192,19 @@ fn results_have_a_version_and_the_fields_on_the_page() {
             let with = [&lines[..k], &[more.as_str()], &lines[k..]].concat().join("\n");
             let found = differences(&with, &results);
             assert!(
-                !found.is_empty() && found.iter().all(|what| what.contains("no_such_field is")),
+                !found.is_empty() && found.iter().all(|what| what.contains("no_such_field")),
                 "{}: {found:?}",
                 lines[k]
             );
         }
     }
     // A field of another type; a result without a version, with another, or with one field more deep inside.
-    assert!(!differences(&PAGE.replacen("| `seconds` | number |", "| `seconds` | text |", 1), &results).is_empty());
-    assert!(!differences(&PAGE.replacen("## `vis`", "## `viz`", 1), &results).is_empty());
+    assert!(!differences(&page.replacen("| `seconds` | number |", "| `seconds` | text |", 1), &results).is_empty());
+    assert!(!differences(&page.replacen("## `vis`", "## `viz`", 1), &results).is_empty());
     let changed = |change: &dyn Fn(&mut Value)| {
         let mut results = results.clone();
         results.iter_mut().filter(|(name, _)| *name == "render").for_each(|(_, value)| change(value));
-        differences(PAGE, &results)
+        differences(page, &results)
     };
     assert_eq!(changed(&|_| ()), [""; 0]);
     assert!(!changed(&|value| _ = value.as_object_mut().map(|members| members.remove("version"))).is_empty());
@@ -208,6 +220,7 @@ fn every_command_with_json_is_on_the_page() {
     }
     let folder = Folder::new();
     let help = folder.run(&["--help"]).expect(0).out;
+    let page = &sightlines_cli::json_page();
     let list = help.split_once("Commands:").expect("a list of commands").1;
     let of_json = |command: &&str| {
         let args = match *command {
@@ -220,7 +233,7 @@ fn every_command_with_json_is_on_the_page() {
     };
     let listed = list.lines().skip(1).take_while(|line| !line.is_empty()).filter_map(first);
     let commands: BTreeSet<&str> = listed.filter(|command| *command != "help").filter(of_json).collect();
-    let sections = sections(PAGE);
+    let sections = sections(page);
     let on_page: BTreeSet<&str> = sections.keys().filter_map(|heading| heading.split(' ').next()).collect();
     assert_eq!(commands, on_page);
     assert!(commands.len() > 14, "{commands:?}");
@@ -240,4 +253,15 @@ fn a_table_is_not_written_as_json() {
     folder.run(&["build", "office.geojson", "-o", "x.pvs"]).expect(0);
     folder.run(&["export", "x.pvs", "-o", "x.json"]).expect(0);
     assert!(folder.path("x.json").exists());
+}
+
+/// The page in the documentation; `BLESS=1` writes it.
+#[test]
+fn the_page_is_that_of_the_program() {
+    let (path, page) = (concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/json.md"), sightlines_cli::json_page());
+    if std::env::var_os("BLESS").is_some_and(|v| v == "1") {
+        std::fs::write(path, &page).unwrap();
+    }
+    let found = std::fs::read_to_string(path).unwrap();
+    assert!(found == page, "docs/json.md is not made from these types; write it with BLESS=1");
 }
