@@ -1,32 +1,8 @@
 //! The arguments common to all commands.
 
-use crate::commands::{
-    build::BuildArgs,
-    demo::DemoArgs,
-    draw::DrawArgs,
-    explain::ExplainArgs,
-    export::ExportArgs,
-    generate::GenerateArgs,
-    info::InfoArgs,
-    isovist::IsovistArgs,
-    job::JobArgs,
-    levels::LevelsArgs,
-    light::LightArgs,
-    multifocal::MultifocalArgs,
-    pack::{PackArgs, UnpackArgs},
-    plan::PlanCommandArgs,
-    portals::PortalsArgs,
-    query::QueryArgs,
-    reject::RejectArgs,
-    render::RenderArgs,
-    simplify::SimplifyArgs,
-    tiles::TilesArgs,
-    verify::VerifyArgs,
-    vga::VgaArgs,
-    view::ViewArgs,
-    vis::VisArgs,
-    walk::WalkArgs,
-};
+use crate::command::{Done, Manner};
+use crate::commands::*;
+use crate::error::Result;
 use clap::{Parser, Subcommand};
 
 /// Precomputes which parts of a scene can be seen from which others, exactly and conservatively
@@ -51,60 +27,78 @@ pub(crate) struct Arguments {
     version: Option<bool>,
 }
 
-/// What to do.
-#[derive(Debug, Subcommand)]
-pub(crate) enum Command {
+/// Makes the enum of all commands, and what runs one.
+macro_rules! commands {
+    ($($(#[$about:meta])* $name:ident($args:ty) => $run:path,)*) => {
+        /// What to do.
+        #[derive(Debug, Subcommand)]
+        pub(crate) enum Command {
+            $($(#[$about])* $name($args),)*
+        }
+
+        impl Command {
+            /// Does it.
+            pub(crate) fn run(&self, manner: Manner) -> Result<Done> {
+                match self {
+                    $(Self::$name(args) => $run(args, manner),)*
+                }
+            }
+        }
+    };
+}
+
+commands! {
     /// Build the visibility table of a floor plan, a Doom map, a scene in space, or a Quake map
-    Build(Box<BuildArgs>),
+    Build(Box<build::BuildArgs>) => build::run,
     /// Write the REJECT lumps of a WAD, or of all WADs in a folder; all other lumps stay as they are
-    Reject(RejectArgs),
+    Reject(reject::RejectArgs) => reject::run,
     /// Write the visibility of a Quake or Quake II map; everything else stays as it is
-    Vis(VisArgs),
+    Vis(vis::VisArgs) => vis::run,
     /// Write the portal file of a Quake map, made from its tree of planes
-    Portals(PortalsArgs),
+    Portals(portals::PortalsArgs) => portals::run,
     /// Write a floor plan as GeoJSON: a scene in space cut at a height, a DXF drawing, or a Doom map
-    Plan(PlanCommandArgs),
+    Plan(plan::PlanCommandArgs) => plan::run,
     /// Share a build among processes and machines: plan its shards, do one, merge them, or have all of it done
-    Job(JobArgs),
+    Job(job::JobArgs) => job::run,
     /// A world that is too large for one table: bake its tiles, look into it
-    Tiles(TilesArgs),
+    Tiles(tiles::TilesArgs) => tiles::run,
     /// Check a table, or the visibility in a Quake or Doom map, against its scene; exit code 1 for a violation
-    Verify(VerifyArgs),
+    Verify(verify::VerifyArgs) => verify::run,
     /// Write what is seen from points of a floor plan: polygons, measures, a picture
-    Isovist(IsovistArgs),
+    Isovist(isovist::IsovistArgs) => isovist::run,
     /// List the cells and objects visible from a point, or in a view from there
-    Query(QueryArgs),
+    Query(query::QueryArgs) => query::run,
     /// Measure the eye-to-cell methods on a walk: what each leaves to draw, and its time
-    Walk(WalkArgs),
+    Walk(walk::WalkArgs) => walk::run,
     /// Compress a table into a file that can be read piece by piece
-    Pack(PackArgs),
+    Pack(pack::PackArgs) => pack::pack,
     /// Convert a packed table back to a plain one
-    Unpack(UnpackArgs),
+    Unpack(pack::UnpackArgs) => pack::unpack,
     /// Export a table as JSON
-    Export(ExportArgs),
+    Export(export::ExportArgs) => export::run,
     /// Show a line of sight between two cells, or the reason why there is none
-    Explain(ExplainArgs),
+    Explain(explain::ExplainArgs) => explain::run,
     /// Draw a table, and what is visible from a cell or a point, as a plan, a floor plan or an isometric view
-    Draw(DrawArgs),
+    Draw(draw::DrawArgs) => draw::run,
     /// Write one HTML file that shows a table in a browser: the map, the scene, what is seen from where, and why
-    View(ViewArgs),
+    View(view::ViewArgs) => view::run,
     /// Draw the multifocal buffer of a view volume on a plane: the heights below which everything is hidden
-    Multifocal(MultifocalArgs),
+    Multifocal(multifocal::MultifocalArgs) => multifocal::run,
     /// Draw the visible surfaces of a scene for one eye by a classical method, or compare all methods
-    Render(RenderArgs),
+    Render(render::RenderArgs) => render::run,
     /// Write a scene with fewer triangles for eyes in a volume, without hidden triangles and, within a budget, without
     /// barely visible ones
-    Simplify(SimplifyArgs),
+    Simplify(simplify::SimplifyArgs) => simplify::run,
     /// Analyse what the points of a floor plan see of each other: tables and pictures of the measures of space syntax
-    Vga(VgaArgs),
+    Vga(vga::VgaArgs) => vga::run,
     /// Draw the umbra, the lit parts and the parts in doubt under an area light
-    Light(LightArgs),
+    Light(light::LightArgs) => light::run,
     /// Write simplified variants of a scene for the cells of its table, within a memory budget
-    Levels(LevelsArgs),
+    Levels(levels::LevelsArgs) => levels::run,
     /// Summarize a table, a WAD, a floor plan, a scene, a Quake map or a portal file
-    Info(InfoArgs),
+    Info(info::InfoArgs) => info::run,
     /// Generate a scene of any size
-    Generate(GenerateArgs),
+    Generate(generate::GenerateArgs) => generate::run,
     /// Generate an office floor or a small tower, build its table, summarize and draw it
-    Demo(DemoArgs),
+    Demo(demo::DemoArgs) => demo::run,
 }

@@ -11,6 +11,7 @@
 mod args;
 mod buffers;
 mod clusters;
+mod command;
 mod commands;
 mod doors;
 mod error;
@@ -46,23 +47,13 @@ mod view;
 mod vis_program;
 mod walk_path;
 
-use args::{Arguments, Command};
+use args::Arguments;
 use clap::{CommandFactory, Parser};
+use command::{Answer, Manner};
 use error::{Result, StdoutError};
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::process::ExitCode;
 use tracing_subscriber::filter::LevelFilter;
-
-/// What a command found, as the program's exit code.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Answer {
-    /// Done; exit code 0.
-    Yes,
-    /// Done, and the answer is no, such as for a point outside every cell; exit code 1.
-    No,
-    /// A job is not complete: some of its shards are to be done; exit code 3.
-    Incomplete,
-}
 
 /// The program `sightlines`: reads the arguments of the process, does what they ask for, prints, and returns the exit code.
 ///
@@ -112,37 +103,10 @@ fn exit_code(result: Result<Answer>) -> ExitCode {
     }
 }
 
-/// Runs a command.
+/// Runs a command, and prints its result.
 fn run(arguments: &Arguments) -> Result<Answer> {
-    let show_progress = !arguments.quiet;
-    Ok(match &arguments.command {
-        Command::Build(args) => commands::build::run(args, show_progress, arguments.verbose > 0)?,
-        Command::Reject(args) => commands::reject::run(args, show_progress)?,
-        Command::Job(args) => commands::job::run(args, show_progress, arguments.verbose > 0)?,
-        Command::Vis(args) => commands::vis::run(args, show_progress, arguments.verbose > 0)?,
-        Command::Tiles(args) => commands::tiles::run(args, show_progress)?,
-        Command::Verify(args) => commands::verify::run(args, show_progress)?,
-        Command::Plan(args) => commands::plan::run(args)?,
-        Command::Portals(args) => commands::portals::run(args)?,
-        Command::Isovist(args) => commands::isovist::run(args)?,
-        Command::Query(args) => commands::query::run(args)?,
-        Command::Walk(args) => commands::walk::run(args, show_progress)?,
-        Command::Pack(args) => commands::pack::pack(args)?,
-        Command::Unpack(args) => commands::pack::unpack(args)?,
-        Command::Export(args) => commands::export::run(args)?,
-        Command::Explain(args) => commands::explain::run(args)?,
-        Command::Draw(args) => commands::draw::run(args)?,
-        Command::View(args) => commands::view::run(args, show_progress)?,
-        Command::Multifocal(args) => commands::multifocal::run(args)?,
-        Command::Render(args) => commands::render::run(args, show_progress)?,
-        Command::Vga(args) => commands::vga::run(args, show_progress)?,
-        Command::Light(args) => commands::light::run(args)?,
-        Command::Simplify(args) => commands::simplify::run(args, show_progress)?,
-        Command::Levels(args) => commands::levels::run(args, show_progress)?,
-        Command::Info(args) => commands::info::run(args)?,
-        Command::Generate(args) => commands::generate::run(args)?,
-        Command::Demo(args) => commands::demo::run(args, show_progress)?,
-    })
+    let manner = Manner { show_progress: !arguments.quiet, verbose: arguments.verbose > 0 };
+    arguments.command.run(manner)?.print()
 }
 
 /// Whether standard output was closed by its reader, which has read enough.

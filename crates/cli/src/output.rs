@@ -23,16 +23,11 @@ struct Versioned<'a, T> {
     result: &'a T,
 }
 
-/// Prints a result: as one line of JSON if `json`, with its version, otherwise as it is displayed.
-pub(crate) fn print(json: bool, result: &(impl Serialize + fmt::Display)) -> Result<()> {
-    print_as(json, || result, result)
-}
-
-/// The same where people and programs get different forms of it.
-pub(crate) fn print_as<T: Serialize>(json: bool, fields: impl FnOnce() -> T, text: impl fmt::Display) -> Result<()> {
+/// Prints a result: the fields as one line of JSON if `json`, with their version, otherwise the text.
+pub(crate) fn print(json: bool, fields: &impl Serialize, text: &impl fmt::Display) -> Result<()> {
     stdout(|out| {
         if json {
-            serde_json::to_writer(&mut *out, &Versioned { version: JSON_VERSION, result: &fields() })?;
+            serde_json::to_writer(&mut *out, &Versioned { version: JSON_VERSION, result: fields })?;
             writeln!(out)
         } else {
             write!(out, "{text}")

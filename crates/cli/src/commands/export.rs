@@ -1,6 +1,6 @@
 //! `export`: a table as JSON.
 
-use crate::Answer;
+use crate::command::{Done, Manner};
 use crate::error::Result;
 use crate::{input, output};
 use sightlines::report::{export_json, write_json};
@@ -18,7 +18,7 @@ pub(crate) struct ExportArgs {
     output: Option<PathBuf>,
 }
 
-pub(crate) fn run(args: &ExportArgs) -> Result<Answer> {
+pub(crate) fn run(args: &ExportArgs, _: Manner) -> Result<Done> {
     if let Some(path) = &args.output {
         output::check(&[&args.table], &[path])?;
     }
@@ -30,5 +30,5 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Answer> {
         })?,
         Some(path) => output::save(path, (export_json(&table) + "\n").as_bytes())?,
     }
-    Ok(Answer::Yes)
+    Ok(Done::silently())
 }

@@ -1,6 +1,6 @@
 //! `generate`: scenes to try things on.
 
-use crate::Answer;
+use crate::command::{Done, Manner};
 use crate::error::Result;
 use crate::folder::cannot_be_made;
 use crate::glb::{self, save_glb};
@@ -89,14 +89,14 @@ struct TowerArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &GenerateArgs) -> Result<Answer> {
+pub(crate) fn run(args: &GenerateArgs, _: Manner) -> Result<Done> {
     match &args.what {
         What::Tower(args) => write_tower(args),
         What::World(args) => write_world(args),
     }
 }
 
-fn write_world(args: &WorldArgs) -> Result<Answer> {
+fn write_world(args: &WorldArgs) -> Result<Done> {
     let WorldArgs { seed, blocks, per_tile, detail, border, ref output, json } = *args;
     let options = CityOptions { seed, blocks_x: blocks, blocks_z: blocks, detail };
     let tiles = city_tiles(options, per_tile)?;
@@ -116,8 +116,7 @@ fn write_world(args: &WorldArgs) -> Result<Answer> {
         plan.tiles.push(TilePlan { name, scene: scene_name, at: [0.0; 3], viewers: None, cells: Some(cells_name) });
     }
     output::save(&output.join("world.json"), plan.to_json().as_bytes())?;
-    output::print(json, &outcome)?;
-    Ok(Answer::Yes)
+    Ok(Done::new(json, outcome))
 }
 
 /// What was written of a world.
@@ -148,7 +147,7 @@ impl fmt::Display for WorldOutcome {
     }
 }
 
-fn write_tower(args: &TowerArgs) -> Result<Answer> {
+fn write_tower(args: &TowerArgs) -> Result<Done> {
     glb::check_name(&args.output)?;
     output::check(&[], &[&args.output])?;
     let options = TowerOptions {
@@ -171,8 +170,7 @@ fn write_tower(args: &TowerArgs) -> Result<Answer> {
         n_triangles: scene.n_triangles(),
         n_bytes,
     };
-    output::print(args.json, &outcome)?;
-    Ok(Answer::Yes)
+    Ok(Done::new(args.json, outcome))
 }
 
 /// The scene that was written.

@@ -1,6 +1,6 @@
 //! `pack` and `unpack`: tables as small files for programs that read them piece by piece, and back.
 
-use crate::Answer;
+use crate::command::{Done, Manner};
 use crate::error::{ErrorAbout, Result, anyhow};
 use crate::output::{self, bytes, count, percent};
 use crate::tables::Class;
@@ -51,7 +51,7 @@ pub(crate) struct UnpackArgs {
     json: bool,
 }
 
-pub(crate) fn pack(args: &PackArgs) -> Result<Answer> {
+pub(crate) fn pack(args: &PackArgs, _: Manner) -> Result<Done> {
     output::check(&[&args.table], &[&args.output])?;
     let table = input::table(&args.table)?;
     let (packed, report) =
@@ -76,11 +76,10 @@ pub(crate) fn pack(args: &PackArgs) -> Result<Answer> {
         outcome.over_estimation = back.parts().rows.count_ones() as f64 / n_visible.max(1) as f64;
     }
     output::save(&args.output, &packed)?;
-    output::print(args.json, &outcome)?;
-    Ok(Answer::Yes)
+    Ok(Done::new(args.json, outcome))
 }
 
-pub(crate) fn unpack(args: &UnpackArgs) -> Result<Answer> {
+pub(crate) fn unpack(args: &UnpackArgs, _: Manner) -> Result<Done> {
     output::check(&[&args.packed], &[&args.output])?;
     input::refuse_source(&args.packed)?;
     let packed = tables::packed(&args.packed, CACHE)?;
@@ -88,8 +87,7 @@ pub(crate) fn unpack(args: &UnpackArgs) -> Result<Answer> {
     let plain = table.to_bytes();
     output::save(&args.output, &plain)?;
     let out = args.output.display().to_string();
-    output::print(args.json, &Unpacked { out, n_plain_bytes: plain.len() as u64, n_cells: table.n_cells() })?;
-    Ok(Answer::Yes)
+    Ok(Done::new(args.json, Unpacked { out, n_plain_bytes: plain.len() as u64, n_cells: table.n_cells() }))
 }
 
 /// The packed table.

@@ -1,6 +1,6 @@
 //! `plan`: a floor plan as GeoJSON, cut from a scene at a height, or from a file of another format.
 
-use crate::Answer;
+use crate::command::{Done, Manner};
 use crate::error::{ErrorAbout, Result, anyhow};
 use crate::input::{self, refuse};
 use crate::output::{self, bytes};
@@ -40,7 +40,7 @@ pub(crate) struct PlanCommandArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &PlanCommandArgs) -> Result<Answer> {
+pub(crate) fn run(args: &PlanCommandArgs, _: Manner) -> Result<Done> {
     let (path, out) = (&args.input, &args.output);
     output::check(&[path], &[out])?;
     let map = args.map.as_deref();
@@ -64,8 +64,7 @@ pub(crate) fn run(args: &PlanCommandArgs) -> Result<Answer> {
         },
     };
     output::save(out, text.as_bytes())?;
-    output::print(args.json, &Outcome { n_bytes: text.len(), ..outcome })?;
-    Ok(Answer::Yes)
+    Ok(Done::new(args.json, Outcome { n_bytes: text.len(), ..outcome }))
 }
 
 fn cut(path: &Path, file: &SceneFile, height: Option<f64>) -> Result<FloorCut> {

@@ -1,6 +1,6 @@
 //! `portals`: the portal file of a Quake map that has none.
 
-use crate::Answer;
+use crate::command::{Done, Manner};
 use crate::error::Result;
 use crate::map_portals::{MapPortals, made};
 use crate::output::{self, bytes, count};
@@ -24,7 +24,7 @@ pub(crate) struct PortalsArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &PortalsArgs) -> Result<Answer> {
+pub(crate) fn run(args: &PortalsArgs, _: Manner) -> Result<Done> {
     output::check(&[&args.map], &[&args.output])?;
     let bsp = read_bsp(&args.map)?;
     let MapPortals { prt, text, .. } = made(&bsp, &args.map)?;
@@ -39,8 +39,7 @@ pub(crate) fn run(args: &PortalsArgs) -> Result<Answer> {
         n_passages: prt.n_clusters() as usize - n_leafs,
         n_bytes: text.len(),
     };
-    output::print(args.json, &outcome)?;
-    Ok(Answer::Yes)
+    Ok(Done::new(args.json, outcome))
 }
 
 /// The portal file that was written.

@@ -8,8 +8,8 @@ mod console;
 mod hearing;
 mod priority;
 
-use crate::Answer;
-use crate::commands::vis::{Beginning, Manner, Sound, VisArgs, compute};
+use crate::command::Answer;
+use crate::commands::vis::{Beginning, Sound, VisArgs, VisManner, compute};
 use crate::error::Result;
 use crate::kept::Keeping;
 use crate::map_portals::MADE;
@@ -79,7 +79,7 @@ fn see(args: &VisProgramArgs, map: &Path, console: &Console) -> Result<()> {
         }
         console.say(Kind::Progress, &format!("computing  {how}"))
     };
-    let manner = Manner {
+    let manner = VisManner {
         show_progress: !(args.quiet || args.nopercent || args.noprogress),
         keeping: if args.nostate { Keeping::Nowhere } else { Keeping::FileIfItFits(&vis.resume) },
         keep_after: args.noautoclean,

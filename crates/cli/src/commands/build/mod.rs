@@ -23,7 +23,7 @@ mod worth;
 
 pub(crate) use source::bake_visibly;
 
-use crate::Answer;
+use crate::command::{Done, Manner};
 use crate::doors::DoorBox;
 use crate::error::{Result, anyhow, bail};
 use crate::input::{self, refuse};
@@ -101,12 +101,11 @@ pub(crate) struct BuildArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &BuildArgs, show_progress: bool, verbose: bool) -> Result<Answer> {
+pub(crate) fn run(args: &BuildArgs, Manner { show_progress, verbose }: Manner) -> Result<Done> {
     // What is not decided in time is decided anew when there is more of it.
     let keeping = if args.time_limit.is_some() { Keeping::Nowhere } else { Keeping::File(&args.resume) };
     let built = make(args, keeping, show_progress, verbose)?;
-    output::print(args.json, &built)?;
-    Ok(Answer::Yes)
+    Ok(Done::new(args.json, built))
 }
 
 /// Reads, bakes and writes. Prints nothing but progress and warnings.

@@ -3,7 +3,7 @@
 pub(crate) mod office;
 pub(crate) mod tower;
 
-use crate::Answer;
+use crate::command::{Done, Manner};
 use crate::error::{ErrorAbout, Result};
 use crate::folder::cannot_be_made;
 use crate::memory;
@@ -41,12 +41,12 @@ enum Example {
     Tower,
 }
 
-pub(crate) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer> {
+pub(crate) fn run(args: &DemoArgs, manner: Manner) -> Result<Done> {
     let folder = &args.out;
     std::fs::create_dir_all(folder).map_err(|error| cannot_be_made(folder, error))?;
     match args.example {
-        Example::Office => office::run(args, show_progress),
-        Example::Tower => tower::run(args, show_progress),
+        Example::Office => office::run(args, manner),
+        Example::Tower => tower::run(args, manner),
     }
 }
 
@@ -65,7 +65,7 @@ fn save_page(args: &DemoArgs, title: &str, table_name: &str, table: &Table, figu
 
 /// What all demos did: where their files are, and what they took.
 #[derive(Debug, Serialize, JsonSchema)]
-struct Done {
+struct Made {
     /// The folder of the files.
     folder: String,
     /// Seed of the generator.
@@ -78,7 +78,7 @@ struct Done {
     files: Vec<String>,
 }
 
-impl Done {
+impl Made {
     fn new(args: &DemoArgs, start: Instant, files: Vec<String>) -> Self {
         Self {
             folder: args.out.display().to_string(),

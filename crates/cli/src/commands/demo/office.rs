@@ -1,7 +1,7 @@
 //! The demo in the plane: an office floor.
 
-use super::{DemoArgs, Done, save_page};
-use crate::Answer;
+use super::{DemoArgs, Made, save_page};
+use crate::command::{Done, Manner};
 use crate::commands::build::{bake_visibly, plan};
 use crate::error::{ErrorAbout, Result};
 use crate::output::{self, bytes, percent};
@@ -17,7 +17,7 @@ use sightlines::viewer::Figure;
 use std::fmt;
 use std::time::Instant;
 
-pub(super) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer> {
+pub(super) fn run(args: &DemoArgs, Manner { show_progress, .. }: Manner) -> Result<Done> {
     let start = Instant::now();
     let folder = &args.out;
     let office = office(OfficeOptions { seed: args.seed, ..OfficeOptions::default() })
@@ -45,10 +45,9 @@ pub(super) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer> {
     let demo = Demo {
         n_walls: office.lines().len(),
         built: plan::Outcome::new(&table_path, None, &baked.table, report),
-        done: Done::new(args, start, files),
+        done: Made::new(args, start, files),
     };
-    output::print(args.json, &demo)?;
-    Ok(Answer::Yes)
+    Ok(Done::new(args.json, demo))
 }
 
 /// The pictures: the plan, and what is seen from a cell that sees much, a typical one, and a secluded one.
@@ -85,7 +84,7 @@ pub(crate) struct Demo {
     /// The table.
     built: plan::Outcome,
     #[serde(flatten)]
-    done: Done,
+    done: Made,
 }
 
 impl fmt::Display for Demo {

@@ -1,7 +1,7 @@
 //! The demo in space: a small furnished tower.
 
-use super::{DemoArgs, Done, save_page};
-use crate::Answer;
+use super::{DemoArgs, Made, save_page};
+use crate::command::{Done, Manner};
 use crate::commands::build::{bake_visibly, space};
 use crate::error::{ErrorAbout, Result};
 use crate::glb::save_glb;
@@ -19,7 +19,7 @@ use std::fmt;
 use std::path::Path;
 use std::time::Instant;
 
-pub(super) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer> {
+pub(super) fn run(args: &DemoArgs, Manner { show_progress, .. }: Manner) -> Result<Done> {
     let start = Instant::now();
     let options = TowerOptions { seed: args.seed, floors: 2, rooms_x: 3, rooms_y: 1, ..TowerOptions::default() };
     let [scene_path, table_path] = ["tower.glb", "tower.pvs"].map(|name| args.out.join(name));
@@ -43,10 +43,9 @@ pub(super) fn run(args: &DemoArgs, show_progress: bool) -> Result<Answer> {
     let demo = Demo {
         n_floors: options.floors,
         built: space::Outcome::new(&table_path, &file, &baked.table, report),
-        done: Done::new(args, start, files),
+        done: Made::new(args, start, files),
     };
-    output::print(args.json, &demo)?;
-    Ok(Answer::Yes)
+    Ok(Done::new(args.json, demo))
 }
 
 /// The cells, and what the largest of those that see less than half of the cells sees: a floor plan at its
@@ -86,7 +85,7 @@ pub(crate) struct Demo {
     /// The table.
     built: space::Outcome,
     #[serde(flatten)]
-    done: Done,
+    done: Made,
 }
 
 impl fmt::Display for Demo {

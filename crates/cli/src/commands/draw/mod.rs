@@ -4,7 +4,7 @@ pub(crate) mod space;
 
 mod scene;
 mod viewer;
-use crate::Answer;
+use crate::command::{Answer, Done, Manner};
 use crate::error::{Result, anyhow};
 use crate::input::refuse;
 use crate::picture::{PictureKind, save_picture};
@@ -65,7 +65,7 @@ fn height(text: &str) -> Result<f64, String> {
     check_coordinate(height).map_err(|error| error.to_string())
 }
 
-pub(crate) fn run(args: &DrawArgs) -> Result<Answer> {
+pub(crate) fn run(args: &DrawArgs, _: Manner) -> Result<Done> {
     PictureKind::of(&args.output)?;
     let inputs: Vec<&Path> = std::iter::once(&args.table).chain(&args.scene).map(PathBuf::as_path).collect();
     output::check(&inputs, &[&args.output])?;
@@ -87,9 +87,8 @@ pub(crate) fn run(args: &DrawArgs) -> Result<Answer> {
         Some(eye) => {
             let viewer = Viewer::new(args, eye, &table)?;
             if viewer.is_outside() {
-                let told = format_args!("the point {eye} is outside every cell\n");
-                output::stdout(|out| std::io::Write::write_fmt(out, told))?;
-                return Ok(Answer::No);
+                let told = format!("the point {eye} is outside every cell\n");
+                return Ok(Done::in_two_forms(false, (), told).answering(Answer::No));
             }
             Some(viewer)
         }
@@ -115,7 +114,7 @@ pub(crate) fn run(args: &DrawArgs) -> Result<Answer> {
         }
     };
     save_picture(&svg, &args.output)?;
-    Ok(Answer::Yes)
+    Ok(Done::silently())
 }
 
 /// One picture of the table.

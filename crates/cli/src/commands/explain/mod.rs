@@ -5,7 +5,7 @@ mod picture;
 pub(crate) mod report;
 mod text;
 
-use crate::Answer;
+use crate::command::{Answer, Done, Manner};
 use crate::error::{ErrorAbout, Result, anyhow};
 use crate::picture::{PictureKind, save_picture};
 use crate::place::Place;
@@ -59,7 +59,7 @@ pub(crate) struct ExplainArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &ExplainArgs) -> Result<Answer> {
+pub(crate) fn run(args: &ExplainArgs, _: Manner) -> Result<Done> {
     if let Some(out) = &args.draw {
         PictureKind::of(out)?;
         output::check(&[&args.table], &[out])?;
@@ -70,14 +70,17 @@ pub(crate) fn run(args: &ExplainArgs) -> Result<Answer> {
         let pair = args.clusters(graph.n_cells())?;
         let explainer = Explainer::new(&graph).expect("portals join clusters");
         let explanation = explainer.explain(pair, &args.options(GraphKind::Convex));
-        return Report::new(None, pair, &explanation, args.proofs).print(args.json);
+        return Ok(Report::new(None, pair, &explanation, args.proofs).done(args.json));
     }
     let table = input::table(&args.table)?;
     let kind = GraphKind::of(&table);
     args.refuse_meaningless(kind, in_words(&table))?;
     let has_numbers_only = kind == GraphKind::Convex && table.planes().is_none();
-    let pair = if has_numbers_only { Some(args.clusters(table.n_cells())?) } else { args.pair(&table)? };
-    let Some(pair) = pair else { return Ok(Answer::No) };
+    let pair = if has_numbers_only { Ok(args.clusters(table.n_cells())?) } else { args.pair(&table)? };
+    let pair = match pair {
+        Ok(pair) => pair,
+        Err(outside) => return Ok(Done::new(args.json, outside).answering(Answer::No)),
+    };
     let read = |path: &PathBuf| input::scene(path, &SurfaceArgs::default().options_with(table.info()));
     let file = args.scene.as_ref().map(read).transpose()?;
     let explanation =
@@ -88,7 +91,7 @@ pub(crate) fn run(args: &ExplainArgs) -> Result<Answer> {
     if let Some(out) = &args.draw {
         save_picture(&picture::svg(&args.table, &table, pair, &explanation)?, out)?;
     }
-    Report::new(Some(&table), pair, &explanation, args.proofs).print(args.json)
+    Ok(Report::new(Some(&table), pair, &explanation, args.proofs).done(args.json))
 }
 
 impl ExplainArgs {
@@ -125,17 +128,16 @@ impl ExplainArgs {
         }
     }
 
-    /// The cells of the query; none, with a message, if a point is outside every cell.
-    fn pair(&self, table: &Table) -> Result<Option<[CellId; 2]>> {
+    /// The cells of the query, unless a point is outside every cell.
+    fn pair(&self, table: &Table) -> Result<Result<[CellId; 2], Outside>> {
         let from = self.from.cells(table, &self.table)?;
         let to = self.to.cells(table, &self.table)?;
         for (place, cells) in [(&self.from, &from), (&self.to, &to)] {
             if cells.is_empty() {
-                output::print(self.json, &Outside::new(place))?;
-                return Ok(None);
+                return Ok(Err(Outside::new(place)));
             }
         }
-        Ok(Some(choose(table, &from, &to)))
+        Ok(Ok(choose(table, &from, &to)))
     }
 
     /// The clusters of the query, by their numbers.

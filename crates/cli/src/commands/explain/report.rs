@@ -1,8 +1,6 @@
 //! An explanation of a pair of cells: the pair, what the table lists, and the answer. [`json`](super::json) and [`text`](super::text) write it.
 
-use crate::Answer;
-use crate::error::Result;
-use crate::output;
+use crate::command::Done;
 use crate::place::Place;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -31,14 +29,13 @@ impl<'a> Report<'a> {
         Self { pair, listed, has_regions, explanation, n_shown }
     }
 
-    /// Prints the report. The answer is that of the engine, else that of the table, and yes without one.
-    pub(super) fn print(&self, json: bool) -> Result<Answer> {
-        output::print_as(json, || self.fields(), self)?;
+    /// The end of the command with this report. The answer is that of the engine, else that of the table, and yes without one.
+    pub(super) fn done(&self, json: bool) -> Done {
         let verdict = self.explanation.answer.verdict();
         // A table may hide what portals let through, past walls that are no borders of cells.
         let is_hidden_by_region = self.has_regions && verdict == Some(true) && self.listed == Some(false);
         let is_visible = verdict.filter(|_| !is_hidden_by_region).or(self.listed).unwrap_or(true);
-        Ok(if is_visible { Answer::Yes } else { Answer::No })
+        Done::in_two_forms(json, self.fields(), self.to_string()).answering_whether(is_visible)
     }
 }
 

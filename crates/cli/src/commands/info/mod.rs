@@ -6,11 +6,11 @@ pub(crate) mod quake;
 pub(crate) mod scene;
 pub(crate) mod wad;
 
-use crate::Answer;
+use crate::command::{Done, Manner};
 use crate::error::Result;
 use crate::facts::{DigestFacts, DoorFacts, Facts, FrameFacts, Source, StabFacts, write_doors};
 use crate::input;
-use crate::output::{self, bytes, count};
+use crate::output::{bytes, count};
 use crate::plans::PlanArgs;
 use crate::surfaces::SurfaceArgs;
 use schemars::JsonSchema;
@@ -40,7 +40,7 @@ pub(crate) struct InfoArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &InfoArgs) -> Result<Answer> {
+pub(crate) fn run(args: &InfoArgs, _: Manner) -> Result<Done> {
     let path = &args.file;
     let kind = input::kind_of(path)?;
     if kind.is_some_and(|kind| kind != InputKind::Scene) {
@@ -50,23 +50,21 @@ pub(crate) fn run(args: &InfoArgs) -> Result<Answer> {
         input::refuse(path, &[("--objects", args.objects)], "tables", "none")?;
     }
     let reading = args.plans.options(path)?;
-    match kind {
-        Some(InputKind::Table) => {
-            output::print(args.json, &TableInfo::new(path, &input::table(path)?, args.objects))?;
-        }
-        Some(InputKind::Packed) => output::print(args.json, &packed::PackedInfo::read(path, args.objects)?)?,
-        Some(InputKind::Wad) => output::print(args.json, &wad::WadInfo::read(path)?)?,
-        Some(InputKind::Plan) => output::print(args.json, &plan::PlanInfo::read(path, &reading)?)?,
-        Some(InputKind::Scene) => output::print(args.json, &scene::SceneInfo::read(path, &args.surfaces.options())?)?,
-        Some(InputKind::Prt) => output::print(args.json, &quake::PrtInfo::read(path)?)?,
-        Some(InputKind::Bsp) => output::print(args.json, &quake::BspInfo::read(path)?)?,
+    let json = args.json;
+    Ok(match kind {
+        Some(InputKind::Table) => Done::new(json, TableInfo::new(path, &input::table(path)?, args.objects)),
+        Some(InputKind::Packed) => Done::new(json, packed::PackedInfo::read(path, args.objects)?),
+        Some(InputKind::Wad) => Done::new(json, wad::WadInfo::read(path)?),
+        Some(InputKind::Plan) => Done::new(json, plan::PlanInfo::read(path, &reading)?),
+        Some(InputKind::Scene) => Done::new(json, scene::SceneInfo::read(path, &args.surfaces.options())?),
+        Some(InputKind::Prt) => Done::new(json, quake::PrtInfo::read(path)?),
+        Some(InputKind::Bsp) => Done::new(json, quake::BspInfo::read(path)?),
         _ => {
             let expected =
                 "a table nor a WAD nor a GeoJSON or DXF plan nor a GLB, glTF or OBJ nor a Quake map or portal file";
             return Err(input::neither(path, expected));
         }
-    }
-    Ok(Answer::Yes)
+    })
 }
 
 /// What a table holds.

@@ -2,7 +2,7 @@
 
 pub(crate) mod space;
 
-use crate::Answer;
+use crate::command::{Done, Manner};
 use crate::error::{ErrorAbout, Result, anyhow, bail};
 use crate::input::{self, refuse};
 use crate::output::{self, bytes, count};
@@ -106,7 +106,7 @@ struct Eye {
     from: String,
 }
 
-pub(crate) fn run(args: &IsovistArgs) -> Result<Answer> {
+pub(crate) fn run(args: &IsovistArgs, _: Manner) -> Result<Done> {
     let kind = Kind::of(&args.output)?;
     let inputs = std::iter::once(&args.plan).chain(&args.points).chain(&args.table).map(PathBuf::as_path);
     output::check(&inputs.collect::<Vec<_>>(), &[&args.output])?;
@@ -139,8 +139,7 @@ pub(crate) fn run(args: &IsovistArgs) -> Result<Answer> {
         mean_area: total(&|area| area.values[0]),
         mean_occlusivity: total(&|area| area.values[2]),
     };
-    output::print(args.json, &outcome)?;
-    Ok(Answer::Yes)
+    Ok(Done::new(args.json, outcome))
 }
 
 fn save(path: &Path, text: &str) -> Result<u64> {

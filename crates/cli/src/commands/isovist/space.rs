@@ -1,7 +1,7 @@
 //! `isovist` of a scene in space: volumes, and how much is seen of each object.
 
 use super::{IsovistArgs, Kind};
-use crate::Answer;
+use crate::command::Done;
 use crate::error::{Result, bail};
 use crate::input::{self, refuse};
 use crate::output::{self, bytes, count};
@@ -18,7 +18,7 @@ struct Seen {
     shares: Vec<Estimate>,
 }
 
-pub(super) fn run(args: &IsovistArgs, kind: Kind) -> Result<Answer> {
+pub(super) fn run(args: &IsovistArgs, kind: Kind) -> Result<Done> {
     let path = &args.plan;
     let given = [
         ("--points", args.points.is_some()),
@@ -65,8 +65,7 @@ pub(super) fn run(args: &IsovistArgs, kind: Kind) -> Result<Answer> {
             as f64
             / n,
     };
-    output::print(args.json, &outcome)?;
-    Ok(Answer::Yes)
+    Ok(Done::new(args.json, outcome))
 }
 
 /// A row for each eye and object: what is seen of the object, and the volume of the eye.

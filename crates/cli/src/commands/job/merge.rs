@@ -3,10 +3,10 @@
 use super::outcome::{Merged, Missing};
 use super::task::{Made, Task};
 use super::{absolute, open, stopped};
+use crate::command::{Answer, Done, Manner};
 use crate::error::Result;
+use crate::interrupt;
 use crate::kept::{Identity, JobSlot, Keeping};
-use crate::output;
-use crate::{Answer, interrupt};
 use sightlines::checkpoint::{Job, JobStore, Outcome, Role};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -86,14 +86,14 @@ pub(super) fn through(
     }
 }
 
-pub(crate) fn run(args: &MergeArgs, show_progress: bool, verbose: bool) -> Result<Answer> {
+pub(crate) fn run(args: &MergeArgs, Manner { show_progress, verbose }: Manner) -> Result<Done> {
     let (folder, out) = (absolute(&args.job)?, args.output.as_deref().map(absolute).transpose()?);
     let found = merge(&folder, out.as_deref(), args.threads, show_progress, verbose)?;
-    report(&args.job, found, args.json)
+    Ok(report(&args.job, found, args.json))
 }
 
-/// Prints how far a merge came.
-pub(super) fn report(job: &Path, found: Progress, json: bool) -> Result<Answer> {
+/// How far a merge came.
+pub(super) fn report(job: &Path, found: Progress, json: bool) -> Done {
     let name = job.display().to_string();
     let (merged, answer) = match found {
         Progress::Written(made, out) => (Merged::written(name, &out, &made), Answer::Yes),
@@ -102,6 +102,5 @@ pub(super) fn report(job: &Path, found: Progress, json: bool) -> Result<Answer> 
         Progress::Planned(job, phase) => (Merged::planned(name, &job, phase), Answer::Incomplete),
         Progress::Missing(_, missing) => (Merged::missing(name, missing), Answer::Incomplete),
     };
-    output::print(json, &merged)?;
-    Ok(answer)
+    Done::new(json, merged).answering(answer)
 }

@@ -11,7 +11,7 @@ mod submit;
 mod task;
 mod work;
 
-use crate::Answer;
+use crate::command::{Done, Manner};
 use crate::error::{ErrorAbout, Result, anyhow};
 use crate::interrupt;
 use clap::Subcommand;
@@ -46,14 +46,14 @@ enum JobCommand {
     Status(status::StatusArgs),
 }
 
-pub(crate) fn run(args: &JobArgs, show_progress: bool, verbose: bool) -> Result<Answer> {
+pub(crate) fn run(args: &JobArgs, manner: Manner) -> Result<Done> {
     match &args.what {
-        JobCommand::Plan(args) => plan::run(args, show_progress),
-        JobCommand::Shard(args) => shard::run(args, show_progress),
-        JobCommand::Work(args) => work::run(args, verbose),
-        JobCommand::Merge(args) => merge::run(args, show_progress, verbose),
-        JobCommand::Submit(args) => submit::run(args, show_progress, verbose),
-        JobCommand::Status(args) => status::run(args),
+        JobCommand::Plan(args) => plan::run(args, manner),
+        JobCommand::Shard(args) => shard::run(args, manner),
+        JobCommand::Work(args) => work::run(args, manner),
+        JobCommand::Merge(args) => merge::run(args, manner),
+        JobCommand::Submit(args) => submit::run(args, manner),
+        JobCommand::Status(args) => status::run(args, manner),
     }
 }
 

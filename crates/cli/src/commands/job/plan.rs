@@ -3,10 +3,9 @@
 use super::absolute;
 use super::outcome::Planned;
 use super::task::Task;
-use crate::Answer;
+use crate::command::{Done, Manner};
 use crate::error::Result;
 use crate::kept::{Identity, JobSlot, Keeping, PROGRAM};
-use crate::output;
 use sightlines::checkpoint::{Job, JobStore, Manifest, Outcome, Role};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -41,7 +40,7 @@ fn shards(text: &str) -> Result<usize, String> {
     }
 }
 
-pub(crate) fn run(args: &PlanArgs, show_progress: bool) -> Result<Answer> {
+pub(crate) fn run(args: &PlanArgs, Manner { show_progress, .. }: Manner) -> Result<Done> {
     let task = Task::parse(&args.command)?;
     let here = absolute(std::path::Path::new("."))?;
     let folder = absolute(&args.output)?;
@@ -65,8 +64,7 @@ pub(crate) fn run(args: &PlanArgs, show_progress: bool) -> Result<Answer> {
             made?;
             Planned::new(job, &store.job(), None, Some(task.output()))
         }
-        (_, None) => return made.map(|_| Answer::Yes),
+        (_, None) => return made.map(|_| Done::silently()),
     };
-    output::print(args.json, &planned)?;
-    Ok(Answer::Yes)
+    Ok(Done::new(args.json, planned))
 }

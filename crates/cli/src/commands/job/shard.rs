@@ -4,11 +4,11 @@ use super::numbers::Run;
 use super::outcome::{ShardDone, ShardsDone, ranges};
 use super::task::Task;
 use super::{absolute, open, stopped};
+use crate::command::{Done, Manner};
 use crate::error::{Result, anyhow};
+use crate::interrupt;
 use crate::kept::{Identity, JobSlot, Keeping};
 use crate::memory::MemoryArgs;
-use crate::output;
-use crate::{Answer, interrupt};
 use sightlines::checkpoint::{Job, JobStore, Outcome, Role, ShardState};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -36,7 +36,7 @@ pub(crate) struct ShardArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &ShardArgs, show_progress: bool) -> Result<Answer> {
+pub(crate) fn run(args: &ShardArgs, Manner { show_progress, .. }: Manner) -> Result<Done> {
     let start = Instant::now();
     let job = open(&absolute(&args.job)?)?;
     let mut shards = Vec::new();
@@ -62,8 +62,7 @@ pub(crate) fn run(args: &ShardArgs, show_progress: bool) -> Result<Answer> {
         compute(&job, &args.job, shards, args, show_progress)?;
     }
     done.seconds = start.elapsed().as_secs_f64();
-    output::print(args.json, &done)?;
-    Ok(Answer::Yes)
+    Ok(Done::new(args.json, done))
 }
 
 /// Computes shards of one phase.

@@ -2,9 +2,8 @@
 
 use super::outcome::{Missing, PhaseFacts, PhaseStatus, Status};
 use super::{absolute, open};
-use crate::Answer;
+use crate::command::{Done, Manner};
 use crate::error::Result;
-use crate::output;
 use sightlines::checkpoint::{Job, ShardState};
 use std::path::PathBuf;
 
@@ -19,13 +18,12 @@ pub(crate) struct StatusArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &StatusArgs) -> Result<Answer> {
+pub(crate) fn run(args: &StatusArgs, _: Manner) -> Result<Done> {
     let job = open(&absolute(&args.job)?)?;
     let manifest = job.manifest();
     let phases = (0..manifest.phases.len()).map(|phase| of_phase(&job, phase)).collect::<Result<Vec<_>>>()?;
     let status = Status { job: args.job.display().to_string(), command: manifest.command.clone(), phases };
-    output::print(args.json, &status)?;
-    Ok(Answer::Yes)
+    Ok(Done::new(args.json, status))
 }
 
 fn of_phase(job: &Job, phase: usize) -> Result<PhaseStatus> {

@@ -5,12 +5,11 @@ use super::merge::{Progress, merge, report};
 use super::outcome::{Missing, Submitted};
 use super::task::Task;
 use super::{absolute, open};
-use crate::Answer;
+use crate::command::{Done, Manner};
 use crate::commands::job::interrupted;
 use crate::error::{ErrorAbout, Result, bail};
 use crate::interrupt;
 use crate::named::one_of;
-use crate::output;
 use sightlines::checkpoint::{Job, ShardState};
 use std::path::{Path, PathBuf};
 
@@ -78,7 +77,7 @@ pub(crate) struct SubmitArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &SubmitArgs, show_progress: bool, verbose: bool) -> Result<Answer> {
+pub(crate) fn run(args: &SubmitArgs, Manner { show_progress, verbose }: Manner) -> Result<Done> {
     let (folder, out) = (absolute(&args.job)?, args.output.as_deref().map(absolute).transpose()?);
     let program = std::env::current_exe().in_file(&folder)?;
     let job = open(&folder)?;
@@ -91,8 +90,7 @@ pub(crate) fn run(args: &SubmitArgs, show_progress: bool, verbose: bool) -> Resu
         let shards: Vec<usize> = job.manifest().shards_of(phase).collect();
         let files = slurm.write(&Round { job: &job, phase, shards: &shards }, 0)?;
         let files = files.iter().map(|file| file.display().to_string()).collect();
-        output::print(args.json, &Submitted { job: args.job.display().to_string(), files })?;
-        return Ok(Answer::Yes);
+        return Ok(Done::new(args.json, Submitted { job: args.job.display().to_string(), files }));
     }
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let workers = args.workers.map_or(cores, |n| n as usize);
@@ -136,7 +134,7 @@ pub(crate) fn run(args: &SubmitArgs, show_progress: bool, verbose: bool) -> Resu
             written => break written,
         }
     };
-    report(&args.job, found, args.json)
+    Ok(report(&args.job, found, args.json))
 }
 
 /// How often the shards of a phase were tried.

@@ -3,9 +3,10 @@
 use super::absolute;
 use super::merge::{report, through};
 use super::task::Task;
+use crate::command::{Done, Manner};
 use crate::error::Result;
+use crate::interrupt;
 use crate::memory::MemoryArgs;
-use crate::{Answer, interrupt};
 use sightlines::checkpoint::Role;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -35,7 +36,7 @@ pub(crate) struct WorkArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &WorkArgs, verbose: bool) -> Result<Answer> {
+pub(crate) fn run(args: &WorkArgs, Manner { verbose, .. }: Manner) -> Result<Done> {
     let (folder, out) = (absolute(&args.job)?, args.output.as_deref().map(absolute).transpose()?);
     let role = Role::Worker { n_workers: args.workers as usize, stop: interrupt::requested };
     let after = Duration::from_secs(args.save_after);
@@ -44,5 +45,5 @@ pub(crate) fn run(args: &WorkArgs, verbose: bool) -> Result<Answer> {
         |task: Task| task.with_threads(Some(args.threads)).with_memory(args.memory).with_output(out.as_deref());
     // It goes through phases more than once, which its bars would show.
     let found = through((&folder, role, after), adjust, false, verbose)?;
-    report(&args.job, found, args.json)
+    Ok(report(&args.job, found, args.json))
 }

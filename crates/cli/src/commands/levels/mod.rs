@@ -2,13 +2,12 @@
 
 pub(crate) mod outcome;
 
-use crate::Answer;
+use crate::command::{Done, Manner};
 use crate::error::{Result, anyhow};
 use crate::folder::NewFolder;
 use crate::input;
 use crate::kept::{Identity, Inputs, Keeping, Kept, ResumeArgs};
 use crate::memory::{MemoryArgs, Needs, Size};
-use crate::output;
 use crate::progress::Bar;
 use crate::simplification::{self, HowArgs, OutFormat, ReadScene, read, written};
 use outcome::Outcome;
@@ -64,7 +63,7 @@ fn is_ours(name: &str) -> bool {
     name == INDEX_NAME || number.is_some_and(|n| !n.is_empty() && n.bytes().all(|b| b.is_ascii_digit()))
 }
 
-pub(crate) fn run(args: &LevelsArgs, show_progress: bool) -> Result<Answer> {
+pub(crate) fn run(args: &LevelsArgs, Manner { show_progress, .. }: Manner) -> Result<Done> {
     let work_memory = MemoryArgs::of(args.work_memory);
     work_memory.watch();
     // Outputs that cannot be written are reported before the work is done.
@@ -104,15 +103,12 @@ pub(crate) fn run(args: &LevelsArgs, show_progress: bool) -> Result<Answer> {
         anyhow!("{}: {source}", path.display())
     });
     drop(bar);
-    let made = made.and_then(|made| {
-        let outcome = write(args, (scene, method), (&file, source.as_ref()), (&made, is_framed), folder, start)?;
-        Ok(outcome)
-    });
+    let made =
+        made.and_then(|made| write(args, (scene, method), (&file, source.as_ref()), (&made, is_framed), folder, start));
     match kept.finish(made.is_ok()) {
-        Some(interrupted) => return Err(anyhow!("{interrupted}")),
-        None => output::print(args.json, &made?)?,
+        Some(interrupted) => Err(anyhow!("{interrupted}")),
+        None => Ok(Done::new(args.json, made?)),
     }
-    Ok(Answer::Yes)
 }
 
 impl LevelsArgs {

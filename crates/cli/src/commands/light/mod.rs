@@ -3,8 +3,8 @@
 mod method;
 pub(crate) mod outcome;
 
-use crate::Answer;
 use crate::buffers::method_failed;
+use crate::command::{Done, Manner};
 use crate::error::{ErrorAbout, Result};
 use crate::eye::EyeArgs;
 use crate::input;
@@ -81,7 +81,7 @@ pub(crate) struct LightArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &LightArgs) -> Result<Answer> {
+pub(crate) fn run(args: &LightArgs, _: Manner) -> Result<Done> {
     picture::check_png_name(&args.output)?;
     output::check(&[&args.scene], &[&args.output])?;
     input::check_is_scene(&args.scene)?;
@@ -132,8 +132,7 @@ pub(crate) fn run(args: &LightArgs) -> Result<Answer> {
         file: args.output.display().to_string(),
     };
     output::save(&args.output, &png)?;
-    output::print(args.json, &outcome)?;
-    Ok(Answer::Yes)
+    Ok(Done::new(args.json, outcome))
 }
 
 /// A pixel as the picture has it.

@@ -5,8 +5,8 @@ mod chart;
 pub(crate) mod outcome;
 mod target;
 
-use crate::Answer;
 use crate::buffers::method_failed;
+use crate::command::{Done, Manner};
 use crate::error::{ErrorAbout, Result, anyhow};
 use crate::input;
 use crate::named::{measure, one_of};
@@ -79,7 +79,7 @@ pub(crate) struct MultifocalArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &MultifocalArgs) -> Result<Answer> {
+pub(crate) fn run(args: &MultifocalArgs, _: Manner) -> Result<Done> {
     check_outputs(args)?;
     input::check_is_scene(&args.scene)?;
     let file = input::occluders(&args.scene, &args.surfaces.options())?;
@@ -123,8 +123,7 @@ pub(crate) fn run(args: &MultifocalArgs) -> Result<Answer> {
     if let Some((path, svg)) = chart {
         picture::save_picture(&svg, path)?;
     }
-    output::print(args.json, &outcome)?;
-    Ok(Answer::Yes)
+    Ok(Done::new(args.json, outcome))
 }
 
 /// The pictures to write.

@@ -2,10 +2,10 @@
 
 pub(crate) mod sight;
 
-use crate::Answer;
+use crate::command::{Done, Manner};
 use crate::error::{ErrorAbout, Result};
 use crate::facts::Source;
-use crate::output::{self, count};
+use crate::output::count;
 use crate::place::Point;
 use crate::tables::{self, Cells, Opened};
 use crate::view::lifted;
@@ -36,14 +36,14 @@ pub(crate) struct QueryArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &QueryArgs) -> Result<Answer> {
+pub(crate) fn run(args: &QueryArgs, _: Manner) -> Result<Done> {
     match tables::open(&args.table, CACHE)? {
         Opened::Plain(cells) => ask(&cells, args),
         Opened::Packed(cells) => ask(&cells, args),
     }
 }
 
-fn ask<C: Cells>(cells: &C, args: &QueryArgs) -> Result<Answer> {
+fn ask<C: Cells>(cells: &C, args: &QueryArgs) -> Result<Done> {
     let path = &args.table;
     cells.refuse_without_places(path)?;
     let eye = args.eye.coordinates(cells.n_dimensions(), path)?;
@@ -51,12 +51,12 @@ fn ask<C: Cells>(cells: &C, args: &QueryArgs) -> Result<Answer> {
     let place = cells.cells_at(lifted(eye), &mut buffer).in_file(path)?;
     // Outside, the answer says so and names no cells.
     let at = place.inside().unwrap_or_default();
-    if args.sight.is_given() {
-        output::print(args.json, &sight::look(cells, path, eye, at, &args.sight)?)?;
+    let done = if args.sight.is_given() {
+        Done::new(args.json, sight::look(cells, path, eye, at, &args.sight)?)
     } else {
-        output::print(args.json, &rows(cells, eye, at).in_file(path)?)?;
-    }
-    Ok(if at.is_empty() { Answer::No } else { Answer::Yes })
+        Done::new(args.json, rows(cells, eye, at).in_file(path)?)
+    };
+    Ok(done.answering_whether(!at.is_empty()))
 }
 
 /// What the table lists for the cells at a point.

@@ -5,7 +5,7 @@ pub(crate) mod outcome;
 
 pub(crate) use outcome::Outcome;
 
-use crate::Answer;
+use crate::command::{Done, Manner};
 use crate::error::{Result, anyhow};
 use crate::kept::{Identity, Inputs, Keeping, Kept, ResumeArgs};
 use crate::memory::{self, MemoryArgs};
@@ -56,10 +56,9 @@ pub(crate) struct RejectArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &RejectArgs, show_progress: bool) -> Result<Answer> {
+pub(crate) fn run(args: &RejectArgs, Manner { show_progress, .. }: Manner) -> Result<Done> {
     let outcome = make(args, Keeping::File(&args.resume), show_progress)?;
-    output::print(args.json, &outcome)?;
-    Ok(Answer::Yes)
+    Ok(Done::new(args.json, outcome))
 }
 
 /// Reads, builds and writes. Prints nothing but progress and warnings.

@@ -4,7 +4,7 @@ mod cull;
 mod method;
 pub(crate) mod outcome;
 
-use crate::Answer;
+use crate::command::{Done, Manner};
 use crate::error::{ErrorAbout, Result, anyhow};
 use crate::eye::EyeArgs;
 use crate::input;
@@ -74,7 +74,7 @@ pub(crate) struct RenderArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &RenderArgs, show_progress: bool) -> Result<Answer> {
+pub(crate) fn run(args: &RenderArgs, Manner { show_progress, .. }: Manner) -> Result<Done> {
     check(args)?;
     input::check_is_scene(&args.scene)?;
     let table =
@@ -125,8 +125,7 @@ pub(crate) fn run(args: &RenderArgs, show_progress: bool) -> Result<Answer> {
         file: args.output.display().to_string(),
     };
     output::save(&args.output, &png)?;
-    output::print(args.json, &outcome)?;
-    Ok(Answer::Yes)
+    Ok(Done::new(args.json, outcome))
 }
 
 /// Refuses options that do not go together, and outputs that would replace what is read.

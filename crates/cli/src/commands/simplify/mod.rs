@@ -3,7 +3,7 @@
 mod eyes;
 pub(crate) mod outcome;
 
-use crate::Answer;
+use crate::command::{Done, Manner};
 use crate::error::{Result, anyhow};
 use crate::output;
 use crate::progress::Bar;
@@ -51,7 +51,7 @@ pub(crate) struct SimplifyArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &SimplifyArgs, show_progress: bool) -> Result<Answer> {
+pub(crate) fn run(args: &SimplifyArgs, Manner { show_progress, .. }: Manner) -> Result<Done> {
     let format = OutFormat::of(&args.output)?;
     output::check(&args.eyes.table.iter().map(PathBuf::as_path).collect::<Vec<_>>(), &[&args.output])?;
     let table = args.eyes.table()?;
@@ -90,6 +90,5 @@ pub(crate) fn run(args: &SimplifyArgs, show_progress: bool) -> Result<Answer> {
     };
     let outcome = Outcome::new(args, method, (scene, &simplified), views.parts().len(), &file, report, time);
     output::save(&args.output, &file.bytes)?;
-    output::print(args.json, &outcome)?;
-    Ok(Answer::Yes)
+    Ok(Done::new(args.json, outcome))
 }

@@ -4,15 +4,16 @@ use super::bake::{Files, TileKeys, bake, keys};
 use super::input::{self, TileInput};
 use super::outcome::Outcome;
 use super::scenes::Scenes;
+use crate::command::{Done, Manner};
 use crate::commands::build::region::RegionArgs;
 use crate::error::{ErrorAbout, Result, anyhow, bail};
 use crate::folder::cannot_be_made;
+use crate::interrupt;
 use crate::kept::{Identity, Inputs, Keeping, Kept, PROGRAM, UNITS};
 use crate::memory::MemoryArgs;
 use crate::output;
 use crate::progress::Bar;
 use crate::surfaces::SurfaceArgs;
-use crate::{Answer, interrupt};
 use sightlines::bake::{BakeRequest, Runtime};
 use sightlines::checkpoint::KeyHasher;
 use sightlines::formats::scene::SceneReadOptions;
@@ -63,10 +64,9 @@ pub(crate) struct TilesBuildArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &TilesBuildArgs, show_progress: bool) -> Result<Answer> {
+pub(crate) fn run(args: &TilesBuildArgs, Manner { show_progress, .. }: Manner) -> Result<Done> {
     let outcome = make(args, Keeping::Nowhere, show_progress)?;
-    output::print(args.json, &outcome)?;
-    Ok(Answer::Yes)
+    Ok(Done::new(args.json, outcome))
 }
 
 /// The phase of units of work: one for each tile.

@@ -1,8 +1,8 @@
 //! `tiles check`: whether the files of a baked world are whole and belong together.
 
-use crate::Answer;
+use crate::command::{Done, Manner};
 use crate::error::Result;
-use crate::output::{self, bytes, count};
+use crate::output::{bytes, count};
 use crate::progress::Bar;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -36,7 +36,7 @@ pub(crate) struct Checked {
     n_resident_bytes: usize,
 }
 
-pub(super) fn run(args: &TilesCheckArgs, show_progress: bool) -> Result<Answer> {
+pub(super) fn run(args: &TilesCheckArgs, Manner { show_progress, .. }: Manner) -> Result<Done> {
     let world = World::open(&args.world)?;
     let n_tiles = world.index().tiles.len();
     let mut checked =
@@ -51,8 +51,7 @@ pub(super) fn run(args: &TilesCheckArgs, show_progress: bool) -> Result<Answer> 
         bar.set(k + 1, n_tiles);
     }
     drop(bar);
-    output::print(args.json, &checked)?;
-    Ok(Answer::Yes)
+    Ok(Done::new(args.json, checked))
 }
 
 impl fmt::Display for Checked {

@@ -11,7 +11,7 @@ mod scenes;
 pub(crate) use build::{TilesBuildArgs, make};
 pub(crate) use outcome::Outcome;
 
-use crate::Answer;
+use crate::command::{Done, Manner};
 use crate::error::Result;
 use clap::Subcommand;
 
@@ -33,10 +33,10 @@ pub(crate) enum TilesCommand {
     Check(check::TilesCheckArgs),
 }
 
-pub(crate) fn run(args: &TilesArgs, show_progress: bool) -> Result<Answer> {
+pub(crate) fn run(args: &TilesArgs, manner: Manner) -> Result<Done> {
     match &args.what {
-        TilesCommand::Build(args) => build::run(args, show_progress),
-        TilesCommand::Query(args) => query::run(args),
-        TilesCommand::Check(args) => check::run(args, show_progress),
+        TilesCommand::Build(args) => build::run(args, manner),
+        TilesCommand::Query(args) => query::run(args, manner),
+        TilesCommand::Check(args) => check::run(args, manner),
     }
 }

@@ -1,8 +1,9 @@
 //! `tiles query`: what may be seen from a point of a baked world.
 
+use crate::command::{Done, Manner};
 use crate::error::Result;
-use crate::output::{self, count};
-use crate::{Answer, place::Point};
+use crate::output::count;
+use crate::place::Point;
 use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::tiles::{Seen, TileId, TileScratch, TileTables, World};
@@ -51,7 +52,7 @@ pub(crate) struct Found {
     n_tiles: usize,
 }
 
-pub(super) fn run(args: &TilesQueryArgs) -> Result<Answer> {
+pub(super) fn run(args: &TilesQueryArgs, _: Manner) -> Result<Done> {
     let world = World::open(&args.world)?;
     let eye = args.eye.coordinates(3, &args.world)?;
     let eye = [eye[0], eye[1], eye[2]];
@@ -71,8 +72,8 @@ pub(super) fn run(args: &TilesQueryArgs) -> Result<Answer> {
     seen.tiles.iter().for_each(|&tile| of.entry(name(tile)).or_default().whole = true);
     let found =
         Found { eye, tiles: inside.into_iter().map(name).collect(), seen: of, n_tiles: world.index().tiles.len() };
-    output::print(args.json, &found)?;
-    Ok(if found.tiles.is_empty() { Answer::No } else { Answer::Yes })
+    let is_inside = !found.tiles.is_empty();
+    Ok(Done::new(args.json, found).answering_whether(is_inside))
 }
 
 impl fmt::Display for Found {

@@ -7,7 +7,7 @@ mod proofs;
 mod truth;
 mod violations;
 
-use crate::Answer;
+use crate::command::{Done, Manner};
 use crate::error::{Result, anyhow};
 use crate::input;
 use crate::input::refuse;
@@ -76,7 +76,7 @@ pub(crate) struct VerifyArgs {
 /// Bytes of blocks of a packed table that are kept while it is unpacked.
 const CACHE: usize = 64 << 20;
 
-pub(crate) fn run(args: &VerifyArgs, show_progress: bool) -> Result<Answer> {
+pub(crate) fn run(args: &VerifyArgs, Manner { show_progress, .. }: Manner) -> Result<Done> {
     if let Some(picture) = &args.draw {
         PictureKind::of(picture)?;
         output::check(&[&args.table, &args.scene], &[picture])?;
@@ -132,8 +132,7 @@ pub(crate) fn run(args: &VerifyArgs, show_progress: bool) -> Result<Answer> {
     let is_proven = unproven.is_none_or(|unproven| unproven.hides_none());
     let outcome = outcome.only_if(is_proven || !args.proofs.is_strict());
     let is_true = outcome.is_true();
-    output::print(args.json, &With { outcome, proofs, unproven })?;
-    Ok(if is_true { Answer::Yes } else { Answer::No })
+    Ok(Done::new(args.json, With { outcome, proofs, unproven }).answering_whether(is_true))
 }
 
 /// What a table states that can have no proofs.

@@ -4,7 +4,7 @@ mod kind;
 pub(crate) mod outcome;
 mod points;
 
-use crate::Answer;
+use crate::command::{Done, Manner};
 use crate::error::{ErrorAbout, Result, anyhow, bail};
 use crate::input;
 use crate::kept::{Identity, Inputs, Keeping, Kept, ResumeArgs};
@@ -175,7 +175,7 @@ const fn touch_about(touch: Touch) -> &'static str {
     }
 }
 
-pub(crate) fn run(args: &VgaArgs, show_progress: bool) -> Result<Answer> {
+pub(crate) fn run(args: &VgaArgs, Manner { show_progress, .. }: Manner) -> Result<Done> {
     args.memory.watch();
     let kind = Kind::of(&args.output)?;
     let inputs: Vec<&Path> = std::iter::once(&args.plan).chain(&args.points).map(PathBuf::as_path).collect();
@@ -238,8 +238,7 @@ pub(crate) fn run(args: &VgaArgs, show_progress: bool) -> Result<Answer> {
         file: args.output.display().to_string(),
         peak_bytes: memory::peak_bytes(),
     };
-    output::print(args.json, &outcome)?;
-    Ok(Answer::Yes)
+    Ok(Done::new(args.json, outcome))
 }
 
 /// The values of measures.

@@ -2,7 +2,7 @@
 
 mod scene;
 
-use crate::Answer;
+use crate::command::{Done, Manner};
 use crate::error::{ErrorAbout, Result, anyhow};
 use crate::output::{self, bytes, count};
 use crate::plans::PlanArgs;
@@ -65,7 +65,7 @@ pub(crate) struct ViewArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &ViewArgs, show_progress: bool) -> Result<Answer> {
+pub(crate) fn run(args: &ViewArgs, Manner { show_progress, .. }: Manner) -> Result<Done> {
     let others = [&args.scene, &args.against, &args.walk];
     let inputs: Vec<&Path> =
         std::iter::once(args.table.as_path()).chain(others.into_iter().filter_map(Option::as_deref)).collect();
@@ -94,13 +94,12 @@ pub(crate) fn run(args: &ViewArgs, show_progress: bool) -> Result<Answer> {
         n_pairs: reasons.as_ref().map_or(0, |reasons| reasons.n_pairs),
         n_joined: reasons.as_ref().map_or(0, |reasons| reasons.n_joined),
     };
-    output::print(args.json, &outcome)?;
     if args.open {
         open(&args.output).map_err(|error| {
             anyhow!("{}: was written, but no browser could be started: {error}", args.output.display())
         })?;
     }
-    Ok(Answer::Yes)
+    Ok(Done::new(args.json, outcome))
 }
 
 /// Reads a table of either kind.

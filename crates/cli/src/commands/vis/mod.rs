@@ -4,11 +4,11 @@ mod certify;
 pub(crate) mod outcome;
 mod sounds;
 
+use crate::command::{Done, Manner};
 use crate::error::{Result, anyhow, bail};
 pub(crate) use outcome::Outcome;
 pub(crate) use sounds::Sound;
 
-use crate::Answer;
 use crate::clusters::warn_of_repeats;
 use crate::commands::build::needs::of_clusters;
 use crate::input;
@@ -78,7 +78,7 @@ impl VisArgs {
 }
 
 /// How to go about it, beside what the arguments say.
-pub(crate) struct Manner<'a, 'k> {
+pub(crate) struct VisManner<'a, 'k> {
     pub(crate) show_progress: bool,
     /// Where results of units are kept.
     pub(crate) keeping: Keeping<'k>,
@@ -97,20 +97,19 @@ pub(crate) struct Beginning<'a> {
     pub(crate) resumed: bool,
 }
 
-pub(crate) fn run(args: &VisArgs, show_progress: bool, verbose: bool) -> Result<Answer> {
+pub(crate) fn run(args: &VisArgs, Manner { show_progress, verbose }: Manner) -> Result<Done> {
     let mut outcome = make(args, Keeping::File(&args.resume), show_progress)?;
     outcome.verbose = verbose;
-    output::print(args.json, &outcome)?;
-    Ok(Answer::Yes)
+    Ok(Done::new(args.json, outcome))
 }
 
 /// Writes the map. Prints nothing but progress and warnings.
 pub(crate) fn make(args: &VisArgs, keeping: Keeping<'_>, show_progress: bool) -> Result<Outcome> {
-    compute(args, Manner { show_progress, keeping, keep_after: false, begin: &mut |_| Ok(()) })
+    compute(args, VisManner { show_progress, keeping, keep_after: false, begin: &mut |_| Ok(()) })
 }
 
 /// The same, in a manner.
-pub(crate) fn compute(args: &VisArgs, manner: Manner<'_, '_>) -> Result<Outcome> {
+pub(crate) fn compute(args: &VisArgs, manner: VisManner<'_, '_>) -> Result<Outcome> {
     crate::threads::use_only(args.threads);
     let start = Instant::now();
     args.memory.watch();

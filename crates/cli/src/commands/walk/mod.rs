@@ -5,7 +5,7 @@ mod measure;
 mod nesting;
 pub(crate) mod outcome;
 
-use crate::Answer;
+use crate::command::{Done, Manner};
 use crate::error::{ErrorAbout, Result, anyhow, bail};
 use crate::output;
 use crate::progress::Bar;
@@ -91,7 +91,7 @@ fn steps(text: &str) -> Result<Budget, String> {
     }
 }
 
-pub(crate) fn run(args: &WalkArgs, show_progress: bool) -> Result<Answer> {
+pub(crate) fn run(args: &WalkArgs, Manner { show_progress, .. }: Manner) -> Result<Done> {
     let outputs: Vec<&Path> = [&args.output, &args.csv].into_iter().flatten().map(PathBuf::as_path).collect();
     output::check(&[&args.table], &outputs)?;
     match tables::open(&args.table, args.budget)? {
@@ -100,7 +100,7 @@ pub(crate) fn run(args: &WalkArgs, show_progress: bool) -> Result<Answer> {
     }
 }
 
-fn walk<C: Cells>(cells: &C, args: &WalkArgs, show_progress: bool) -> Result<Answer> {
+fn walk<C: Cells>(cells: &C, args: &WalkArgs, show_progress: bool) -> Result<Done> {
     let file = &args.table;
     cells.refuse_without_places(file)?;
     let lens = args.lens.lens(cells, file)?;
@@ -142,8 +142,7 @@ fn walk<C: Cells>(cells: &C, args: &WalkArgs, show_progress: bool) -> Result<Ans
     if let Some(out) = &args.csv {
         output::save(out, outcome.csv().as_bytes())?;
     }
-    output::print(args.json, &outcome)?;
-    Ok(Answer::Yes)
+    Ok(Done::new(args.json, outcome))
 }
 
 /// The error of an invalid view in a frame.

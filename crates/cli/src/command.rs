@@ -1,0 +1,67 @@
+//! What all commands have in common: they get their arguments and a manner, and return what is printed at their end.
+
+use crate::error::Result;
+use crate::output;
+use serde::Serialize;
+use std::fmt;
+
+/// How a command behaves while it runs.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Manner {
+    /// Whether progress goes to standard error.
+    pub(crate) show_progress: bool,
+    /// Whether people get all facts in place of a few lines.
+    pub(crate) verbose: bool,
+}
+
+/// What a command found, as the program's exit code.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Answer {
+    /// Done; exit code 0.
+    Yes,
+    /// Done, and the answer is no, such as for a point outside every cell; exit code 1.
+    No,
+    /// A job is not complete: some of its shards are to be done; exit code 3.
+    Incomplete,
+}
+
+/// A command that came to its end: its answer, and what is to be printed.
+pub(crate) struct Done {
+    answer: Answer,
+    print: Box<dyn FnOnce() -> Result<()>>,
+}
+
+impl Done {
+    /// With a result, which is printed as JSON if `json`, otherwise as it is displayed; the answer is yes.
+    pub(crate) fn new(json: bool, result: impl Serialize + fmt::Display + 'static) -> Self {
+        Self { answer: Answer::Yes, print: Box::new(move || output::print(json, &result, &result)) }
+    }
+
+    /// The same where people and programs get different forms of it.
+    pub(crate) fn in_two_forms(json: bool, fields: impl Serialize + 'static, text: String) -> Self {
+        Self { answer: Answer::Yes, print: Box::new(move || output::print(json, &fields, &text)) }
+    }
+
+    /// With nothing to print.
+    pub(crate) fn silently() -> Self {
+        Self { answer: Answer::Yes, print: Box::new(|| Ok(())) }
+    }
+
+    /// The same with another answer.
+    #[must_use]
+    pub(crate) fn answering(self, answer: Answer) -> Self {
+        Self { answer, ..self }
+    }
+
+    /// Answers yes or no.
+    #[must_use]
+    pub(crate) fn answering_whether(self, is_so: bool) -> Self {
+        self.answering(if is_so { Answer::Yes } else { Answer::No })
+    }
+
+    /// Prints, and returns the answer.
+    pub(crate) fn print(self) -> Result<Answer> {
+        (self.print)()?;
+        Ok(self.answer)
+    }
+}
