@@ -33,6 +33,8 @@ pub(crate) struct Options<'py> {
     boxes: Option<PyReadonlyArray2<'py, f64>>,
     view_region: Option<[f64; 6]>,
     gap: Option<f64>,
+    /// Whether coordinates that Python gives are as precise as single precision is; files say themselves.
+    is_single: bool,
     detail_below: Option<f64>,
     keep_solid: bool,
     max_cells: Option<u32>,
@@ -89,7 +91,11 @@ impl Options<'_> {
             method: self.method.as_deref().map(|name| name.parse().map_err(value_error)).transpose()?,
             cells,
             view_region: self.view_region.map(|b| aabb(b, "view_region")).transpose()?,
-            gap: self.gap.map_or(Gap::OfFile, Gap::Width),
+            gap: match self.gap {
+                Some(width) => Gap::Width(width),
+                None if self.is_single => Gap::OfSingle,
+                None => Gap::OfFile,
+            },
             detail_below: self.detail_below,
             keep_solid: self.keep_solid,
             max_cells: self.max_cells,

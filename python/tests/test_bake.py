@@ -93,6 +93,19 @@ def test_cells_may_be_chosen():
     assert len(region.cells_at(EYE)) and not len(region.cells_at((15, 2, 2)))
 
 
+def test_meshes_in_single_precision_are_as_precise_as_that():
+    turn = np.array([[0.8, 0.0, -0.6], [0.0, 1.0, 0.0], [0.6, 0.0, 0.8]])
+    # Halls that stand on their z axis, turned around y.
+    exact = {name: (corners @ turn.T, triangles) for name, (corners, triangles) in HALLS.items()}
+    single = {name: (corners.astype(np.float32), triangles) for name, (corners, triangles) in exact.items()}
+    doubles = {name: (corners.astype(np.float64), triangles) for name, (corners, triangles) in single.items()}
+    table = sl.bake(single, progress=False)
+    assert table.frame is not None and sl.bake(exact, progress=False).frame is None
+    # Whatever the array's type is, and unless the caller knows better.
+    assert sl.bake(doubles, progress=False).to_bytes() == table.to_bytes()
+    assert sl.bake(single, gap=0.0, progress=False).frame is None
+
+
 def test_rays_explain_cells_without_portals(tmp_path):
     lines, n = [], 1
     for name, (corners, triangles) in HALLS.items():

@@ -200,6 +200,9 @@ impl BakeRequest {
         if !matches!(input, BakeInput::Plan(_)) {
             refuse(&[("subdivide", self.subdivide.is_some())], "plans", found)?;
         }
+        if self.subdivide == Some(Subdivide::Triangulation) {
+            refuse(&[("tau", self.tau.is_some())], "k-d trees", "a triangulation")?;
+        }
         if matches!(input, BakeInput::Portals(_) | BakeInput::Map(..)) {
             refuse(&[("tau", self.tau.is_some())], "plans and scenes in space", found)?;
         } else {
@@ -213,11 +216,18 @@ impl BakeRequest {
         }
         let are_given = matches!(self.cells, Some(CellsFrom::Boxes(_)));
         refuse(&[("view_region", self.view_region.is_some() && are_given)], "cells that are cut", "given boxes")?;
+        let are_boxes = are_given || matches!(self.cells, Some(CellsFrom::Grid(_)));
+        let found = if are_given { "given boxes" } else { "a grid" };
+        refuse(&[("keep_solid", self.keep_solid && are_boxes)], "cells that are cut along walls", found)?;
         let method =
             self.method.unwrap_or(if self.is_for_proofs_alone() { SceneMethod::Sightlines } else { SceneMethod::Auto });
         if !method.has_buffers() {
             let found = if method == SceneMethod::Auto { "the method chosen by the scene" } else { method.name() };
             refuse(&self.buffers.named(), "the methods multifocal and both", found)?;
+        }
+        if !method.by_sightlines() && self.cells.as_ref().is_some_and(|cells| !cells.have_portals()) {
+            let named = [("tau", self.tau.is_some()), ("detail_below", self.detail_below.is_some())];
+            refuse(&named, "the cells of a k-d tree and for sightlines", method.name())?;
         }
         if method == SceneMethod::Sightlines {
             refuse(&by, "methods that look from whole cells", method.name())?;

@@ -66,7 +66,7 @@ commands! {
     Verify(verify::VerifyArgs) => verify::run,
     /// Write what is seen from points of a floor plan: polygons, measures, a picture
     Isovist(isovist::IsovistArgs) => isovist::run,
-    /// List the cells and objects visible from a point, or in a view from there
+    /// List the cells and objects that may be visible from anywhere in the cell of a point; with a method or a view, from the point alone
     Query(query::QueryArgs) => query::run,
     /// Measure the eye-to-cell methods on a walk: what each leaves to draw, and its time
     Walk(walk::WalkArgs) => walk::run,

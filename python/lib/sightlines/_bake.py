@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -48,7 +48,7 @@ def bake(
     :param view_region: a box (2, 3) in which viewers are; rooms that cannot be reached from it are no cells. None: the box around the view
         volumes of the file, if it states any, else everywhere
     :param gap: how precise coordinates are, in scene units: openings that are narrower may count as closed. None: as precise as
-        the file's format; meshes are taken exactly
+        the file's format; meshes whose coordinates single precision holds are as precise as that, others are taken exactly
     :param detail_below: objects smaller than this in every direction hide nothing; None for what suits the scene
     :param keep_solid: whether the insides of solid things are cells too
     :param see_through: names of meshes that are seen and hide nothing; only for trimesh and meshes by name
@@ -71,7 +71,8 @@ def bake(
         elif isinstance(source, (bytes, bytearray, memoryview)):
             made = _native.bake_bytes(bytes(source), name, map, options, report)
         else:
-            made = _native.bake_meshes(_meshes(source, frozenset(see_through)), options, report)
+            meshes, is_single = _meshes(source, frozenset(see_through))
+            made = _native.bake_meshes(meshes, {**options, "is_single": is_single}, report)
     return Table._of(*made)
 
 
@@ -119,6 +120,7 @@ def _options(
         "boxes": boxes,
         "view_region": region,
         "gap": gap,
+        "is_single": False,
         "detail_below": detail_below,
         "keep_solid": bool(keep_solid),
         "max_cells": count(max_cells, "max_cells"),
@@ -127,7 +129,8 @@ def _options(
     }
 
 
-def _meshes(source: Any, see_through: frozenset[str]) -> list[_Mesh]:
+def _meshes(source: Any, see_through: frozenset[str]) -> tuple[list[_Mesh], bool]:
+    """The meshes, and whether their coordinates are as precise as single precision is."""
     if isinstance(source, Mapping):
         found = [_mesh(str(name), *_pair(name, mesh)) for name, mesh in source.items()]
     elif hasattr(source, "graph") and hasattr(source, "geometry"):
@@ -140,7 +143,24 @@ def _meshes(source: Any, see_through: frozenset[str]) -> list[_Mesh]:
     unknown = see_through - {name for name, _, _ in found}
     if unknown:
         raise ValueError(f"see_through: there is no mesh named {sorted(unknown)[0]!r}")
-    return [(name, corners, triangles, name in see_through) for name, corners, triangles in found]
+    is_single = all(_is_single(corners) for corners in _corners(source))
+    return [(name, corners, triangles, name in see_through) for name, corners, triangles in found], is_single
+
+
+def _corners(source: Any) -> Iterator[Any]:
+    """The corners as they were given, before nodes of a scene place them."""
+    if isinstance(source, Mapping):
+        yield from (_pair(name, mesh)[0] for name, mesh in source.items())
+    elif hasattr(source, "geometry"):
+        yield from (geometry.vertices for geometry in source.geometry.values() if hasattr(geometry, "vertices"))
+    else:
+        yield source.vertices
+
+
+def _is_single(corners: Any) -> bool:
+    values = np.asarray(corners, dtype=np.float64)
+    with np.errstate(over="ignore"):
+        return bool(np.array_equal(values.astype(np.float32), values))
 
 
 def _pair(name: Any, mesh: Any) -> tuple[Any, Any]:

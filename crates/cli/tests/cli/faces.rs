@@ -222,7 +222,7 @@ fn what_means_nothing_is_refused_by_name() {
     let folder = inputs();
     let refused = |name: &str, args: &[&str]| folder.refused(&[&["build", name, "-o", "out.pvs"], args].concat());
     folder.write("cells.json", r#"{"cells":[{"id":"a","min":[1,1,1],"max":[2,2,2]}]}"#);
-    let cases: [(&str, &[&str], &str); 10] = [
+    let cases: [(&str, &[&str], &str); 14] = [
         (
             "slanted.glb",
             &["--planes", "3"],
@@ -252,6 +252,26 @@ fn what_means_nothing_is_refused_by_name() {
             "slanted.glb",
             &["--cells", "cells.json", "--view-region", "0,0,0,1,1,1"],
             "--view-region is for cells that are cut, and this is given boxes",
+        ),
+        (
+            "slanted.glb",
+            &["--cells", "cells.json", "--keep-solid"],
+            "--keep-solid is for cells that are cut along walls, and this is given boxes",
+        ),
+        (
+            "slanted.glb",
+            &["--grid", "2,2,1", "--keep-solid"],
+            "--keep-solid is for cells that are cut along walls, and this is a grid",
+        ),
+        (
+            "slanted.glb",
+            &["--n-cells", "8", "--method", "line-space", "--detail-below", "1"],
+            "--detail-below is for the cells of a k-d tree and for sightlines, and this is line-space",
+        ),
+        (
+            "plan.geojson",
+            &["--subdivide", "triangulation", "--tau", "0.5"],
+            "--tau is for k-d trees, and this is a triangulation",
         ),
         ("plan.geojson", &["--sheets", "1"], "--sheets is for scenes in space, and this is a plan"),
         ("plan.geojson", &["--split", "1"], "--split is for scenes in space, and this is a plan"),

@@ -99,6 +99,7 @@ fn pictures_are_of_one_measure() {
 fn what_cannot_be_analysed_is_refused() {
     let folder = with_rooms();
     folder.write("open.geojson", r#"{"type": "LineString", "coordinates": [[0, 0], [4, 1]]}"#);
+    folder.write("hall.obj", "o hall\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     folder.write("bad.csv", "x,y\n1,2\n1,none\n");
     folder.write("none.csv", "x,y\n");
     folder.write("nan.csv", "1,NaN\n");
@@ -130,6 +131,10 @@ fn what_cannot_be_analysed_is_refused() {
         (&["rooms.geojson", "--points", "bad.csv", "-o", "o.svg"], "o.svg: a picture of points needs --spacing"),
         (&["open.geojson", "--spacing", "1", "-o", "o.csv"], "open.geojson: no pixel is enclosed"),
         (&["bad.csv", "--spacing", "1", "-o", "o.csv"], "bad.csv: neither a plan nor a WAD"),
+        (
+            &["hall.obj", "--spacing", "1", "-o", "o.csv"],
+            "hall.obj: is a scene in space, not a plan: cut one first: sightlines plan hall.obj --height H -o hall.geojson",
+        ),
     ] {
         let found = refused(args);
         assert!(found.starts_with(error), "{args:?}: {found}");

@@ -16,7 +16,7 @@ use crate::surfaces::SurfaceArgs;
 use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::formats::InputKind;
-use sightlines::pvs::{ObjectId, Table};
+use sightlines::pvs::{CellRecord, ObjectId, Table};
 use sightlines::report::Summary;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -76,6 +76,8 @@ pub(crate) struct TableInfo {
     kind: &'static str,
     #[serde(flatten)]
     summary: Summary,
+    /// The box around its cells, its lower corner and its upper one, along the axes of the table; null for a table of a portal file.
+    extent: Option<[[f64; 3]; 2]>,
     /// Its stab trees, if it has any.
     #[serde(skip_serializing_if = "Option::is_none")]
     stab: Option<StabFacts>,
@@ -125,6 +127,16 @@ fn write_sources(f: &mut fmt::Formatter<'_>, n: usize) -> fmt::Result {
     writeln!(f, "found again    {}, by node and primitive", count(n as u64, "object"))
 }
 
+/// The box around all cells.
+fn extent_of(table: &Table) -> Option<[[f64; 3]; 2]> {
+    let cells = Some(table.cells()).filter(|cells| table.has_places() && !cells.is_empty())?;
+    let around = |end: fn(f64, f64) -> f64, corner: fn(&CellRecord) -> [f64; 3]| {
+        let corners = cells.iter().map(corner);
+        corners.reduce(|a, b| std::array::from_fn(|k| end(a[k], b[k]))).unwrap_or_default()
+    };
+    Some([around(f64::min, |cell| cell.min), around(f64::max, |cell| cell.max)])
+}
+
 fn as_map<S: serde::Serializer>(pairs: &[(String, String)], out: S) -> Result<S::Ok, S::Error> {
     out.collect_map(pairs.iter().map(|(key, value)| (key, value)))
 }
@@ -149,6 +161,7 @@ impl TableInfo {
             file,
             kind: "table",
             summary,
+            extent: extent_of(table),
             stab,
             n_objects_with_source: ids().filter(|&id| table.source_of(id).is_some()).count(),
             doors: table.doors().iter().map(DoorFacts::from).collect(),
@@ -165,6 +178,10 @@ impl fmt::Display for TableInfo {
         let dimension = self.summary.dimension;
         writeln!(f, "{}: visibility table in {dimension}D, {}", self.file, bytes(self.summary.n_bytes as u64))?;
         write!(f, "{}", Facts(&self.summary))?;
+        if let Some([low, high]) = self.extent {
+            let [low, high] = [low, high].map(|corner| corner[..usize::from(dimension)].to_vec());
+            writeln!(f, "extent         {low:?} to {high:?}")?;
+        }
         self.stab.iter().try_for_each(|stab| write!(f, "{stab}"))?;
         write_sources(f, self.n_objects_with_source)?;
         write_doors(f, &self.doors)?;

@@ -298,7 +298,15 @@ impl VgaArgs {
 fn plan_of(args: &VgaArgs) -> Result<Plan> {
     let (path, map) = (&args.plan, args.map.as_deref());
     let options = args.plans.options(path)?;
-    if matches!(input::kind_of(path)?, Some(InputKind::Plan | InputKind::Wad)) {
+    let kind = input::kind_of(path)?;
+    if kind == Some(InputKind::Scene) {
+        let (scene, plan) = (path.display(), path.with_extension("geojson"));
+        bail!(
+            "{scene}: is a scene in space, not a plan: cut one first: sightlines plan {scene} --height H -o {}",
+            plan.display()
+        );
+    }
+    if matches!(kind, Some(InputKind::Plan | InputKind::Wad)) {
         let read = input::read(path, map, &SceneReadOptions::default(), &options)?;
         if let Bakeable::Plan { plan, .. } = input::bakeable(path, read, map, None)? {
             return Ok(plan);
