@@ -21,7 +21,7 @@ pub struct SceneFacts {
     pub n_triangles: usize,
     /// Objects.
     pub n_objects: usize,
-    /// The share of triangles perpendicular to an axis, which are walls to sightlines.
+    /// The share of triangles perpendicular to an axis that hide from both sides, which are walls to sightlines.
     pub axial: f64,
     /// The share of flat pieces that stand alone, such as screens and signs: surfaces that are connected to nothing in another plane.
     /// Measured only where it matters, as it takes longer.
@@ -44,13 +44,16 @@ impl SceneFacts {
         let total: f64 = all.iter().map(area).sum();
         let share = |part: f64| if total > 0.0 { (part / total).min(1.0) } else { 0.0 };
         let longest = |b: &Aabb<3>| (0..3).map(|k| b.max[k] - b.min[k]).fold(0.0, f64::max);
-        let mut sizes: Vec<f64> = scene.occluders().map(|(_, o)| longest(&o.bounds())).collect();
+        let mut sizes: Vec<f64> = {
+            let fronts = scene.front_occluders().iter().map(|&object| &scene.objects()[object as usize]);
+            scene.occluders().map(|(_, o)| o).chain(fronts).map(|o| longest(&o.bounds())).collect()
+        };
         sizes.sort_by(f64::total_cmp);
         let (whole, middle) = (longest(&scene.bounds()), sizes.get(sizes.len() / 2).copied().unwrap_or(0.0));
         Self {
             n_triangles: all.len(),
             n_objects: sizes.len(),
-            axial: share(all.iter().filter(|t| flat(t)).map(area).fold(0.0, |sum, area| sum + area)),
+            axial: share(scene.occluding_triangles().filter(flat).map(|t| area(&t)).fold(0.0, |sum, area| sum + area)),
             loose: None,
             openness: None,
             object_size: if whole > 0.0 { middle / whole } else { 0.0 },
@@ -73,8 +76,9 @@ pub fn own_cells(scene: &Scene) -> CellsFrom {
     SceneFacts::quick(scene).own_cells()
 }
 
+/// All that hide, if only from one side.
 fn triangles_of(scene: &Scene) -> Vec<[Point3; 3]> {
-    scene.occluding_triangles().collect()
+    scene.occluding_triangles().chain(scene.front_occluding_triangles()).collect()
 }
 
 fn area(t: &[Point3; 3]) -> f64 {

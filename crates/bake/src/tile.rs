@@ -188,6 +188,7 @@ fn decided(
 fn merged(tile: &Tile<'_>) -> Scene {
     let mut objects: Vec<SceneObject> = tile.scene.objects().to_vec();
     let (mut see_through, mut single_sided) = (tile.scene.see_through().to_vec(), tile.scene.single_sided().to_vec());
+    let mut front_occluders = tile.scene.front_occluders().to_vec();
     let mut moving: Vec<MovingObject> = tile.scene.moving().to_vec();
     for near in tile.near {
         let first = objects.len() as u32;
@@ -195,10 +196,12 @@ fn merged(tile: &Tile<'_>) -> Scene {
         objects.extend(nameless);
         see_through.extend(near.scene.see_through().iter().map(|object| first + object));
         single_sided.extend(near.scene.single_sided().iter().map(|object| first + object));
+        front_occluders.extend(near.scene.front_occluders().iter().map(|object| first + object));
         moving.extend(near.scene.moving().iter().map(|m| MovingObject { object: first + m.object, within: m.within }));
     }
     let merge = || -> Result<Scene, SceneError> {
-        Scene::new(objects)?.with_see_through(see_through)?.with_moving(moving)?.with_single_sided(single_sided)
+        let scene = Scene::new(objects)?.with_see_through(see_through)?.with_moving(moving)?;
+        scene.with_single_sided(single_sided)?.with_front_occluders(front_occluders)
     };
     merge().expect("what is right in its scene is right in one of several")
 }

@@ -37,14 +37,19 @@ impl Plan {
 
 impl Scene {
     /// The digests of the scene. What hides: the triangles of the objects that are not see-through, whichever way round and however divided into
-    /// objects. What is seen: of each object its triangles, with their fronts, where it may move to, and whether it is see-through,
+    /// objects, and those that hide from the front, with their fronts. What is seen: of each object its triangles, with their fronts, where it may move to, and whether it is see-through,
     /// single-sided, a mirror or a door. Not the names. O(size).
     pub fn digest(&self) -> GeometryDigest {
         let (mut hiding, mut objects) = (0u128, Bytes::default());
         for (id, object) in (0u32..).zip(self.objects()) {
             let mut seen = 0u128;
             for corners in object.corners() {
-                seen = seen.wrapping_add(triangle(&turned(corners)));
+                let round = turned(corners);
+                seen = seen.wrapping_add(triangle(&round));
+                // As those that hide from both sides, but with their fronts, and told apart from them.
+                if self.hides_from_front(id) {
+                    hiding = hiding.wrapping_add(!triangle(&round));
+                }
                 if self.is_opaque(id) {
                     let mut corners = corners;
                     corners.sort_by(|p, q| p.partial_cmp(q).expect("coordinates are numbers"));

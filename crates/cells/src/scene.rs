@@ -35,7 +35,8 @@ impl SceneObject {
 /// Every object is seen. An object hides what is behind it, from both sides, unless it is [see-through](Self::see_through):
 /// glass, leaves, and everything that [moves](Self::moving). Whoever looks for occluders takes [`Self::occluders`] or
 /// [`Self::occluding_triangles`]; whoever asks where an object can be seen takes [`Self::extent`]. Objects may be
-/// [single-sided](Self::is_single_sided): nobody sees the backs of their triangles.
+/// [single-sided](Self::is_single_sided): nobody sees the backs of their triangles. Some of those that are see-through
+/// [hide from the front](Self::front_occluders): from eyes in front of a triangle, not from eyes behind it.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Scene {
     objects: Vec<SceneObject>,
@@ -46,6 +47,8 @@ pub struct Scene {
     moving: Vec<MovingObject>,
     /// Ascending.
     single_sided: Vec<u32>,
+    /// Ascending; all of them are see-through and stand still.
+    front_occluders: Vec<u32>,
     /// Ascending.
     doors: Vec<u32>,
     /// One for each object, or none at all.
@@ -214,7 +217,8 @@ impl Scene {
     pub fn with_see_through(mut self, mut see_through: Vec<u32>) -> Result<Self, SceneError> {
         see_through.extend(self.moving.iter().map(|moving| moving.object));
         self.see_through = self.ascending(see_through, |object| SceneError::SeeThrough { object })?;
-        Ok(self)
+        let front_occluders = std::mem::take(&mut self.front_occluders);
+        self.with_front_occluders(front_occluders)
     }
 
     /// The same scene, in which these objects move, and no others. They hide nothing. Boxes are widened to what the objects
@@ -251,6 +255,37 @@ impl Scene {
     pub fn with_single_sided(mut self, single_sided: Vec<u32>) -> Result<Self, SceneError> {
         self.single_sided = self.ascending(single_sided, |object| SceneError::SingleSided { object })?;
         Ok(self)
+    }
+
+    /// The same scene, in which the triangles of these objects hide what is behind them from eyes in front of them, and no others do. The front
+    /// is where the corners go around counterclockwise. They are [see-through](Self::see_through) for who knows of two sides only; what
+    /// hides from both sides, or moves, is left out.
+    ///
+    /// # Errors
+    /// [`SceneError::SingleSided`] for an object that does not exist.
+    pub fn with_front_occluders(mut self, front_occluders: Vec<u32>) -> Result<Self, SceneError> {
+        let list = self.ascending(front_occluders, |object| SceneError::SingleSided { object })?;
+        self.front_occluders = list.into_iter().filter(|&object| self.may_hide_from_front(object)).collect();
+        Ok(self)
+    }
+
+    fn may_hide_from_front(&self, object: u32) -> bool {
+        !self.is_opaque(object) && self.moving.binary_search_by_key(&object, |moving| moving.object).is_err()
+    }
+
+    /// The objects that hide from eyes in front of their triangles only, ascending.
+    pub fn front_occluders(&self) -> &[u32] {
+        &self.front_occluders
+    }
+
+    /// Whether an object hides from eyes in front of its triangles only.
+    pub fn hides_from_front(&self, object: u32) -> bool {
+        self.front_occluders.binary_search(&object).is_ok()
+    }
+
+    /// The corners of all triangles that hide from the front only, object by object.
+    pub fn front_occluding_triangles(&self) -> impl Iterator<Item = [Point3; 3]> + '_ {
+        self.front_occluders.iter().flat_map(|&object| self.objects[object as usize].corners())
     }
 
     /// The same scene, in which these objects are doors that stand shut, and no others. That alone changes nothing of what they hide: they
@@ -423,6 +458,14 @@ mod tests {
         assert_eq!(scene.clone().with_sources(vec![source]).unwrap().sources(), [source]);
         let door = scene.clone().with_doors(vec![0, 0]).unwrap();
         assert!(door.doors() == [0] && door.is_opaque(0) && scene.doors().is_empty());
+        // What hides from both sides, or moves, does not hide from the front alone.
+        let fronts = |scene: &Scene| scene.clone().with_front_occluders(vec![0]).unwrap();
+        let seen = fronts(&scene.clone().with_see_through(vec![0]).unwrap());
+        assert!(seen.hides_from_front(0) && seen.front_occluding_triangles().count() == 1);
+        assert!(seen.occluding_triangles().count() == 0 && fronts(&scene).front_occluders().is_empty());
+        let moving = |scene: Scene| scene.with_moving(vec![MovingObject { object: 0, within: None }]).unwrap();
+        assert!(!moving(seen.clone()).hides_from_front(0) && !fronts(&moving(scene.clone())).hides_from_front(0));
+        assert!(!seen.with_see_through(Vec::new()).unwrap().hides_from_front(0));
         let single = scene.clone().with_single_sided(vec![0]).unwrap();
         assert!(single.is_single_sided(0) && !scene.is_single_sided(0));
         let moving = single.with_moving(vec![MovingObject { object: 0, within: None }]).unwrap();

@@ -30,9 +30,10 @@ pub(crate) struct SurfaceArgs {
     /// move them; by the same names. Does not hold for skins and morph targets
     #[arg(long, help_heading = "Input", value_name = "PATTERN")]
     still: Vec<NamePattern>,
-    /// glTF: of walls with one side (materials that are not doubleSided) viewers can see the back, where engines draw
-    /// nothing. Such walls then hide nothing, unless they are part of a closed object. Without this option they hide from
-    /// both sides, which is right if no viewer ever gets behind one
+    /// glTF: viewers can get behind walls with one side (materials that are not doubleSided), where engines draw nothing
+    /// of them. Such walls then hide from their front only, and only by the method line-space, which auto takes;
+    /// sightlines and multifocal look past them. Closed objects hide from both sides. Without this option all such walls
+    /// do, which is right if no viewer ever gets behind one
     #[arg(long, help_heading = "Input")]
     single_sided: bool,
     /// glTF: both sides of all faces are drawn. Without it faces that are not doubleSided are not seen from behind, as in

@@ -91,6 +91,7 @@ impl Moved {
         let keeps =
             |object: &&u32| keeps_fronts(frame, &scene.objects()[**object as usize], &objects[**object as usize]);
         let single_sided = scene.single_sided().iter().filter(keeps).copied().collect();
+        let front_occluders = scene.front_occluders().iter().filter(keeps).copied().collect();
         let n_corners = objects.iter().map(|o| o.vertices.len()).sum();
         let moving = |moving: &MovingObject| {
             let within = moving.within.map(|b| if b.is_empty() { b } else { around(frame, &b) });
@@ -101,6 +102,7 @@ impl Moved {
             .and_then(|moved| moved.with_moving(scene.moving().iter().map(moving).collect()))
             .and_then(|moved| moved.with_see_through(scene.see_through().to_vec()))
             .and_then(|moved| moved.with_single_sided(single_sided))
+            .and_then(|moved| moved.with_front_occluders(front_occluders))
             .and_then(|moved| moved.with_doors(scene.doors().to_vec()))
             .and_then(|moved| moved.with_sources(scene.sources().to_vec()));
         Ok(Self { scene: moved.map_err(MoveError::Scene)?, snaps, n_corners, n_snapped, most })

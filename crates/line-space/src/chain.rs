@@ -145,6 +145,9 @@ pub(crate) struct ChainFinder {
     odd: Marks<bool>,
     /// For triangles of the present chain.
     part_of: Marks<()>,
+    /// Where lines begin, and for triangles whether they block all lines from there.
+    volume: Aabb<3>,
+    blocks: Marks<bool>,
     chain: Vec<u32>,
     open: Vec<(u32, u32)>,
     /// How many triangles a chain has at most.
@@ -159,10 +162,31 @@ impl ChainFinder {
             mixed: Marks::new(mesh.edges().len()),
             odd: Marks::new(mesh.edges().len()),
             part_of: Marks::new(mesh.triangles().len()),
+            volume: Aabb::EMPTY,
+            blocks: Marks::new(if surface.has_fronts() { mesh.triangles().len() } else { 0 }),
             chain: Vec::new(),
             open: Vec::new(),
             longest,
         }
+    }
+
+    /// Has to come before the chains of lines from another volume.
+    pub(crate) fn look_from(&mut self, volume: &Aabb<3>) {
+        self.volume = *volume;
+        self.blocks.forget();
+    }
+
+    /// Whether a triangle blocks all lines from the volume.
+    pub(crate) fn blocks(&mut self, surface: &Surface, triangle: u32) -> bool {
+        if !surface.is_front_only(triangle) {
+            return true;
+        }
+        let known = self.blocks.get(triangle);
+        known.unwrap_or_else(|| {
+            let blocks = surface.is_in_front(triangle, &self.volume);
+            self.blocks.set(triangle, blocks);
+            blocks
+        })
     }
 
     /// Has to come before the chains of another cell.
@@ -301,7 +325,7 @@ impl ChainFinder {
     /// The triangle that continues the chain beyond an edge, and whether the chain folds back there: the largest one on the other side of
     /// the edge as seen along the middle line, else one on the same side.
     fn next_triangle(
-        &self,
+        &mut self,
         surface: &Surface,
         shaft: &Shaft,
         target: &Target,
@@ -315,7 +339,7 @@ impl ChainFinder {
         let here = side(triangle);
         let mut best: Option<(bool, f64, u32)> = None;
         for &other in mesh.triangles_at(edge) {
-            if other == triangle || self.has(other) {
+            if other == triangle || self.has(other) || !self.blocks(surface, other) {
                 continue;
             }
             let (corners, bounds) = (surface.corners(other), surface.bounds(other));

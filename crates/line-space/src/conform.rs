@@ -6,7 +6,7 @@
 
 use crate::orient::orient;
 use sightlines_geometry::vector::normal;
-use sightlines_geometry::{Aabb, BoxTree, Point3};
+use sightlines_geometry::{Aabb, BoxTree, Point3, orient3d};
 use sightlines_multifocal::mesh::Mesh;
 use spade::handles::FixedVertexHandle;
 use spade::{ConstrainedDelaunayTriangulation, Intersection, LineIntersectionIterator, Point2, Triangulation};
@@ -15,7 +15,10 @@ use std::collections::{BTreeMap, BTreeSet};
 /// The same surface, in which open edges that lie on a flat region are edges of it, except where they cross each other or its
 /// border; none if nothing is to be cut. Errs towards less surface: what is covered an even number of times by one region may be left
 /// out.
-pub(crate) fn conform(mesh: &Mesh) -> Option<Vec<[Point3; 3]>> {
+///
+/// * `front_only`: for each triangle whether its front matters; empty if none does. It is told of the result, whose triangles keep their fronts
+pub(crate) fn conform(mesh: &Mesh, front_only: &[bool]) -> Option<Vec<([Point3; 3], bool)>> {
+    let is_front_only = |t: u32| front_only.get(t as usize) == Some(&true);
     let standing = edges_on_faces(mesh);
     let n = mesh.triangles().len();
     let mut all = Vec::new();
@@ -24,7 +27,7 @@ pub(crate) fn conform(mesh: &Mesh) -> Option<Vec<[Point3; 3]>> {
         if done[seed as usize] {
             continue;
         }
-        let region = region(mesh, seed, &done);
+        let region = region(mesh, seed, &done, &is_front_only);
         let own: BTreeSet<u32> = region.iter().flat_map(|&t| mesh.outline_edges(t)).copied().collect();
         let on_it = region.iter().filter_map(|t| standing.get(t)).flatten().copied();
         let on_it: BTreeSet<u32> = on_it.filter(|edge| !own.contains(edge)).collect();
@@ -33,7 +36,10 @@ pub(crate) fn conform(mesh: &Mesh) -> Option<Vec<[Point3; 3]>> {
         }
         if let Some(triangles) = cut(mesh, &region, &own, &on_it) {
             region.iter().for_each(|&t| done[t as usize] = true);
-            all.extend(triangles);
+            let seed_corners = mesh.corners(seed);
+            let turned =
+                |t: [Point3; 3]| if has_front_of(&t, &seed_corners) { t } else { [t[0], t[2], t[1]] };
+            all.extend(triangles.into_iter().map(|t| (turned(t), is_front_only(seed))));
         }
     }
     if !done.contains(&true) {
@@ -41,7 +47,7 @@ pub(crate) fn conform(mesh: &Mesh) -> Option<Vec<[Point3; 3]>> {
     }
     let rest = || (0..n as u32).filter(|&t| !done[t as usize]);
     all.reserve_exact(rest().count());
-    all.extend(rest().map(|t| mesh.corners(t)));
+    all.extend(rest().map(|t| (mesh.corners(t), is_front_only(t))));
     Some(all)
 }
 
@@ -78,9 +84,13 @@ fn edges_on_faces(mesh: &Mesh) -> BTreeMap<u32, Vec<u32>> {
     found
 }
 
-/// The triangles in exactly the plane of `seed` that hang together with it by edges of two triangles.
-fn region(mesh: &Mesh, seed: u32, done: &[bool]) -> Vec<u32> {
+/// The triangles in exactly the plane of `seed` that hang together with it by edges of two triangles, and block as it does.
+fn region(mesh: &Mesh, seed: u32, done: &[bool], is_front_only: &dyn Fn(u32) -> bool) -> Vec<u32> {
     let [a, b, c] = mesh.corners(seed);
+    let blocks_alike = |other: u32| {
+        is_front_only(other) == is_front_only(seed)
+            && (!is_front_only(seed) || has_front_of(&mesh.corners(other), &[a, b, c]))
+    };
     let (mut region, mut known) = (vec![seed], BTreeSet::from([seed]));
     let mut n = 0;
     while let Some(&t) = region.get(n) {
@@ -89,13 +99,25 @@ fn region(mesh: &Mesh, seed: u32, done: &[bool]) -> Vec<u32> {
             let &[p, q] = mesh.triangles_at(edge) else { continue };
             let other = if p == t { q } else { p };
             let is_flat = || mesh.corners(other).iter().all(|&p| orient(a, b, c, p) == 0.0);
-            if !done[other as usize] && !known.contains(&other) && is_flat() {
+            if !done[other as usize] && !known.contains(&other) && is_flat() && blocks_alike(other) {
                 known.insert(other);
                 region.push(other);
             }
         }
     }
     region
+}
+
+/// Whether two triangles in one plane, with an area each, have their fronts on the same side of it. Exact.
+fn has_front_of([p, q, r]: &[Point3; 3], &[a, b, c]: &[Point3; 3]) -> bool {
+    // A point beside a corner along some axis is off the plane.
+    let beside = |k: usize| {
+        let mut e = a;
+        e[k] += 1.0_f64.max(e[k].abs());
+        e
+    };
+    let off = (0..3).map(beside).find(|&e| orient3d(a, b, c, e) != 0.0);
+    off.is_some_and(|e| (orient3d(a, b, c, e) > 0.0) == (orient3d(*p, *q, *r, e) > 0.0))
 }
 
 /// Triangulates a region anew, with these edges in it; none if numbers or borders are beyond what can be triangulated.
@@ -180,7 +202,8 @@ mod tests {
 
     /// The surface, cut or not.
     fn conformed(mesh: &Mesh) -> Vec<[Point3; 3]> {
-        conform(mesh).unwrap_or_else(|| (0..mesh.triangles().len() as u32).map(|t| mesh.corners(t)).collect())
+        let all = || (0..mesh.triangles().len() as u32).map(|t| mesh.corners(t)).collect();
+        conform(mesh, &[]).map_or_else(all, |cut| cut.into_iter().map(|(t, _)| t).collect())
     }
     use sightlines_geometry::vector::length;
 

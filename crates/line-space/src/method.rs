@@ -44,6 +44,11 @@ impl LineSpace {
         Self::shared(Arc::new(Surface::new(triangles)), Effort::default())
     }
 
+    /// The same of triangles that hide from both sides, and of others that hide from their fronts only.
+    pub fn with_fronts(both_sides: &[[Point3; 3]], fronts: &[[Point3; 3]]) -> Self {
+        Self::shared(Arc::new(Surface::with_fronts(both_sides, fronts)), Effort::default())
+    }
+
     /// For a surface that others use as well. O(n).
     pub fn shared(surface: Arc<Surface>, effort: Effort) -> Self {
         let search = Search::new(&surface, effort.attempts as usize, effort.longest_chain as usize);
@@ -58,7 +63,7 @@ impl LineSpace {
     /// Decides whether a box can be seen from another one: about the lines from all points of `volume` to all points of
     /// `target`.
     pub fn see_box(&mut self, volume: &Aabb<3>, target: &Aabb<3>, budget: u32) -> Outcome {
-        self.search.forget();
+        self.search.look_from(volume);
         self.box_from(volume, target, budget, Patience::Full)
     }
 
@@ -73,7 +78,7 @@ impl LineSpace {
     /// Decides whether a triangle can be seen from a box: about the lines from all points of `volume` to all inner points of the
     /// triangle.
     pub fn see_triangle(&mut self, volume: &Aabb<3>, triangle: [Point3; 3], budget: u32) -> Outcome {
-        self.search.forget();
+        self.search.look_from(volume);
         self.triangle_from(volume, triangle, budget, Patience::Full)
     }
 
@@ -124,7 +129,7 @@ impl FromRegion for LineSpace {
 
     fn umbra(&mut self, volume: &Volume) -> Result<Box<dyn Umbra + '_>, BackendError> {
         let volume = *volume.bounds();
-        self.search.forget();
+        self.search.look_from(&volume);
         Ok(Box::new(LineUmbra { method: self, volume }))
     }
 }

@@ -7,7 +7,7 @@ use crate::side::{Part, Side};
 use crate::split::{promise, split};
 use crate::surface::{Hit, Surface};
 use crate::touch::Target;
-use sightlines_geometry::Random;
+use sightlines_geometry::{Aabb, Random};
 use std::collections::VecDeque;
 
 /// What was found about all lines of some cells.
@@ -68,6 +68,12 @@ impl Search {
         }
     }
 
+    /// Has to come before the lines from another volume; forgets as well.
+    pub(crate) fn look_from(&mut self, volume: &Aabb<3>) {
+        self.finder.look_from(volume);
+        self.forget();
+    }
+
     /// Forgets where chains that blocked lines began. Between two calls, the outcome of a search may depend on earlier ones.
     pub(crate) fn forget(&mut self) {
         self.successes.forget();
@@ -121,6 +127,8 @@ impl Search {
             let is_ready = side.is_none_or(|side| shaft.limit(side, &mut random));
             let gap = if is_ready {
                 surface.hits(shaft.line[0], shaft.line[1], &mut self.hits);
+                let finder = &mut self.finder;
+                self.hits.retain(|hit| finder.blocks(surface, hit.triangle));
                 let is_free = self.hits.iter().all(|hit| hit.at > 1.0 - AT_END);
                 // A line of a root with parts may be none of those in question.
                 if is_free && parts.is_empty() {

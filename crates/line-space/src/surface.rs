@@ -2,13 +2,16 @@
 
 use crate::conform::conform;
 use sightlines_geometry::vector::{add, length, normal, scale, sub};
-use sightlines_geometry::{Aabb, BoxTree, Point3, ray_box, ray_triangle};
+use sightlines_geometry::{Aabb, BoxTree, Point3, orient3d, ray_box, ray_triangle};
 use sightlines_multifocal::mesh::Mesh;
+use std::collections::HashSet;
 
 /// A mesh with what is looked up for every line. Can be shared by threads.
 #[derive(Debug)]
 pub struct Surface {
     mesh: Mesh,
+    /// For each triangle whether it blocks lines from its front only; empty if none does.
+    front_only: Vec<bool>,
     corners: Vec<[Point3; 3]>,
     boxes: Vec<Aabb<3>>,
     tree: BoxTree<3>,
@@ -35,10 +38,39 @@ impl Surface {
     }
 
     /// The same of triangles that are welded already.
-    pub fn of(mut mesh: Mesh) -> Self {
-        if let Some(cut) = conform(&mesh) {
+    pub fn of(mesh: Mesh) -> Self {
+        Self::build(mesh, Vec::new())
+    }
+
+    /// The same of triangles that block lines in both directions, and of others that block only those that pass them from their front, where
+    /// their corners go around counterclockwise, to their back.
+    pub fn with_fronts(both_sides: &[[Point3; 3]], fronts: &[[Point3; 3]]) -> Self {
+        if fronts.is_empty() {
+            return Self::new(both_sides);
+        }
+        // Of triangles with the same corners the first stays; two with opposite fronts block in both directions.
+        let mut triangles = both_sides.to_vec();
+        let opposite = with_both_fronts(fronts);
+        triangles.extend(opposite.iter().map(|&k| fronts[k]));
+        let n_both_sides = triangles.len() as u32;
+        triangles.extend(fronts);
+        let mesh = Mesh::weld(&triangles);
+        let n = mesh.triangles().len() as u32;
+        let front_only = (0..n).map(|t| mesh.source(t) >= n_both_sides).collect();
+        Self::build(mesh, front_only)
+    }
+
+    fn build(mut mesh: Mesh, mut front_only: Vec<bool>) -> Self {
+        if let Some(cut) = conform(&mesh, &front_only) {
             drop(mesh);
-            mesh = Mesh::weld(&cut);
+            let (triangles, are_front_only): (Vec<[Point3; 3]>, Vec<bool>) = cut.into_iter().unzip();
+            mesh = Mesh::weld(&triangles);
+            let n = mesh.triangles().len() as u32;
+            front_only = if front_only.is_empty() {
+                Vec::new()
+            } else {
+                (0..n).map(|t| are_front_only[mesh.source(t) as usize]).collect()
+            };
         }
         let corners: Vec<[Point3; 3]> = (0..mesh.triangles().len() as u32).map(|t| mesh.corners(t)).collect();
         let all = || corners.iter().copied();
@@ -47,12 +79,28 @@ impl Surface {
         let areas = all().map(|t| length(normal(t)) / 2.0).collect();
         let size = |k: usize| mesh.vertices().iter().map(|p| p[k].abs()).fold(0.0, f64::max);
         let reach = [0, 1, 2].map(size);
-        Self { mesh, corners, boxes, tree, areas, reach }
+        Self { mesh, front_only, corners, boxes, tree, areas, reach }
     }
 
     /// The mesh.
     pub fn mesh(&self) -> &Mesh {
         &self.mesh
+    }
+
+    /// Whether a triangle blocks lines from its front only.
+    pub(crate) fn is_front_only(&self, triangle: u32) -> bool {
+        self.front_only.get(triangle as usize) == Some(&true)
+    }
+
+    /// Whether any triangle does.
+    pub(crate) fn has_fronts(&self) -> bool {
+        !self.front_only.is_empty()
+    }
+
+    /// Whether no point of a box is behind a triangle. Exact.
+    pub(crate) fn is_in_front(&self, triangle: u32, volume: &Aabb<3>) -> bool {
+        let [a, b, c] = self.corners(triangle);
+        volume.corners().into_iter().all(|eye| orient3d(a, b, c, eye) >= 0.0)
     }
 
     /// The largest magnitudes of coordinates.
@@ -102,4 +150,21 @@ impl Surface {
             }
         });
     }
+}
+
+/// Of triangles that lie on another one with the opposite front, the first of each such pair, by index.
+fn with_both_fronts(triangles: &[[Point3; 3]]) -> Vec<usize> {
+    let bits = |p: Point3| p.map(|x| (x + 0.0).to_bits());
+    // From the least corner on, the direction tells the front.
+    let key = |t: &[Point3; 3]| {
+        let [p, q, r] = t.map(bits);
+        let turns = [[p, q, r], [q, r, p], [r, p, q]];
+        turns.into_iter().min().unwrap_or([p, q, r])
+    };
+    let known: HashSet<[[u64; 3]; 3]> = triangles.iter().map(key).collect();
+    let is_first = |t: &[Point3; 3]| {
+        let [p, q, r] = key(t);
+        q < r && known.contains(&[p, r, q])
+    };
+    (0..triangles.len()).filter(|&k| is_first(&triangles[k])).collect()
 }

@@ -19,6 +19,8 @@ pub struct RaySampler {
     first: Vec<usize>,
     tree: BoxTree<3>,
     is_single_sided: Vec<bool>,
+    /// For each object whether rays pass it from behind.
+    is_passed_from_behind: Vec<bool>,
 }
 
 impl RaySampler {
@@ -43,7 +45,8 @@ impl RaySampler {
         let boxes: Vec<Aabb<3>> = triangles.iter().map(|t| Aabb::around(*t)).collect();
         let tree = BoxTree::build(&boxes, 4);
         let is_single_sided = vec![false; first.len() - 1];
-        Self { triangles, object, first, tree, is_single_sided }
+        let is_passed_from_behind = is_single_sided.clone();
+        Self { triangles, object, first, tree, is_single_sided, is_passed_from_behind }
     }
 
     /// All triangles, object by object.
@@ -54,6 +57,12 @@ impl RaySampler {
     /// The same, with objects that are seen from the fronts of their triangles only; rays end at the backs, too.
     pub fn with_single_sided(mut self, is_single_sided: impl Fn(u32) -> bool) -> Self {
         (0..).zip(&mut self.is_single_sided).for_each(|(object, single)| *single = is_single_sided(object));
+        self
+    }
+
+    /// The same, with objects that hide from the fronts of their triangles only: rays pass the backs.
+    pub fn with_front_occluders(mut self, hides_from_front: impl Fn(u32) -> bool) -> Self {
+        (0..).zip(&mut self.is_passed_from_behind).for_each(|(object, passed)| *passed = hides_from_front(object));
         self
     }
 
@@ -109,8 +118,15 @@ impl RaySampler {
     fn mark(&self, origin: Point3, direction: Point3, seen: &mut [bool]) {
         let Some(triangle) = self.first_triangle(origin, direction) else { return };
         let object = self.object[triangle as usize] as usize;
-        let shows_back = || dot(normal(self.triangles[triangle as usize]), direction) >= 0.0;
-        seen[object] |= !(self.is_single_sided[object] && shows_back());
+        seen[object] |= !(self.is_single_sided[object] && self.shows_back(triangle, direction));
+    }
+
+    fn shows_back(&self, triangle: u32, direction: Point3) -> bool {
+        dot(normal(self.triangles[triangle as usize]), direction) >= 0.0
+    }
+
+    fn is_passed(&self, triangle: u32, direction: Point3) -> bool {
+        self.is_passed_from_behind[self.object[triangle as usize] as usize] && self.shows_back(triangle, direction)
     }
 
     /// The object that a ray hits first.
@@ -153,7 +169,7 @@ impl RaySampler {
             }
             for &i in &self.tree.order()[node.start as usize..node.end as usize] {
                 let t = hit(&self.triangles[i as usize], origin, direction);
-                if t < best.0 {
+                if t < best.0 && !self.is_passed(i, direction) {
                     best = (t, Some(i));
                 }
             }

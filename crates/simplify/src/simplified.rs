@@ -90,6 +90,6 @@ impl Simplified {
         let objects = scene.objects().iter().zip(&self.triangles).map(object).collect();
         let left = Scene::new(objects)?.with_mirrors(scene.mirrors().to_vec())?;
         let left = left.with_see_through(scene.see_through().to_vec())?.with_moving(scene.moving().to_vec())?;
-        left.with_single_sided(scene.single_sided().to_vec())
+        left.with_single_sided(scene.single_sided().to_vec())?.with_front_occluders(scene.front_occluders().to_vec())
     }
 }

@@ -102,6 +102,7 @@ fn turned(scene: &Scene, frame: &Frame) -> Result<Scene, VerifyError> {
         .and_then(|turned| turned.with_moving(scene.moving().iter().map(moving).collect()))
         .and_then(|turned| turned.with_see_through(scene.see_through().to_vec()))
         .and_then(|turned| turned.with_single_sided(scene.single_sided().to_vec()))
+        .and_then(|turned| turned.with_front_occluders(scene.front_occluders().to_vec()))
         .map_err(|_| VerifyError::Range)
 }
 
@@ -120,8 +121,10 @@ pub(crate) fn check_moves(scene: &Scene, moved: &Scene, frame: &Frame) -> Result
     let roles = |scene: &Scene| (scene.objects().len(), scene.see_through().to_vec(), scene.mirrors().to_vec());
     // Fewer objects with one side show more.
     let sides = moved.single_sided().iter().all(|object| scene.single_sided().binary_search(object).is_ok());
+    // Fewer that hide show more.
+    let fronts = moved.front_occluders().iter().all(|&object| scene.hides_from_front(object));
     let movers = |scene: &Scene| scene.moving().iter().map(|m| (m.object, m.within.is_some())).collect::<Vec<_>>();
-    let is_same = roles(scene) == roles(moved) && sides && movers(scene) == movers(moved);
+    let is_same = roles(scene) == roles(moved) && sides && fronts && movers(scene) == movers(moved);
     if is_same { Ok(()) } else { Err(VerifyError::Range) }
 }
 

@@ -264,3 +264,30 @@ fn single_sided_things_are_seen_from_the_front_only() {
     }
     assert!(n_hidden >= 7 && n_caught == n_hidden, "{n_hidden} {n_caught}");
 }
+
+/// A wall with one side hides from its front, by the method that knows of fronts, and nothing from behind: against rays that know of them, too.
+#[test]
+fn walls_with_one_side_hide_from_their_front() {
+    let mut objects = hall();
+    // Its front is towards the west.
+    let wall: Vec<Point3> = vec![[6.0, 0.0, 0.0], [6.0, 0.0, 3.0], [6.0, 4.0, 3.0], [6.0, 4.0, 0.0]];
+    objects.push(SceneObject { name: "wall".to_owned(), vertices: wall, triangles: vec![[0, 1, 2], [0, 2, 3]] });
+    let both_sides = Scene::new(objects).unwrap();
+    let seen = both_sides.clone().with_see_through(vec![3]).unwrap();
+    let front = seen.clone().with_front_occluders(vec![3]).unwrap();
+    let east = [11.5, 0.5, 0.5];
+    let (mut n_hidden, mut n_caught) = (0, 0);
+    for ((name, of_both), (_, of_front)) in tables(&both_sides).into_iter().zip(tables(&front)) {
+        assert!(sees(&of_front, east, 1), "{name}: what is seen past the back is hidden");
+        assert_eq!(n_violations(&of_front, &front), 0, "{name}");
+        n_hidden += u32::from(!sees(&of_front, WEST, 2));
+        // The impostors: a wall that hides from both sides, and one that the checker does not know of.
+        n_caught += u32::from(n_violations(&of_both, &front) > 0);
+        if !sees(&of_front, WEST, 2) {
+            assert!(n_violations(&of_front, &seen) > 0, "{name}");
+        }
+    }
+    assert!(n_hidden >= 2 && n_caught >= 7, "{n_hidden} {n_caught}");
+    assert_ne!(front.digest(), seen.digest());
+    assert_ne!(front.digest(), both_sides.digest());
+}

@@ -109,13 +109,16 @@ impl Buffers {
         let triangles = triangles(scene);
         let patches = if options.planes > 0 { patches(&triangles, &PatchOptions::default()) } else { Vec::new() };
         let sheets = (options.sheets > 0).then(|| (Arc::new(Sheets::new(&triangles)), options.sheets as usize));
-        let mesh = options.line_space.then(|| Mesh::weld(&triangles));
+        let fronts: Vec<_> = scene.front_occluding_triangles().collect();
+        let with_fronts = options.line_space && !fronts.is_empty();
+        let with_fronts = with_fronts.then(|| super::line_space::with_fronts(&triangles, &fronts));
+        let mesh = (options.line_space && fronts.is_empty()).then(|| Mesh::weld(&triangles));
         // Large scenes need the room for what line space prepares.
         drop(triangles);
         Ok(Self {
             chosen: Arc::new(OccluderSelection::new(patches, options.occluders as usize)),
             sheets,
-            line_space: mesh.map(super::line_space::prepared),
+            line_space: with_fronts.or_else(|| mesh.map(super::line_space::prepared)),
             scene: scene.bounds(),
             layout: options.layout(),
             backend,

@@ -351,8 +351,10 @@ fn targets_of(scene: &Scene, boxes: &[Aabb<3>]) -> (Occludees, RaySampler) {
     let triangles: Vec<Vec<[Point3; 3]>> = (0u32..).zip(boxes).map(covering).collect();
     // What is see-through stops no ray.
     let none: &[[Point3; 3]] = &[];
-    let in_the_way = (0u32..).zip(&triangles).map(|(k, of)| if scene.is_opaque(k) { &of[..] } else { none });
+    let stops = |k: u32| scene.is_opaque(k) || scene.hides_from_front(k);
+    let in_the_way = (0u32..).zip(&triangles).map(|(k, of)| if stops(k) { &of[..] } else { none });
     let witness = RaySampler::new(in_the_way).with_single_sided(|object| scene.is_single_sided(object));
+    let witness = witness.with_front_occluders(|object| scene.hides_from_front(object));
     (Occludees::new(triangles).with_single_sided(|object| scene.is_single_sided(object)), witness)
 }
 

@@ -9,7 +9,7 @@ impl Scene {
     /// A hash of all that the scene is, with names and in its order, by the bits of its numbers. Scenes with equal hashes are the same scene: it guards
     /// against mistakes, not against malice. O(size), some ten times as fast as the digests.
     pub fn checksum(&self) -> u128 {
-        let Self { objects, mirrors, see_through, moving, single_sided, doors, sources } = self;
+        let Self { objects, mirrors, see_through, moving, single_sided, front_occluders, doors, sources } = self;
         let mut sum = Sum::default();
         sum.length(objects.len());
         for SceneObject { name, vertices, triangles } in objects {
@@ -18,7 +18,7 @@ impl Scene {
             sum.numbers(vertices.as_flattened());
             sum.integers(triangles.as_flattened());
         }
-        [mirrors, see_through, single_sided, doors].into_iter().for_each(|list| sum.integers(list));
+        [mirrors, see_through, single_sided, front_occluders, doors].into_iter().for_each(|list| sum.integers(list));
         sum.length(moving.len());
         for MovingObject { object, within } in moving {
             sum.integers(&[*object, u32::from(within.is_some())]);
@@ -95,6 +95,7 @@ mod tests {
             with(|o| o.swap(0, 1)),
             scene().with_see_through(vec![1]).unwrap(),
             scene().with_single_sided(vec![1]).unwrap(),
+            scene().with_see_through(vec![1]).and_then(|scene| scene.with_front_occluders(vec![1])).unwrap(),
             scene().with_mirrors(vec![1]).unwrap(),
             scene().with_doors(vec![1]).unwrap(),
             moving(None),

@@ -45,6 +45,8 @@ pub(super) struct Builder {
     n_degenerate: usize,
     n_single_sided: usize,
     fronts_only: Vec<u32>,
+    /// Those that hide from the fronts of their triangles only.
+    front_occluders: Vec<u32>,
     /// With the object of each; an empty box where it has no triangles.
     view_volumes: Vec<(u32, Aabb<3>)>,
     doors: Vec<u32>,
@@ -107,6 +109,11 @@ impl Builder {
     /// Marks the object that was added last as one that is seen from the fronts of its triangles only.
     pub(super) fn mark_fronts_only(&mut self) {
         self.fronts_only.extend(self.last());
+    }
+
+    /// Marks the object that was added last as one that hides from the fronts of its triangles only.
+    pub(super) fn mark_front_occluder(&mut self) {
+        self.front_occluders.extend(self.last());
     }
 
     /// Counts the triangles of the object that was added last as single-sided. If such things are to hide nothing, and it is not
@@ -179,7 +186,8 @@ impl Builder {
         let (n_objects, n_degenerate, simplified) = (self.objects.len(), self.n_degenerate, self.simplified);
         let scene = Scene::new(self.objects)?.with_mirrors(self.mirrors)?;
         let scene = scene.with_see_through(self.see_through)?.with_moving(self.moving)?;
-        let scene = scene.with_single_sided(self.fronts_only)?.with_doors(self.doors)?.with_sources(self.sources)?;
+        let scene = scene.with_single_sided(self.fronts_only)?.with_front_occluders(self.front_occluders)?;
+        let scene = scene.with_doors(self.doors)?.with_sources(self.sources)?;
         let n_triangles = scene.n_triangles();
         if n_triangles == 0 {
             return Err(SceneReadError::NoTriangles { n_objects, n_degenerate });

@@ -242,6 +242,9 @@ fn build(
                 let is_vouched_for = class.as_ref().is_some_and(|class| class.is_vouched_for);
                 if let Some(other) = builder.count_single_sided(classifier.hides_no_single_sides() && !is_vouched_for) {
                     class = Some(other);
+                    if at.world.keeps_sides() {
+                        builder.mark_front_occluder();
+                    }
                 }
             }
             if let Some(class) = class {

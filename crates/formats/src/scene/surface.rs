@@ -17,9 +17,9 @@ pub struct SceneReadOptions {
     /// Objects that never move, by the same names, whatever animations, physics or extensions of the file do to them. Does not
     /// hold for meshes that are deformed: skins and morph targets.
     pub still: Vec<NamePattern>,
-    /// Whether objects of which engines draw the fronts only hide nothing, unless they are closed, with their fronts outwards:
-    /// an eye behind a single wall of that kind looks through it. By default they hide from both sides, which holds for eyes
-    /// that see the back of none. glTF: materials that are not `doubleSided`; an OBJ does not say.
+    /// Whether objects of which engines draw the fronts only [hide from the front](sightlines_cells::Scene::front_occluders) alone, unless they are closed,
+    /// with their fronts outwards: an eye behind a single wall of that kind looks through it. By default they hide from both sides, which
+    /// holds for eyes that see the back of none. glTF: materials that are not `doubleSided`; an OBJ does not say.
     pub single_sided: bool,
     /// Whether both sides of all faces are drawn, whatever the file says. By default faces of which engines draw the fronts only are not
     /// seen from behind.

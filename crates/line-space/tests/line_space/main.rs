@@ -2,5 +2,6 @@
 
 mod attacks;
 mod conforms;
+mod fronts;
 mod hides;
 mod known;

@@ -23,6 +23,8 @@ pub(crate) struct SolidWorld {
     areas: Vec<f64>,
     /// For each object whether its triangles stop sight.
     is_opaque: Vec<bool>,
+    /// For each object whether they stop it from their fronts only.
+    hides_from_front: Vec<bool>,
     /// For each object whether only the fronts of its triangles are seen.
     is_single_sided: Vec<bool>,
     /// The objects that move, ascending, and the boxes that they do not leave.
@@ -77,6 +79,10 @@ impl SolidWorld {
             object_of,
             of_object,
             is_opaque: (0u32..).zip(scene.objects()).map(|(object, _)| scene.is_opaque(object)).collect(),
+            hides_from_front: (0u32..)
+                .zip(scene.objects())
+                .map(|(object, _)| scene.hides_from_front(object))
+                .collect(),
             is_single_sided: (0u32..).zip(scene.objects()).map(|(object, _)| scene.is_single_sided(object)).collect(),
             cells,
             next: neighbours_of(table),
@@ -112,13 +118,18 @@ impl SolidWorld {
             || sightlines_geometry::orient3d(a, b, c, eye) > 0.0
     }
 
-    fn stops_sight(&self, triangle: u32) -> bool {
-        self.is_opaque[self.object_of[triangle as usize] as usize]
+    /// Whether a triangle stops the sight of an eye. Exact.
+    fn stops_sight(&self, triangle: u32, eye: Point3) -> bool {
+        let object = self.object_of[triangle as usize] as usize;
+        self.is_opaque[object] || self.hides_from_front[object] && {
+            let [a, b, c] = self.triangles[triangle as usize];
+            sightlines_geometry::orient3d(a, b, c, eye) > 0.0
+        }
     }
 
-    /// The first triangle that stops a ray, and where, as a multiple of its direction; rounded.
+    /// The first triangle that stops a ray from an eye, and where, as a multiple of its direction; rounded.
     fn hit(&self, p: Point3, d: Point3, far: f64) -> (f64, Option<u32>) {
-        self.first(p, d, far, |i| self.stops_sight(i))
+        self.first(p, d, far, |i| self.stops_sight(i, p))
     }
 
     /// The first of some triangles that a ray meets, and where.
@@ -162,7 +173,7 @@ impl SolidWorld {
             }
             if but == Some(self.object_of[i as usize]) && self.shows(i, p) {
                 crosses |= segment_crosses_triangle(p, q, triangle);
-            } else if self.stops_sight(i) && !segment_and_triangle_apart(p, q, triangle) {
+            } else if self.stops_sight(i, p) && !segment_and_triangle_apart(p, q, triangle) {
                 free = false;
                 limit.set(f64::NEG_INFINITY);
             }
@@ -224,7 +235,7 @@ impl SolidWorld {
     fn sight_of_object(&self, from: u32, object: u32, p: Point3, q: Point3) -> Option<Sight> {
         let d = sub(q, p);
         // What is see-through is no obstacle, but may be the aim.
-        let counts = |i: u32| self.stops_sight(i) || self.object_of[i as usize] == object;
+        let counts = |i: u32| self.stops_sight(i, p) || self.object_of[i as usize] == object;
         let (t, first) = self.first(p, d, 1.0 + 2f64.powi(-20), counts);
         first.filter(|&i| self.object_of[i as usize] == object)?;
         let sight = Self::sight(from, Target::Object(object), Self::just_behind(p, d, t));
@@ -362,7 +373,7 @@ impl RayOracle for SolidWorld {
         let limit = Cell::new(far);
         let mut passed = Vec::new();
         self.near(p, d, &limit, |i| {
-            if !self.stops_sight(i)
+            if !self.stops_sight(i, p)
                 && let Some(t) = meet(p, d, &self.triangles[i as usize]).filter(|&t| t < far)
             {
                 passed.push((i, t));
