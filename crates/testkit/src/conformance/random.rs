@@ -1,37 +1,50 @@
-//! The suite's own random numbers: SplitMix64, the same on every machine.
+//! Random numbers that make coincidences likely.
 
-use sightlines_geometry::Random as Bits;
+use sightlines_geometry::{Aabb, Point3, Random as Bits};
 
-/// Random numbers that make coincidences likely.
+/// The same on every machine.
 #[derive(Debug, Clone)]
-pub(super) struct Random(Bits);
+pub struct Random(Bits);
 
 impl Random {
-    pub(super) fn new(seed: u64) -> Self {
+    /// Equal seeds give equal numbers.
+    pub fn new(seed: u64) -> Self {
         Self(Bits::new(seed))
     }
 
     /// Less than `n`, which is small, so that the bias does not matter.
-    pub(super) fn below(&mut self, n: u32) -> u32 {
+    pub fn below(&mut self, n: u32) -> u32 {
         (self.0.bits() % u64::from(n)) as u32
     }
 
-    pub(super) fn coin(&mut self) -> bool {
+    /// One of two.
+    pub fn coin(&mut self) -> bool {
         self.below(2) == 0
     }
 
-    pub(super) fn pick<T: Copy>(&mut self, from: &[T]) -> T {
+    /// One of a few.
+    pub fn pick<T: Copy>(&mut self, from: &[T]) -> T {
         from[self.below(from.len() as u32) as usize]
     }
 
     /// A multiple of an eighth from `low` to `high`, both integers: so that things meet, line up and coincide.
-    pub(super) fn eighth(&mut self, low: i32, high: i32) -> f64 {
+    pub fn eighth(&mut self, low: i32, high: i32) -> f64 {
         f64::from(low) + f64::from(self.below((high - low) as u32 * 8 + 1)) / 8.0
     }
 
+    /// A multiple of 1/16 above `low`, by less than `span`.
+    pub fn sixteenth(&mut self, low: f64, span: u32) -> f64 {
+        low + f64::from(self.below(16 * span)) / 16.0
+    }
+
     /// From `low` to `high`, all bits used.
-    pub(super) fn between(&mut self, low: f64, high: f64) -> f64 {
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.0.unit()
+    }
+
+    /// A point of a box.
+    pub fn point(&mut self, b: &Aabb<3>) -> Point3 {
+        [0, 1, 2].map(|k| self.between(b.min[k], b.max[k]))
     }
 }
 

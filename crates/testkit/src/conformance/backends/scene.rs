@@ -1,9 +1,9 @@
 //! Scenes of all kinds, most of them degenerate.
 
-use super::random::Random;
+use super::Random;
 use super::shapes::{self, Shape};
-use crate::{Job, Measure, Occluder, Plane, Volume};
 use sightlines_geometry::{Aabb, Point3};
+use sightlines_multifocal::{Job, Measure, Occluder, Plane, Volume};
 
 /// Kinds of scenes.
 pub(super) const FAMILIES: [Family; 17] = [

@@ -4,7 +4,8 @@
 //! inside, portals are drawn around the crossings; otherwise they are moved aside, so that some sequences are open and
 //! others are not. All coordinates are exact, so the spine passes strictly.
 
-use sightlines_geometry::{Aabb, AxialDoor, Point2, Portal2, Portal3, Random, orient2d};
+use crate::conformance::Random;
+use sightlines_geometry::{Aabb, AxialDoor, Point2, Portal2, Portal3, orient2d};
 use std::fmt;
 use std::sync::Arc;
 
@@ -45,15 +46,6 @@ pub struct Axial;
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Convex;
 
-fn below(random: &mut Random, n: u64) -> u64 {
-    random.bits() % n
-}
-
-/// A multiple of 1/16 that is at least `low` and below `low + span`.
-fn sixteenth(random: &mut Random, low: f64, span: u64) -> f64 {
-    low + below(random, 16 * span) as f64 / 16.0
-}
-
 /// Distances between the crossings of the spine, along its first axis.
 const STEP: f64 = 1.0;
 
@@ -62,14 +54,14 @@ impl Cases for Planar {
     type Bounds = Aabb<2>;
 
     fn draw(&self, random: &mut Random, has_spine: bool) -> Case<Portal2, Aabb<2>> {
-        let n = 2 + below(random, 8) as usize;
-        let slope = sixteenth(random, -1.0, 2);
+        let n = 2 + random.below(8) as usize;
+        let slope = random.sixteenth(-1.0, 2);
         let mut portals: Vec<Portal2> = Vec::new();
         for i in 0..n {
             let x = i as f64 * STEP;
-            let y = x * slope + if has_spine { 0.0 } else { sixteenth(random, -1.75, 3) };
-            let (up, down) = (sixteenth(random, 0.0625, 2), sixteenth(random, 0.0625, 2));
-            let slanted = [0, 1].map(|_| sixteenth(random, 0.0, 1) / 4.0);
+            let y = x * slope + if has_spine { 0.0 } else { random.sixteenth(-1.75, 3) };
+            let (up, down) = (random.sixteenth(0.0625, 2), random.sixteenth(0.0625, 2));
+            let slanted = [0, 1].map(|_| random.sixteenth(0.0, 1) / 4.0);
             let upright = Portal2 { left: Point2::new(x, y + up), right: Point2::new(x, y - down) };
             // Its ends before and behind the crossing: the spine, whose slope is at most 1, still passes between them.
             let door = Portal2 {
@@ -105,14 +97,14 @@ impl Cases for Planar {
 /// Doors along a spine, with the boxes beyond them and, for each door, how far its sides are from the crossing at
 /// least.
 fn doors(random: &mut Random, has_spine: bool) -> (Case<AxialDoor, Aabb<3>>, Vec<f64>) {
-    let n = 2 + below(random, 8) as usize;
+    let n = 2 + random.below(8) as usize;
     let quarter = |random: &mut Random| {
-        let size = (1 + below(random, 4)) as f64 / 4.0;
-        if below(random, 2) == 0 { size } else { -size }
+        let size = f64::from(1 + random.below(4)) / 4.0;
+        if random.below(2) == 0 { size } else { -size }
     };
     let direction = [1.0, quarter(random), quarter(random)];
     let at = |t: f64| direction.map(|d| t * d);
-    let axes: Vec<usize> = (0..n).map(|_| [0, 0, 0, 1, 2][below(random, 5) as usize]).collect();
+    let axes: Vec<usize> = (0..n).map(|_| [0, 0, 0, 1, 2][random.below(5) as usize]).collect();
     let mut doors: Vec<AxialDoor> = Vec::new();
     let mut margins = Vec::new();
     for (i, &axis) in axes.iter().enumerate() {
@@ -120,9 +112,9 @@ fn doors(random: &mut Random, has_spine: bool) -> (Case<AxialDoor, Aabb<3>>, Vec
         let crossing = at(t);
         let (mut min, mut max) = (crossing, crossing);
         for k in (0..3).filter(|&k| k != axis) {
-            let aside = if has_spine { 0.0 } else { sixteenth(random, -1.0, 2) };
-            min[k] += aside - sixteenth(random, 0.0625, 1);
-            max[k] += aside + sixteenth(random, 0.0625, 1);
+            let aside = if has_spine { 0.0 } else { random.sixteenth(-1.0, 2) };
+            min[k] += aside - random.sixteenth(0.0625, 1);
+            max[k] += aside + random.sixteenth(0.0625, 1);
             // The neighbours' planes bound the cells on both sides.
             for (j, side) in [(i.wrapping_sub(1), -1.0), (i + 1, 1.0)] {
                 if axes.get(j) == Some(&k) {
@@ -169,7 +161,7 @@ impl Cases for Convex {
     fn draw(&self, random: &mut Random, has_spine: bool) -> Case<Arc<Portal3>, Aabb<3>> {
         let (case, margins) = doors(random, has_spine);
         let portals = case.portals.iter().zip(margins).map(|(door, margin)| {
-            let cut = if below(random, 2) == 0 { 0.0 } else { margin.max(0.0) / 2.0 };
+            let cut = if random.below(2) == 0 { 0.0 } else { margin.max(0.0) / 2.0 };
             Arc::new(polygon(door, cut))
         });
         Case { portals: portals.collect(), has_spine, beyond: case.beyond }
