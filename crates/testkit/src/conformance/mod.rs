@@ -23,6 +23,7 @@
 //! # Ok::<(), sightlines_testkit::conformance::Violation>(())
 //! ```
 
+pub use crate::mutate::SplitMix as Random;
 use std::collections::BTreeMap;
 use std::fmt::{Debug, Display};
 use std::ops::Index;
@@ -55,7 +56,6 @@ pub mod stabbers;
 pub use backends::{BackendFault, Backends, Slack};
 pub use cell_sources::{CellSourceFault, CellSources};
 pub use from_regions::{FromRegionFault, FromRegions, RegionScene};
-pub use random::Random;
 pub use stabbers::{StabberFault, Stabbers};
 
 /// The clauses of all contracts; the documentation of a suite lists those of its own.
@@ -132,6 +132,25 @@ impl Report {
     fn broken(&self, clause: Clause, case: impl Display, expected: impl Display, found: impl Display) -> Violation {
         let [case, expected, found] = [case.to_string(), expected.to_string(), found.to_string()];
         Violation { contract: self.contract, clause, case, expected, found }
+    }
+
+    /// A violation unless something holds.
+    fn check(
+        &self,
+        holds: bool,
+        clause: Clause,
+        case: impl Display,
+        expected: impl Display,
+        found: impl Display,
+    ) -> Result<(), Violation> {
+        if holds { Ok(()) } else { Err(self.broken(clause, case, expected, found)) }
+    }
+
+    /// Whether the second count is at least this part of the first.
+    fn check_share(&self, part: f64, [all, found]: [&str; 2]) -> Result<(), Violation> {
+        let (wanted, n) = (part * self[all] as f64, self[found]);
+        let holds = n as f64 >= wanted;
+        self.check(holds, Clause::Tight, "all cases", format_args!("{wanted} {found}"), n)
     }
 }
 

@@ -1,7 +1,6 @@
 //! Whole jobs: sound, complete, repeatable.
 
-use super::pair::Pair;
-use super::{Clause, Violation};
+use super::{Clause, Pair, Violation};
 use sightlines_multifocal::{BackendError, Buffer, Job};
 
 /// The previous content of a buffer: of the right size, or of any other size and number.
@@ -52,10 +51,8 @@ impl Pair<'_> {
     /// Whether `fits` is true of all texels of expected and found buffers.
     fn all(&self, clause: Clause, [a, b]: [&[Buffer]; 2], fits: fn(u32, u32) -> bool) -> Result<(), Violation> {
         for (plane, (a, b)) in a.iter().zip(b).enumerate() {
-            let (at, width) = (a.values().iter().zip(b.values()).position(|(&a, &b)| !fits(a, b)), a.texels()[0]);
-            if let Some(i) = at {
-                let texel = [i as u32 % width, i as u32 / width];
-                return Err(self.broken(clause, (plane, texel), a.values()[i], b.values()[i]));
+            if let Some(i) = a.values().iter().zip(b.values()).position(|(&a, &b)| !fits(a, b)) {
+                return Err(self.broken(clause, [plane, i], a.values()[i], b.values()[i]));
             }
         }
         Ok(())
@@ -66,7 +63,7 @@ impl Pair<'_> {
         self.report.count("measures not supported", 1);
         match self.backend.render(&self.scene.job(self.measure), &mut Vec::new()) {
             Err(BackendError::Unsupported { .. }) => Ok(()),
-            other => Err(self.broken(Clause::Done, (0, [0; 2]), "'unsupported'", format!("{other:?}"))),
+            other => Err(self.broken(Clause::Done, [0; 2], "'unsupported'", format_args!("{other:?}"))),
         }
     }
 }

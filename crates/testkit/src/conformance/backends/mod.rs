@@ -1,19 +1,15 @@
 //! The contract of [`MultifocalBackend`].
 //!
-//! Scenes are drawn, a backend and a reference run on them, and their buffers are compared:
-//! 1. sound: no texel has more than the reference has;
-//! 2. tight: texels that one occluder blocks with room to spare are blocked, and have values within the [`Slack`]; what
-//!    is blocked on a plane is carried to the next one;
-//! 3. complete: buffers with other content, of other sizes and numbers, end up equal to new ones;
-//! 4. repeatable: two runs give the same bits;
-//! 5. done: jobs are done, and measures that are not supported are refused.
+//! Scenes are drawn, a backend and a reference run on them, and their buffers are compared. The clauses are those of
+//! [`MultifocalBackend`], with the [`Slack`] that is stated; besides, what is blocked on a plane is carried to the next one,
+//! buffers with other content, of other sizes and numbers, end up equal to new ones, and measures that are not supported
+//! are refused.
 //!
 //! The suite is independent of how buffers are filled: the reference is another backend (that of
 //! `sightlines-multifocal-cpu`), like the one under test.
 
 mod check;
 mod impostor;
-mod pair;
 mod scene;
 mod shapes;
 mod sweep;
@@ -21,9 +17,9 @@ mod tight;
 
 use super::{Clause, Random, Report, Suite, Violation};
 pub use impostor::BackendFault;
-use pair::Pair;
 use scene::{FAMILIES, Scene};
-use sightlines_multifocal::{Measure, MultifocalBackend};
+use sightlines_multifocal::{BackendError, Buffer, Job, Measure, MultifocalBackend};
+use std::fmt::Display;
 
 /// How much a backend may miss of the reference, on the safe side. There are no other tolerances.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -104,7 +100,7 @@ impl<B: MultifocalBackend, R: MultifocalBackend + Clone> Suite<B> for Backends<R
                 }
             }
         }
-        check_section(report, self.slack.section)
+        report.check_share(self.slack.section, ["units above lowest corners", "units above lowest corners found"])
     }
 }
 
@@ -113,12 +109,54 @@ fn measures(round: u32) -> impl Iterator<Item = Measure> {
     Measure::ALL.into_iter().filter(move |measure| measure.is_height() || round.is_multiple_of(4))
 }
 
-fn check_section(report: &Report, part: f64) -> Result<(), Violation> {
-    let [all, found] = ["units above lowest corners", "units above lowest corners found"].map(|what| report[what]);
-    // Sums of whole numbers below 2^53.
-    let wanted = all as f64 * part;
-    if (found as f64) < wanted {
-        return Err(report.broken(Clause::Tight, "all scenes", format!("{wanted} units above lowest corners"), found));
+/// The two backends that are compared.
+struct Pair<'a> {
+    backend: &'a mut dyn MultifocalBackend,
+    reference: &'a mut dyn MultifocalBackend,
+    slack: Slack,
+    report: &'a mut Report,
+    scene: &'a Scene,
+    measure: Measure,
+}
+
+impl Pair<'_> {
+    /// A violation in a texel of a plane, counted through the rows.
+    fn broken(&self, clause: Clause, at: [usize; 2], expected: impl Display, found: impl Display) -> Violation {
+        let ([plane, i], Scene { family, seed, round, planes, .. }, measure) = (at, self.scene, self.measure.name());
+        let width = planes[plane].texels()[0] as usize;
+        let texel = (i % width, i / width);
+        let case = format_args!("scene {family} {round} of seed {seed}, {measure}, plane {plane}, texel {texel:?}");
+        self.report.broken(clause, case, expected, found)
     }
-    Ok(())
+
+    /// Clause 2 for one texel, of which a value is known.
+    fn is_tight(&self, at: [usize; 2], known: u32, got: u32) -> Result<(), Violation> {
+        // A blocked texel has at least 1.
+        let wanted = known.saturating_sub(self.slack.value).max(1);
+        if got >= wanted { Ok(()) } else { Err(self.broken(Clause::Tight, at, format_args!("at least {wanted}"), got)) }
+    }
+
+    /// The buffers of the backend.
+    fn own(&mut self, job: &Job<'_>, mut out: Vec<Buffer>) -> Result<Vec<Buffer>, Violation> {
+        let done = self.backend.render(job, &mut out);
+        self.done(job, done.map(|()| out))
+    }
+
+    /// Those of the reference.
+    fn exact(&mut self, job: &Job<'_>) -> Result<Vec<Buffer>, Violation> {
+        let mut out = Vec::new();
+        let done = self.reference.render(job, &mut out);
+        self.done(job, done.map(|()| out))
+    }
+
+    /// Buffers, checked for their shapes.
+    fn done(&self, job: &Job<'_>, out: Result<Vec<Buffer>, BackendError>) -> Result<Vec<Buffer>, Violation> {
+        let out = out.map_err(|error| self.broken(Clause::Done, [0; 2], "buffers", error))?;
+        let shapes: Vec<[u32; 2]> = out.iter().map(Buffer::texels).collect();
+        let wanted: Vec<[u32; 2]> = job.planes().iter().map(|plane| plane.texels()).collect();
+        if shapes == wanted {
+            return Ok(out);
+        }
+        Err(self.broken(Clause::Complete, [0; 2], format_args!("buffers of {wanted:?}"), format_args!("{shapes:?}")))
+    }
 }

@@ -1,7 +1,6 @@
 //! Carried planes.
 
-use super::pair::Pair;
-use super::{Clause, Violation};
+use super::{Pair, Violation};
 use sightlines_multifocal::{Buffer, Job, Plane};
 
 impl Pair<'_> {
@@ -26,10 +25,7 @@ impl Pair<'_> {
                 if least == 0 {
                     continue;
                 }
-                let wanted = self.slack.least(least + rise);
-                if got < wanted {
-                    return Err(self.broken(Clause::Tight, (idx + 1, [x, y]), format!("at least {wanted}"), got));
-                }
+                self.is_tight([idx + 1, i], least + rise, got)?;
                 self.report.count("texels that a plane before blocks", 1);
                 let is_fused = alone[idx + 1].values()[i] == 0;
                 self.report.count("texels that only a plane before blocks", usize::from(is_fused));

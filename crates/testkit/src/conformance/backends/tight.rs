@@ -1,15 +1,7 @@
 //! Single occluders: what they block with room to spare must be found.
 
-use super::pair::Pair;
-use super::{Clause, Slack, Violation};
+use super::{Pair, Violation};
 use sightlines_multifocal::{Buffer, Job, Measure, Occluder, Plane};
-
-impl Slack {
-    /// The least value allowed instead of one of a blocked texel, which has at least 1.
-    pub(super) fn least(&self, value: u32) -> u32 {
-        value.saturating_sub(self.value).max(1)
-    }
-}
 
 impl Pair<'_> {
     /// Clause 2, for each of a few occluders of the scene alone, on its nearest plane.
@@ -36,12 +28,7 @@ impl Pair<'_> {
         for (i, _) in spare.iter().enumerate().filter(|&(_, &spare)| spare) {
             let (got, exact) = (got.values()[i], exact.values()[i]);
             let lowest = (f64::from(corner.values()[i] - 1) * per_unit) as u32 + 1;
-            let wanted = self.slack.least(if follows { exact } else { lowest.min(exact) });
-            if got < wanted {
-                let width = plane.texels()[0];
-                let texel = [i as u32 % width, i as u32 / width];
-                return Err(self.broken(Clause::Tight, (0, texel), format!("at least {wanted}"), got));
-            }
+            self.is_tight([0, i], if follows { exact } else { lowest.min(exact) }, got)?;
             self.report.count("texels that one occluder blocks", 1);
             self.report.count("texels with values to compare", usize::from(follows));
             if measure == Measure::SectionHeight && exact > lowest {

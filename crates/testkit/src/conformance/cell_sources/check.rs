@@ -4,7 +4,6 @@ use super::{Clause, Report, Violation};
 use sightlines_eye_to_cell::{CellSource, MirrorPiece, PortalEdge};
 use sightlines_geometry::Aabb;
 use sightlines_pvs::{CellId, MirrorId, ObjectId, PortalId};
-use std::fmt::Debug;
 
 /// Nodes of stab trees that are followed.
 const MOST_NODES: usize = 100_000;
@@ -33,7 +32,7 @@ struct Cell {
 
 /// All answers of a source but the nodes of trees.
 pub(super) struct Answers {
-    n_corners: usize,
+    dimension: usize,
     cells: Vec<Cell>,
     objects: Vec<Aabb<3>>,
 }
@@ -75,29 +74,26 @@ fn of_cell(cell: CellId) -> String {
 impl Answers {
     /// Asks about everything, twice, and checks what can be checked cell by cell.
     pub(super) fn of<S: CellSource>(source: &S, report: &Report) -> Result<Self, Violation> {
-        let n_corners = match source.dimension() {
-            n @ (2 | 3) => usize::from(n),
-            n => return Err(report.broken(Clause::Ranges, WHOLE, "dimension 2 or 3", n)),
-        };
-        let ask = |cell: CellId| {
-            Cell::of(source, cell).map_err(|_| report.broken(Clause::Done, of_cell(cell), "answers", "an error"))
-        };
-        let ids = || (0..source.n_cells() as u32).map(CellId);
-        let cells = ids().map(ask).collect::<Result<_, _>>()?;
-        let objects = (0..source.n_objects() as u32).map(|object| source.object_box(ObjectId(object)));
-        let objects: Result<_, _> = objects.collect();
-        let objects = objects.map_err(|_| report.broken(Clause::Done, WHOLE, "boxes of objects", "an error"))?;
-        let answers = Self { n_corners, cells, objects };
-        for (cell, first) in ids().zip(&answers.cells) {
-            answers.check_cell(cell, first, report)?;
-            if ask(cell)? != *first {
-                return Err(report.broken(Clause::Repeatable, of_cell(cell), "the first answers again", "others"));
-            }
+        let error = |_: S::Error| report.broken(Clause::Done, WHOLE, "answers", "an error");
+        let dimension = usize::from(source.dimension());
+        report.check((2..=3).contains(&dimension), Clause::Ranges, WHOLE, "dimension 2 or 3", dimension)?;
+        let ask = |cell| Cell::of(source, cell).map_err(error);
+        let cells = (0..source.n_cells() as u32).map(|cell| ask(CellId(cell))).collect::<Result<_, _>>()?;
+        let object = |object| source.object_box(ObjectId(object)).map_err(error);
+        let objects = (0..source.n_objects() as u32).map(object).collect::<Result<_, _>>()?;
+        let answers = Self { dimension, cells, objects };
+        for (id, cell) in answers.cells() {
+            answers.check_cell(id, cell, report)?;
+            let is_same = ask(id)? == *cell;
+            report.check(is_same, Clause::Repeatable, of_cell(id), "the first answers again", "others")?;
         }
-        if let Some(object) = answers.objects.iter().find(|b| !is_box(b)) {
-            return Err(report.broken(Clause::Shapes, WHOLE, "boxes of objects", format!("{object:?}")));
-        }
+        let wrong = answers.objects.iter().find(|b| !is_box(b));
+        report.check(wrong.is_none(), Clause::Shapes, WHOLE, "boxes of objects", format_args!("{wrong:?}"))?;
         Ok(answers)
+    }
+
+    fn cells(&self) -> impl Iterator<Item = (CellId, &Cell)> {
+        (0u32..).map(CellId).zip(&self.cells)
     }
 
     pub(super) fn count(&self, report: &mut Report) {
@@ -112,50 +108,43 @@ impl Answers {
     }
 
     fn check_cell(&self, id: CellId, cell: &Cell, report: &Report) -> Result<(), Violation> {
-        let check = |clause, holds: bool, expected: &str, found: &dyn Debug| {
-            if holds { Ok(()) } else { Err(report.broken(clause, of_cell(id), expected, format!("{found:?}"))) }
-        };
-        let portals: Vec<(PortalId, bool)> = cell.edges.iter().map(|edge| (edge.portal, !edge.forward)).collect();
-        check(Clause::Ordered, ascends(&cell.visible), "ascending visible cells", &cell.visible)?;
-        check(Clause::Ordered, cell.visible.contains(&id), "itself among visible cells", &cell.visible)?;
-        check(Clause::Ordered, ascends(&cell.touching), "ascending objects that touch it", &cell.touching)?;
-        check(Clause::Ordered, ascends(&cell.seen), "ascending visible objects", &cell.seen)?;
-        check(Clause::Ordered, ascends(&portals), "ascending portals", &portals)?;
-        check(Clause::Ordered, ascends(&cell.roots), "ascending roots of stab trees", &cell.roots)?;
+        let Cell { bounds, visible, edges, touching, seen, mirrors, roots, .. } = cell;
+        let portals: Vec<(PortalId, bool)> = edges.iter().map(|edge| (edge.portal, !edge.forward)).collect();
         let has_cell = |cell: &CellId| cell.idx() < self.cells.len();
         let has_object = |object: &ObjectId| object.idx() < self.objects.len();
-        check(Clause::Ranges, cell.visible.iter().all(has_cell), "visible cells that exist", &cell.visible)?;
-        check(Clause::Ranges, cell.edges.iter().all(|e| has_cell(&e.to)), "portals to cells that exist", &cell.edges)?;
-        check(Clause::Ranges, cell.touching.iter().all(has_object), "objects that exist", &cell.touching)?;
-        check(Clause::Ranges, cell.seen.iter().all(has_object), "visible objects that exist", &cell.seen)?;
-        check(Clause::Shapes, is_box(&cell.bounds), "a box", &cell.bounds)?;
         let is_shape = |corners: &Vec<[f64; 3]>| {
-            let has_enough = if self.n_corners == 2 { corners.len() == 2 } else { corners.len() >= 3 };
+            let has_enough = if self.dimension == 2 { corners.len() == 2 } else { corners.len() >= 3 };
             has_enough && corners.iter().flatten().all(|x| x.is_finite())
         };
-        let mut shapes = cell.edges.iter().map(|e| &e.corners).chain(cell.mirrors.iter().map(|(_, corners)| corners));
-        let wrong = shapes.find(|corners| !is_shape(corners));
-        check(Clause::Shapes, wrong.is_none(), "enough finite corners", &wrong)?;
-        let inside =
-            |p: &&[f64; 3]| (0..self.n_corners).all(|k| cell.bounds.min[k] <= p[k] && p[k] <= cell.bounds.max[k]);
-        let outside = cell.edges.iter().flat_map(|e| &e.corners).find(|p| !inside(p));
-        check(Clause::Shapes, outside.is_none(), "portals within its box", &outside)
+        let mut shapes = edges.iter().map(|edge| &edge.corners).chain(mirrors.iter().map(|(_, corners)| corners));
+        let is_inside = |p: &[f64; 3]| (0..self.dimension).all(|k| bounds.min[k] <= p[k] && p[k] <= bounds.max[k]);
+        let checks = [
+            (Clause::Ordered, ascends(visible), "ascending visible cells"),
+            (Clause::Ordered, visible.contains(&id), "itself among visible cells"),
+            (Clause::Ordered, ascends(touching) && ascends(seen), "ascending objects"),
+            (Clause::Ordered, ascends(&portals), "ascending portals"),
+            (Clause::Ordered, ascends(roots), "ascending roots of stab trees"),
+            (Clause::Ranges, visible.iter().all(has_cell), "visible cells that exist"),
+            (Clause::Ranges, edges.iter().all(|edge| has_cell(&edge.to)), "portals to cells that exist"),
+            (Clause::Ranges, touching.iter().chain(seen).all(has_object), "objects that exist"),
+            (Clause::Shapes, is_box(bounds), "a box"),
+            (Clause::Shapes, shapes.all(is_shape), "enough finite corners"),
+            (Clause::Shapes, edges.iter().flat_map(|edge| &edge.corners).all(is_inside), "portals within its box"),
+        ];
+        let check =
+            |(clause, holds, expected)| report.check(holds, clause, of_cell(id), expected, format_args!("{cell:?}"));
+        checks.into_iter().try_for_each(check)
     }
 
     /// Portals lead both ways.
     pub(super) fn check_edges(&self, report: &Report) -> Result<(), Violation> {
-        for (cell, answers) in (0u32..).map(CellId).zip(&self.cells) {
-            let broken = |expected, edge| {
-                Err(report.broken(Clause::TwoSided, of_cell(cell), expected, format!("only {edge:?}")))
-            };
-            for edge in &answers.edges {
-                let back = Edge { forward: !edge.forward, to: cell, ..edge.clone() };
-                if !self.cells[edge.to.idx()].edges.contains(&back) {
-                    return broken("a portal that leads back", edge);
-                }
-                if answers.visible.binary_search(&edge.to).is_err() {
-                    return broken("to see the cell behind a portal", edge);
-                }
+        for (id, cell) in self.cells() {
+            let check = |holds, expected| report.check(holds, Clause::TwoSided, of_cell(id), expected, "none");
+            for edge in &cell.edges {
+                let back = Edge { forward: !edge.forward, to: id, ..edge.clone() };
+                let leads_back = self.cells[edge.to.idx()].edges.contains(&back);
+                check(leads_back, format!("the other side of {edge:?}"))?;
+                check(cell.visible.contains(&edge.to), format!("sight through {edge:?}"))?;
             }
         }
         Ok(())
@@ -163,31 +152,26 @@ impl Answers {
 
     /// Stab trees follow portals.
     pub(super) fn check_trees<S: CellSource>(&self, source: &S, report: &mut Report) -> Result<(), Violation> {
-        let has_trees = |cell: &&Cell| cell.is_root_open.is_some();
-        let n_trees = self.cells.iter().filter(has_trees).count();
-        if ![0, self.cells.len()].contains(&n_trees) {
-            return Err(report.broken(Clause::Trees, WHOLE, "stab trees of all cells or of none", n_trees));
-        }
-        for (root, answers) in (0u32..).map(CellId).zip(&self.cells).filter(|(_, cell)| has_trees(cell)) {
+        let n_trees = self.cells.iter().filter(|cell| cell.is_root_open.is_some()).count();
+        let is_fair = [0, self.cells.len()].contains(&n_trees);
+        report.check(is_fair, Clause::Trees, WHOLE, "stab trees of all cells or of none", n_trees)?;
+        for (root, answers) in self.cells().take(n_trees) {
+            let case = format!("the stab tree of cell {root}");
             let mut stack: Vec<(CellId, u32)> = answers.roots.iter().map(|&node| (root, node)).collect();
             while let Some((cell, node)) = stack.pop() {
                 if report["nodes of stab trees"] == MOST_NODES {
                     return Ok(());
                 }
                 report.count("nodes of stab trees", 1);
-                let broken = |clause, expected: &str, found: String| {
-                    report.broken(clause, format!("{} of the stab tree of {root}", of_cell(cell)), expected, found)
-                };
                 let mut children = vec![u32::MAX; 3];
                 let step = source.stab_node(node, &mut children);
-                let step = step.map_err(|_| broken(Clause::Done, "a node", "an error".to_owned()))?;
+                let step = step.map_err(|_| report.broken(Clause::Done, &case, "a node", "an error"))?;
                 let edge = self.cells[cell.idx()].edges.iter().find(|edge| edge.portal == step.portal);
-                let Some(edge) = edge else {
-                    return Err(broken(Clause::Trees, "a portal of the cell", format!("portal {}", step.portal)));
-                };
-                if !ascends(&children) {
-                    return Err(broken(Clause::Trees, "ascending children", format!("{children:?}")));
-                }
+                let edge = edge.ok_or_else(|| {
+                    report.broken(Clause::Trees, &case, format_args!("a portal of cell {cell}"), step.portal)
+                })?;
+                let found = format_args!("{children:?}");
+                report.check(ascends(&children), Clause::Trees, &case, "ascending children", found)?;
                 stack.extend(children.into_iter().map(|child| (edge.to, child)));
             }
         }
@@ -196,23 +180,23 @@ impl Answers {
 
     /// Nothing that may be seen is missing, and everything else is the same.
     pub(super) fn compare(&self, truth: &Self, report: &mut Report) -> Result<(), Violation> {
-        let sizes = |answers: &Self| (answers.n_corners, answers.cells.len(), answers.objects.len());
-        if sizes(self) != sizes(truth) || self.objects != truth.objects {
-            let expected = "the dimension, cells and objects of the reference";
-            return Err(report.broken(Clause::Conservative, WHOLE, expected, "others"));
-        }
-        for (cell, (own, truth)) in (0u32..).map(CellId).zip(self.cells.iter().zip(&truth.cells)) {
+        let whole = |answers: &Self| (answers.dimension, answers.cells.len(), answers.objects.clone());
+        let is_same = whole(self) == whole(truth);
+        report.check(
+            is_same,
+            Clause::Conservative,
+            WHOLE,
+            "dimension, cells and objects of the reference",
+            "others",
+        )?;
+        for ((id, own), truth) in self.cells().zip(&truth.cells) {
             report.count("cells compared", 1);
-            let broken = |expected, found| Err(report.broken(Clause::Conservative, of_cell(cell), expected, found));
             let same = (own.bounds, &own.edges, &own.touching, &own.mirrors)
                 == (truth.bounds, &truth.edges, &truth.touching, &truth.mirrors);
-            if !same {
-                return broken("the cell of the reference", "another");
-            }
-            let cells = truth.visible.iter().all(|other| own.visible.binary_search(other).is_ok());
-            if !cells || !truth.seen.iter().all(|object| own.seen.binary_search(object).is_ok()) {
-                return broken("all that it sees in the reference", "less");
-            }
+            report.check(same, Clause::Conservative, of_cell(id), "the cell of the reference", "another")?;
+            let sees_all = truth.visible.iter().all(|cell| own.visible.contains(cell))
+                && truth.seen.iter().all(|object| own.seen.contains(object));
+            report.check(sees_all, Clause::Conservative, of_cell(id), "all that it sees in the reference", "less")?;
         }
         Ok(())
     }

@@ -14,6 +14,7 @@
 mod impostor;
 
 use super::{Clause, Random, Report, Suite, Violation};
+use crate::eye_boxes::range_in_box;
 pub use impostor::{FromRegionFault, wrong};
 use sightlines_geometry::{Aabb, Point3};
 use sightlines_multifocal::{BackendError, FromRegion, Volume};
@@ -47,19 +48,8 @@ impl<F: FnMut(&RegionScene) -> Box<dyn FromRegion>> Suite<F> for FromRegions {
 
     fn check(&self, make: &mut F, report: &mut Report) -> Result<(), Violation> {
         let mut random = Random::new(self.seed);
-        for round in 0..self.rounds {
-            let is_walled = round % 3 == 2;
-            let scene = draw(&mut random, is_walled);
-            report.count("scenes", 1);
-            let cases = Cases::draw(&mut random, &scene, is_walled);
-            self.check_scene(&mut random, round, &cases, &mut *make(&scene), report)?;
-        }
-        let [walled, found] = ["targets behind a wall", "hidden targets behind a wall"].map(|what| report[what]);
-        let wanted = self.tight * walled as f64;
-        if (found as f64) < wanted {
-            return Err(report.broken(Clause::Tight, "all scenes", format!("{wanted} hidden behind a wall"), found));
-        }
-        Ok(())
+        (0..self.rounds).try_for_each(|round| self.check_round(round, &mut random, &mut *make, report))?;
+        report.check_share(self.tight, ["targets behind a wall", "hidden targets behind a wall"])
     }
 }
 
@@ -88,21 +78,10 @@ impl RegionScene {
 
     /// Whether nothing is between an eye and a point, with a margin.
     fn is_free(&self, eye: Point3, point: Point3) -> bool {
+        let direction = [0, 1, 2].map(|k| point[k] - eye[k]);
         self.boxes.iter().all(|b| {
-            let (mut enter, mut leave) = (0.0f64, 1.0f64);
-            for k in 0..3 {
-                let (low, high) = (b.min[k] - CLEAR - eye[k], b.max[k] + CLEAR - eye[k]);
-                let d = point[k] - eye[k];
-                if d == 0.0 {
-                    if low > 0.0 || high < 0.0 {
-                        return true;
-                    }
-                } else {
-                    let (s, t) = (low / d, high / d);
-                    (enter, leave) = (enter.max(s.min(t)), leave.min(s.max(t)));
-                }
-            }
-            enter > leave
+            let grown = Aabb { min: b.min.map(|x| x - CLEAR), max: b.max.map(|x| x + CLEAR) };
+            range_in_box(&grown, eye, direction).is_none_or(|[enter, leave]| enter.max(0.0) > leave.min(1.0))
         })
     }
 }
@@ -142,7 +121,6 @@ fn draw(random: &mut Random, is_walled: bool) -> RegionScene {
 /// What is asked about one scene.
 struct Cases<'a> {
     scene: &'a RegionScene,
-    is_walled: bool,
     targets: Vec<Aabb<3>>,
     /// Boxes that meet the volume.
     near: Vec<Aabb<3>>,
@@ -155,7 +133,7 @@ impl<'a> Cases<'a> {
         let targets: Vec<Aabb<3>> = (0..12).map(|_| target(random, is_walled)).collect();
         let near = (0..4).map(|_| beside(random)).collect();
         let hulls = targets.iter().map(|b| tetrahedron(random, b)).collect();
-        Self { scene, is_walled, targets, near, hulls }
+        Self { scene, targets, near, hulls }
     }
 
     /// What is hidden of targets, hulls and near boxes.
@@ -165,58 +143,51 @@ impl<'a> Cases<'a> {
         let hulls = self.hulls.iter().map(|hull| umbra.hides_points(hull)).collect();
         Ok([targets, hulls, self.near.iter().map(|target| umbra.hides(target)).collect()])
     }
+
+    /// Whether one of so many segments from the volume to such points is free.
+    fn reaches(&self, random: &mut Random, segments: u32, point: impl Fn(&mut Random) -> Point3) -> bool {
+        (0..segments).any(|_| {
+            let eye = random.point(&self.scene.volume);
+            self.scene.is_free(eye, point(random))
+        })
+    }
 }
 
 impl FromRegions {
-    fn check_scene(
+    fn check_round(
         &self,
-        random: &mut Random,
         round: u32,
-        cases: &Cases<'_>,
-        method: &mut dyn FromRegion,
+        random: &mut Random,
+        method: impl FnOnce(&RegionScene) -> Box<dyn FromRegion>,
         report: &mut Report,
     ) -> Result<(), Violation> {
-        let broken = |report: &Report, clause, what: &dyn Debug, expected: &str, found: &str| {
-            report.broken(clause, format!("scene {round} of seed {}, {what:?}", self.seed), expected, found)
-        };
-        let mut ask = || {
-            let answers = cases.answers(method);
-            answers.map_err(|error| broken(report, Clause::Done, &cases.scene.volume, "an umbra", &error.to_string()))
-        };
-        let first = ask()?;
-        if ask()? != first {
-            let expected = "the answers of the first umbra";
-            return Err(broken(report, Clause::Repeatable, &cases.scene.volume, expected, "others"));
-        }
+        let is_walled = round % 3 == 2;
+        let scene = draw(random, is_walled);
+        let (cases, mut method) = (Cases::draw(random, &scene, is_walled), method(&scene));
+        report.count("scenes", 1);
+        let at = |what: &dyn Debug| format!("scene {round} of seed {}, {what:?}", self.seed);
+        let volume = at(&scene.volume);
+        let mut ask =
+            || cases.answers(&mut *method).map_err(|error| report.broken(Clause::Done, &volume, "an umbra", error));
+        let (first, again) = (ask()?, ask()?);
+        report.check(first == again, Clause::Repeatable, &volume, "the same from two umbrae", "two answers")?;
         let [targets, hulls, near] = first;
-        if let Some(k) = near.iter().position(|&hidden| hidden) {
-            return Err(broken(report, Clause::Near, &cases.near[k], "not hidden, for it meets the volume", "hidden"));
+        for (target, hidden) in cases.near.iter().zip(near) {
+            report.check(!hidden, Clause::Near, at(target), "that what meets the volume is seen", "hidden")?;
+            report.count("targets near the volume", 1);
         }
-        report.count("targets near the volume", near.len());
         for (k, (target, hull)) in cases.targets.iter().zip(&cases.hulls).enumerate() {
-            let expected = "not hidden, for a free segment reaches it";
-            let is_visible = self.reaches(random, cases.scene, |random| random.point(target));
-            if targets[k] && is_visible {
-                return Err(broken(report, Clause::Conservative, target, expected, "hidden"));
-            }
-            if hulls[k] && self.reaches(random, cases.scene, |random| mixed(random, hull)) {
-                return Err(broken(report, Clause::Points, hull, expected, "hidden"));
-            }
+            let expected = "that what a free segment reaches is seen";
+            let is_visible = cases.reaches(random, self.segments, |random| random.point(target));
+            report.check(!(targets[k] && is_visible), Clause::Conservative, at(target), expected, "hidden")?;
+            let is_wrong = hulls[k] && cases.reaches(random, self.segments, |random| mixed(random, hull));
+            report.check(!is_wrong, Clause::Points, at(hull), expected, "hidden")?;
             report.count("visible targets", usize::from(is_visible));
             report.count("hidden targets", usize::from(targets[k]));
-            report.count("targets behind a wall", usize::from(cases.is_walled));
-            report.count("hidden targets behind a wall", usize::from(cases.is_walled && targets[k]));
+            report.count("targets behind a wall", usize::from(is_walled));
+            report.count("hidden targets behind a wall", usize::from(is_walled && targets[k]));
         }
         Ok(())
-    }
-
-    /// Whether one of the segments from the volume to such points is free.
-    fn reaches(&self, random: &mut Random, scene: &RegionScene, point: impl Fn(&mut Random) -> Point3) -> bool {
-        (0..self.segments).any(|_| {
-            let eye = random.point(&scene.volume);
-            let point = point(random);
-            scene.is_free(eye, point)
-        })
     }
 }
 

@@ -1,15 +1,8 @@
 //! The contract of [`Stabber`].
 //!
-//! Sequences of portals are drawn as chains of convex cells give them, and walked depth first:
-//! 1. conservative: `push` never blocks a sequence that a line passes;
-//! 2. tight: of the sequences that no line passes, `push` blocks the share of [`Stabbers::tight`];
-//! 3. undone: after an `undo`, and after a `push` that blocks, the stabber answers as one that was only given the
-//!    sequence;
-//! 4. reaching: `may_meet`, `meets` and `in_front` are true of boxes that a line of the sequence meets;
-//! 5. lines: `line` passes every portal, and is there if [`Stabbers::tight`] is 1;
-//! 6. evidence: `decide` agrees with the truth, its lines pass and its proofs hold, and no proof holds for a sequence
-//!    that a line passes;
-//! 7. repeatable: the same calls have the same answers.
+//! Sequences of portals are drawn as chains of convex cells give them, and walked depth first. The clauses are those of
+//! [`Stabber`]; of the sequences that no line passes, `push` has to block the share of [`Stabbers::tight`], no proof holds
+//! for a sequence that a line passes, and the same calls have the same answers.
 //!
 //! The truth is evidence: a sequence is open if a reference stabber has a line that passes it, and blocked if the
 //! reference has a proof that holds. Both are evaluated by code that shares nothing with a solver. Sequences without
@@ -20,7 +13,7 @@ mod check;
 mod impostor;
 
 use super::{Clause, Random, Report, Suite, Violation};
-pub use cases::{Axial, Case, Cases, Convex, Planar};
+pub use cases::{Case, Cases};
 use check::Walk;
 pub use impostor::StabberFault;
 use sightlines_geometry::{Adaptive, Portal3};
@@ -29,11 +22,11 @@ use std::sync::Arc;
 
 /// The suite of stabbers.
 #[derive(Debug, Clone)]
-pub struct Stabbers<R, C> {
+pub struct Stabbers<R: Stabber> {
     /// The stabber with evidence of the truth.
     pub reference: R,
     /// The source of sequences.
-    pub cases: C,
+    pub cases: Cases<R::Portal, R::Bounds>,
     /// The seed of the sequences.
     pub seed: u64,
     /// Sequences, of 2 to 9 portals each.
@@ -43,40 +36,35 @@ pub struct Stabbers<R, C> {
     pub tight: f64,
 }
 
-impl<R, C> Stabbers<R, C> {
+impl<R: Stabber> Stabbers<R> {
     /// For exact stabbers; takes less than a second.
-    fn quick(reference: R, cases: C) -> Self {
+    fn quick(reference: R, cases: Cases<R::Portal, R::Bounds>) -> Self {
         Self { reference, cases, seed: 1, rounds: 300, tight: 1.0 }
     }
 }
 
-impl Stabbers<Funnel<Adaptive>, Planar> {
+impl Stabbers<Funnel<Adaptive>> {
     /// For doors in the plane.
     pub fn planar() -> Self {
-        Self::quick(Funnel::new(Adaptive), Planar)
+        Self::quick(Funnel::new(Adaptive), cases::PLANAR)
     }
 }
 
-impl Stabbers<AxialStabber, Axial> {
+impl Stabbers<AxialStabber> {
     /// For axis-aligned doors in space.
     pub fn axial() -> Self {
-        Self::quick(AxialStabber::new(), Axial)
+        Self::quick(AxialStabber::new(), cases::AXIAL)
     }
 }
 
-impl Stabbers<ConvexSequence<Arc<Portal3>>, Convex> {
+impl Stabbers<ConvexSequence<Arc<Portal3>>> {
     /// For convex polygons in space.
     pub fn convex() -> Self {
-        Self::quick(ConvexSequence::new(StabLimits::default()), Convex)
+        Self::quick(ConvexSequence::new(StabLimits::default()), cases::CONVEX)
     }
 }
 
-impl<S, R, C> Suite<S> for Stabbers<R, C>
-where
-    S: Stabber<Portal = C::Portal, Bounds = C::Bounds>,
-    R: Stabber<Portal = C::Portal, Bounds = C::Bounds>,
-    C: Cases,
-{
+impl<R: Stabber, S: Stabber<Portal = R::Portal, Bounds = R::Bounds>> Suite<S> for Stabbers<R> {
     const CONTRACT: &'static str = "stabber";
     const NEEDED: &'static [&'static str] =
         &["sequences", "open sequences", "blocked sequences", "boxes that a line meets"];
@@ -88,13 +76,8 @@ where
         let mut walk = Walk::new(stabber, self, report);
         for round in 0..self.rounds {
             // Every other sequence has a line by construction.
-            walk.sequence(round, &self.cases.draw(&mut random, round.is_multiple_of(2)))?;
+            walk.sequence(round, &(self.cases.draw)(&mut random, round.is_multiple_of(2)))?;
         }
-        let [blocked, found] = ["blocked sequences", "blocked sequences found"].map(|what| report[what]);
-        let wanted = self.tight * blocked as f64;
-        if (found as f64) < wanted {
-            return Err(report.broken(Clause::Tight, "all sequences", format!("{wanted} blocked"), found));
-        }
-        Ok(())
+        report.check_share(self.tight, ["blocked sequences", "blocked sequences found"])
     }
 }
