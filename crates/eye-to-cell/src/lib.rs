@@ -12,7 +12,6 @@
 
 #![forbid(unsafe_code)]
 
-pub mod conformance;
 mod doors;
 mod epoch_set;
 mod front;

@@ -26,7 +26,8 @@ pub struct MirrorPiece<'a> {
     pub corners: &'a [[f64; 3]],
 }
 
-/// A table, in memory or not, as preparing an [`crate::VisibleSubgraph`] reads it.
+/// A table, in memory or not, as preparing an [`crate::VisibleSubgraph`] reads it. `conformance::CellSources` in
+/// `crates/testkit` of the repository tests implementations.
 pub trait CellSource {
     /// What may go wrong.
     type Error;

@@ -45,7 +45,7 @@ pub enum BackendError {
 
 /// Fills the multifocal buffers of a job, one for each plane.
 ///
-/// The guarantees of every implementation, checked by the crate's `conformance` module:
+/// The guarantees of every implementation, checked by `conformance::Backends` in `crates/testkit` of the repository:
 /// 1. sound: a stored value never exceeds the exact one at any point of its texel;
 /// 2. tight: where one occluder blocks the whole bundle with room to spare, the texel is blocked, and its value is
 ///    within the stated slack;

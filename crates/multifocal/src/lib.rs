@@ -17,7 +17,6 @@ pub mod adaptive;
 pub mod backend;
 pub mod buffer;
 pub mod carry;
-pub mod conformance;
 pub mod fallback;
 pub mod footprint;
 pub mod form;

@@ -14,7 +14,6 @@
 //! edge of a portal does not count.
 
 pub mod axial;
-pub mod conformance;
 pub mod convex;
 pub mod planar;
 mod simplex;

@@ -22,7 +22,7 @@ pub trait Proof<Portal> {
 /// A search drives it depth first: `start`, then `push` and `undo` in stack order. It separates the search, which
 /// handles cells, from the geometry, which handles lines. Implemented for doors in the plane
 /// ([`Funnel`](crate::Funnel)), axis-aligned doors ([`AxialStabber`](crate::AxialStabber)) and convex polygons
-/// ([`ConvexSequence`](crate::ConvexSequence)); [`conformance`](crate::conformance) tests other implementations.
+/// ([`ConvexSequence`](crate::ConvexSequence)); `conformance::Stabbers` in `crates/testkit` of the repository tests others.
 ///
 /// # Contract
 /// For sequences as chains of convex cells give them:

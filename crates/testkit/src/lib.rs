@@ -5,8 +5,9 @@
 //! - **Owns**: brute-force answers in exact integer arithmetic ([`stabbable_brute_force`],
 //!   [`axial_stabbable_brute_force`], [`sees_brute_force`], [`sector_visibility_brute_force`], [`eye_fan`]), what a
 //!   point among boxes sees ([`directions_among_boxes`]), sampled lower bounds (from a volume: [`sampled_view`]), what is known of worlds of convex
-//!   cells ([`convex`]), stabbing lines as linear programs ([`lp`]), pages in a browser ([`browser`]), work by units with kept results ([`units`]), and strategies that draw from small grids.
-//! - **Out of scope**: the code under test; an oracle that shares a method with it proves nothing.
+//!   cells ([`convex`]), stabbing lines as linear programs ([`lp`]), pages in a browser ([`browser`]), contracts as code ([`conformance`]), work by units with kept results ([`units`]), and strategies that draw from small grids.
+//! - **Out of scope**: the code under test; an oracle that shares a method with it proves nothing. Of the stabber that a suite
+//!   compares with, only evidence counts, which is evaluated.
 //! - **Invariants**: slow on purpose; every answer in the plane is exact for every finite coordinate; rays in
 //!   space are traced in doubles, and what is sampled with them stands clear of rounding.
 //!
@@ -17,6 +18,7 @@ pub mod axial;
 pub mod browser;
 mod bvh;
 mod candidates;
+pub mod conformance;
 pub mod convex;
 pub mod corridor;
 mod exact;

@@ -4,7 +4,7 @@ use sightlines_geometry::Random;
 
 /// Pseudorandom integers: the generator of `geometry`, with remainders for ranges.
 #[derive(Debug, Clone)]
-pub struct SplitMix(Random);
+pub struct SplitMix(pub(crate) Random);
 
 impl SplitMix {
     /// The stream of a seed.
@@ -23,7 +23,7 @@ impl SplitMix {
         if n == 0 { 0 } else { (self.next() % n as u64) as usize }
     }
 
-    fn pick<T: Copy>(&mut self, from: &[T]) -> T {
+    pub(crate) fn pick<T: Copy>(&mut self, from: &[T]) -> T {
         from[self.below(from.len())]
     }
 }

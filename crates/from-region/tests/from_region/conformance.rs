@@ -2,9 +2,9 @@
 
 use sightlines_cells::{Scene, SceneObject};
 use sightlines_from_region::{ViewShafts, VoxelOptions, Voxels};
-use sightlines_multifocal::conformance::from_region::impostors::{Fault, Impostor};
-use sightlines_multifocal::conformance::from_region::{Clause, Effort, RegionScene, run};
 use sightlines_multifocal::{FromRegion, Occluder};
+use sightlines_testkit::conformance::from_regions::wrong;
+use sightlines_testkit::conformance::{Clause, FromRegions, RegionScene, Suite};
 
 fn shafts(scene: &RegionScene) -> Box<dyn FromRegion> {
     let patch = |face: [[f64; 3]; 4]| {
@@ -27,34 +27,28 @@ fn voxels(scene: &RegionScene) -> Box<dyn FromRegion> {
 
 #[test]
 fn view_shafts_conform() {
-    let report = run(&mut shafts, &Effort::quick()).expect("shafts conform");
-    assert_eq!((report.scenes, report.found, report.walled), (60, 240, 240));
-    assert!(report.visible > 100 && report.hidden > 240 && report.near > 200, "{report:?}");
+    let report = FromRegions::quick().run(&mut shafts).expect("shafts conform");
+    let [walled, found] = ["targets behind a wall", "hidden targets behind a wall"].map(|what| report[what]);
+    assert_eq!((report["scenes"], found, walled), (60, 240, 240));
+    assert!(report["visible targets"] > 100 && report["hidden targets"] > 240, "{report:?}");
+    assert!(report["targets near the volume"] > 200, "{report:?}");
 }
 
 #[test]
 fn voxels_conform() {
     // They are coarse: nothing is promised of how much they find.
-    let few = Effort { rounds: 24, tight: 0.0, ..Effort::quick() };
-    let report = run(&mut voxels, &few).expect("voxels conform");
-    assert!(report.visible > 40 && report.hidden > 0, "{report:?}");
+    let few = FromRegions { rounds: 24, tight: 0.0, ..FromRegions::quick() };
+    let report = few.run(&mut voxels).expect("voxels conform");
+    assert!(report["visible targets"] > 40 && report["hidden targets"] > 0, "{report:?}");
 }
 
 #[test]
 fn impostors_are_refused() {
-    for fault in Fault::ALL {
-        let mut make = |scene: &RegionScene| -> Box<dyn FromRegion> {
-            Box::new(Impostor::new(shafts(scene), scene.clone(), fault))
-        };
-        match run(&mut make, &Effort::quick()) {
-            Ok(report) => panic!("{fault:?} goes unnoticed: {report:?}"),
-            Err(violation) => assert!(fault.clauses().contains(&violation.clause()), "{fault:?}: {violation}"),
-        }
-    }
+    FromRegions::quick().refuse_all(|fault| wrong(shafts, fault));
 }
 
 #[test]
 fn a_suite_that_compares_nothing_says_so() {
-    let none = Effort { rounds: 0, ..Effort::quick() };
-    assert_eq!(run(&mut shafts, &none).expect_err("nothing ran").clause(), Clause::Counted);
+    let none = FromRegions { rounds: 0, ..FromRegions::quick() };
+    assert_eq!(none.run(&mut shafts).expect_err("nothing ran").clause, Clause::Counted);
 }

@@ -2,8 +2,8 @@
 
 use sightlines_line_space::LineSpace;
 use sightlines_multifocal::FromRegion;
-use sightlines_multifocal::conformance::from_region::impostors::{Fault, Impostor};
-use sightlines_multifocal::conformance::from_region::{Effort, RegionScene, run};
+use sightlines_testkit::conformance::from_regions::wrong;
+use sightlines_testkit::conformance::{FromRegions, RegionScene, Suite};
 
 fn lines(scene: &RegionScene) -> Box<dyn FromRegion> {
     Box::new(LineSpace::new(&scene.triangles()))
@@ -11,20 +11,14 @@ fn lines(scene: &RegionScene) -> Box<dyn FromRegion> {
 
 #[test]
 fn line_space_conforms() {
-    let report = run(&mut lines, &Effort::quick()).expect("line space conforms");
-    assert_eq!((report.scenes, report.found, report.walled), (60, 240, 240));
-    assert!(report.visible > 100 && report.hidden > 240 && report.near > 200, "{report:?}");
+    let report = FromRegions::quick().run(&mut lines).expect("line space conforms");
+    let [walled, found] = ["targets behind a wall", "hidden targets behind a wall"].map(|what| report[what]);
+    assert_eq!((report["scenes"], found, walled), (60, 240, 240));
+    assert!(report["visible targets"] > 100 && report["hidden targets"] > 240, "{report:?}");
+    assert!(report["targets near the volume"] > 200, "{report:?}");
 }
 
 #[test]
 fn impostors_are_refused() {
-    for fault in Fault::ALL {
-        let mut make = |scene: &RegionScene| -> Box<dyn FromRegion> {
-            Box::new(Impostor::new(lines(scene), scene.clone(), fault))
-        };
-        match run(&mut make, &Effort::quick()) {
-            Ok(report) => panic!("{fault:?} goes unnoticed: {report:?}"),
-            Err(violation) => assert!(fault.clauses().contains(&violation.clause()), "{fault:?}: {violation}"),
-        }
-    }
+    FromRegions::quick().refuse_all(|fault| wrong(lines, fault));
 }

@@ -2,11 +2,10 @@
 
 use sightlines_bake::{PlanBakeOptions, StabOptions, bake_plan, with_stab_trees};
 use sightlines_eye_to_cell::TableCells;
-use sightlines_eye_to_cell::conformance::impostors::{Fault, Impostor};
-use sightlines_eye_to_cell::conformance::run;
 use sightlines_packed::{PackOptions, Packed, pack};
 use sightlines_pvs::Table;
 use sightlines_scenes::{OfficeOptions, office};
+use sightlines_testkit::conformance::{CellSources, Impostor, Suite};
 use sightlines_walkthrough::PackedCells;
 
 fn table() -> Table {
@@ -24,22 +23,21 @@ fn packed(table: &Table) -> PackedCells<Vec<u8>> {
 #[test]
 fn tables_in_memory_and_packed_conform() {
     let table = table();
-    let cells = TableCells::new(&table);
-    let own = run(&cells, None::<&TableCells<Table>>).expect("a table in memory conforms");
-    assert!(own.cells > 50 && own.edges > 2 * own.cells && own.visible > own.edges, "{own:?}");
-    assert!(own.objects > 10 && own.objects_seen > own.objects && own.nodes > own.cells, "{own:?}");
-    let compared = run(&packed(&table), Some(&cells)).expect("a packed table conforms");
-    assert_eq!((compared.compared, compared.edges, compared.nodes), (own.cells, own.edges, own.nodes));
+    let mut cells = TableCells::new(&table);
+    let own =
+        CellSources { reference: None::<&TableCells<Table>> }.run(&mut cells).expect("a table in memory conforms");
+    assert!(own["cells"] > 50 && own["portals of cells"] > 2 * own["cells"], "{own:?}");
+    assert!(own["visible cells"] > own["portals of cells"] && own["objects"] > 10, "{own:?}");
+    assert!(own["visible objects"] > own["objects"] && own["nodes of stab trees"] > own["cells"], "{own:?}");
+    let compared = CellSources { reference: Some(&cells) }.run(&mut packed(&table)).expect("a packed table conforms");
+    assert_eq!(compared["cells compared"], own["cells"]);
+    assert_eq!(compared["portals of cells"], own["portals of cells"]);
+    assert_eq!(compared["nodes of stab trees"], own["nodes of stab trees"]);
 }
 
 #[test]
 fn impostors_are_refused() {
     let table = table();
     let cells = TableCells::new(&table);
-    for fault in Fault::ALL {
-        match run(&Impostor::new(TableCells::new(&table), fault), Some(&cells)) {
-            Ok(report) => panic!("{fault:?} goes unnoticed: {report:?}"),
-            Err(violation) => assert_eq!(violation.clause(), fault.clause(), "{fault:?}: {violation}"),
-        }
-    }
+    CellSources { reference: Some(&cells) }.refuse_all(|fault| Impostor::new(TableCells::new(&table), fault));
 }

@@ -1,6 +1,6 @@
 //! Shapes that hide, in a frame that looks along z: eyes around the origin, the nearest plane at z = 8.
 
-use super::random::Random;
+use super::Random;
 use sightlines_geometry::Point3;
 
 /// An outline and the triangles within it, counter-clockwise as seen from below, where eyes are.

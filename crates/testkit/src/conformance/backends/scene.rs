@@ -1,41 +1,37 @@
 //! Scenes of all kinds, most of them degenerate.
 
-use super::random::Random;
+use super::Random;
 use super::shapes::{self, Shape};
-use crate::{Job, Measure, Occluder, Plane, Volume};
 use sightlines_geometry::{Aabb, Point3};
+use sightlines_multifocal::{Job, Measure, Occluder, Plane, Volume};
 
 /// Kinds of scenes.
 pub(super) const FAMILIES: [Family; 17] = [
-    Family { name: "triangles", draw: |r| several(r, shapes::triangle) },
-    Family { name: "sweep", draw: sweep },
-    Family { name: "uneven", draw: |r| several(r, shapes::uneven) },
-    Family { name: "parallel", draw: |r| several(r, shapes::parallel) },
-    Family { name: "tilted", draw: |r| several(r, shapes::tilted) },
-    Family { name: "bent", draw: |r| several(r, shapes::bent) },
-    Family { name: "non-convex", draw: |r| several(r, shapes::non_convex) },
-    Family { name: "slivers", draw: |r| several(r, shapes::sliver) },
-    Family { name: "through-volume", draw: through_volume },
-    Family { name: "through-plane", draw: through_plane },
-    Family { name: "edge-on", draw: edge_on },
-    Family { name: "tiny", draw: |r| several(r, tiny) },
-    Family { name: "huge", draw: |r| several(r, huge) },
-    Family { name: "far", draw: far },
-    Family { name: "touching", draw: touching },
-    Family { name: "slit", draw: slit },
-    Family { name: "elsewhere", draw: elsewhere },
+    ("triangles", |r| several(r, shapes::triangle)),
+    ("sweep", sweep),
+    ("uneven", |r| several(r, shapes::uneven)),
+    ("parallel", |r| several(r, shapes::parallel)),
+    ("tilted", |r| several(r, shapes::tilted)),
+    ("bent", |r| several(r, shapes::bent)),
+    ("non-convex", |r| several(r, shapes::non_convex)),
+    ("slivers", |r| several(r, shapes::sliver)),
+    ("through-volume", through_volume),
+    ("through-plane", through_plane),
+    ("edge-on", edge_on),
+    ("tiny", |r| several(r, tiny)),
+    ("huge", |r| several(r, huge)),
+    ("far", far),
+    ("touching", touching),
+    ("slit", slit),
+    ("elsewhere", elsewhere),
 ];
 
-/// A kind of scenes.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Family {
-    pub(super) name: &'static str,
-    draw: fn(&mut Random) -> Sketch,
-}
+/// The name of a kind of scenes, and how they are drawn.
+pub(super) type Family = (&'static str, fn(&mut Random) -> Sketch);
 
 /// A scene as drawn, in the frame of [`shapes`].
 #[derive(Debug, Clone)]
-struct Sketch {
+pub(super) struct Sketch {
     shapes: Vec<Shape>,
     eyes: Aabb<3>,
     /// Heights of the planes along z, ascending.
@@ -61,10 +57,10 @@ pub(super) struct Scene {
 }
 
 impl Scene {
-    pub(super) fn draw(family: Family, seed: u64, round: u32) -> Self {
-        let name = family.name.bytes().fold(seed, |h, b| h.wrapping_mul(0x100_0000_01b3) ^ u64::from(b));
+    pub(super) fn draw((family, draw): Family, seed: u64, round: u32) -> Self {
+        let name = family.bytes().fold(seed, |h, b| h.wrapping_mul(0x100_0000_01b3) ^ u64::from(b));
         let mut random = Random::new(name.wrapping_add(u64::from(round) << 32));
-        let sketch = (family.draw)(&mut random);
+        let sketch = draw(&mut random);
         let frame = Frame::draw(&mut random, &sketch);
         let grid = sketch.grid.unwrap_or_else(|| Grid::draw(&mut random, round));
         let volume = Volume::new(frame.place_box(&sketch.eyes)).expect("eyes are in a box");
@@ -79,7 +75,7 @@ impl Scene {
             Occluder::patch(shape.outline, &shape.triangles).ok()
         });
         let occluders = occluders.collect();
-        Self { family: family.name, seed, round, volume, planes, occluders, carry }
+        Self { family, seed, round, volume, planes, occluders, carry }
     }
 
     /// The job of the whole scene; planes are carried over only if the measure allows it.
@@ -99,7 +95,7 @@ struct Frame {
 
 impl Frame {
     fn draw(random: &mut Random, sketch: &Sketch) -> Self {
-        let axis = random.below(3) as usize;
+        let axis = random.below(3);
         Self { axis, positive: random.coin(), offset: sketch.offset, scale: sketch.scale }
     }
 
@@ -137,7 +133,7 @@ impl Grid {
     /// In one round of four wider than a block of 64, which is how many texels some backends do at once.
     fn draw(random: &mut Random, round: u32) -> Self {
         let step = [0, 1].map(|_| random.pick(&[0.25, 0.375, 0.5, 1.0, 2.0]));
-        let texels = [0, 1].map(|_| 1 + random.below(14));
+        let texels = [0, 1].map(|_| 1 + random.below(14) as u32);
         Self { texels: if round % 4 == 3 { [60 + texels[0], texels[1]] } else { texels }, step }
     }
 }
@@ -172,14 +168,14 @@ fn through_volume(random: &mut Random) -> Sketch {
     let b = scene.eyes;
     let wall = |z: f64, tilt: f64| Shape::rectangle([-6.0, -6.0], [6.0, 6.0], z, [tilt, 0.0]);
     let through = [wall(z, 0.0), wall(b.max[2], 0.0), wall(b.min[2], 0.25), wall(b.max[2] + 0.125, 0.0)];
-    scene.shapes.insert(0, through[random.below(4) as usize].clone());
+    scene.shapes.insert(0, through[random.below(4)].clone());
     scene
 }
 
 /// Shapes that cut the planes, lie in them, or touch them with an edge or a corner.
 fn through_plane(random: &mut Random) -> Sketch {
     let mut scene = several(random, shapes::tilted);
-    let (x, z) = (random.eighth(-2, 2), scene.planes[random.below(scene.planes.len() as u32) as usize]);
+    let (x, z) = (random.eighth(-2, 2), random.pick(&scene.planes));
     let shape = match random.below(4) {
         // Lies in it.
         0 => Shape::rectangle([-3.0, -3.0], [x + 3.0, 4.0], z, [0.0; 2]),
@@ -278,7 +274,7 @@ fn sweep(random: &mut Random) -> Sketch {
     let mut scene = sketch(random, shapes);
     scene.eyes = Aabb { min: [-1.0, -0.5, -0.5], max: [1.0, 0.5, 0.5] };
     scene.planes = vec![8.0, 8.0 + random.pick(&[0.25, 1.0]), 13.0];
-    let texels = [12 + random.below(6), 4 + random.below(4)];
+    let texels = [12 + random.below(6) as u32, 4 + random.below(4) as u32];
     scene.grid = Some(Grid { texels, step: [0.5, random.pick(&[0.5, 0.75])] });
     scene.sweeps = true;
     scene

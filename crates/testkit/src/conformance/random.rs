@@ -1,37 +1,30 @@
-//! The suite's own random numbers: SplitMix64, the same on every machine.
+//! Random numbers that make coincidences likely.
 
-use sightlines_geometry::Random as Bits;
-
-/// Random numbers that make coincidences likely.
-#[derive(Debug, Clone)]
-pub(super) struct Random(Bits);
+use super::Random;
+use sightlines_geometry::{Aabb, Point3};
 
 impl Random {
-    pub(super) fn new(seed: u64) -> Self {
-        Self(Bits::new(seed))
-    }
-
-    /// Less than `n`, which is small, so that the bias does not matter.
-    pub(super) fn below(&mut self, n: u32) -> u32 {
-        (self.0.bits() % u64::from(n)) as u32
-    }
-
     pub(super) fn coin(&mut self) -> bool {
         self.below(2) == 0
     }
 
-    pub(super) fn pick<T: Copy>(&mut self, from: &[T]) -> T {
-        from[self.below(from.len() as u32) as usize]
-    }
-
     /// A multiple of an eighth from `low` to `high`, both integers: so that things meet, line up and coincide.
     pub(super) fn eighth(&mut self, low: i32, high: i32) -> f64 {
-        f64::from(low) + f64::from(self.below((high - low) as u32 * 8 + 1)) / 8.0
+        f64::from(low) + self.below((high - low) as usize * 8 + 1) as f64 / 8.0
+    }
+
+    /// A multiple of 1/16 above `low`, by less than `span`.
+    pub(super) fn sixteenth(&mut self, low: f64, span: usize) -> f64 {
+        low + self.below(16 * span) as f64 / 16.0
     }
 
     /// From `low` to `high`, all bits used.
     pub(super) fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.0.unit()
+    }
+
+    pub(super) fn point(&mut self, b: &Aabb<3>) -> Point3 {
+        self.0.point(b)
     }
 }
 
@@ -42,7 +35,7 @@ mod tests {
     #[test]
     fn numbers_are_those_of_the_paper_and_within_their_ranges() {
         let mut random = Random::new(0);
-        assert_eq!([random.0.bits(), random.0.bits()], [0xe220_a839_7b1d_cdaf, 0x6e78_9e6a_a1b9_65f4]);
+        assert_eq!([random.next(), random.next()], [0xe220_a839_7b1d_cdaf, 0x6e78_9e6a_a1b9_65f4]);
         for _ in 0..1000 {
             assert!(random.below(3) < 3);
             let x = random.eighth(-1, 2);
