@@ -229,7 +229,8 @@ pub(crate) fn decide(
             let made = make();
             let method = (made.name(), made.only_in_air());
             let (occludees, witness) = targets_of(scene, &boxes[..n_objects]);
-            let scene = see::Targets::new((&occludees, &witness), &volumes, regions);
+            let has_one_way = !scene.front_occluders().is_empty();
+            let scene = see::Targets::new((&occludees, &witness), &volumes, has_one_way, regions);
             let takes_turns = by_sightlines && matches!(graph, TableGraph::Boxes(_));
             let allowance = if takes_turns { options.budget.part(1.0 - SIGHTLINES) } else { options.budget };
             let seen = see::see(&scene, make, options, allowance, rows, objects)?;

@@ -25,6 +25,8 @@ pub(super) struct Targets<'a> {
     pub(super) occludees: &'a Occludees,
     pub(super) witness: &'a RaySampler,
     pub(super) volumes: &'a [Volume],
+    /// Whether something hides from one side only: then one cell may see another that does not see it.
+    pub(super) has_one_way: bool,
     /// Boxes elsewhere, of which is asked as of cells; they come behind these, list by list.
     pub(super) regions: &'a Regions<'a>,
     /// Of the volumes, and of each list of regions, with the first of their boxes; a leaf for each box. What is found about the boxes of one
@@ -39,6 +41,7 @@ impl<'a> Targets<'a> {
     pub(super) fn new(
         (occludees, witness): (&'a Occludees, &'a RaySampler),
         volumes: &'a [Volume],
+        has_one_way: bool,
         regions: &'a Regions<'a>,
     ) -> Self {
         let cells: Vec<Aabb<3>> = volumes.iter().map(|volume| *volume.bounds()).collect();
@@ -49,7 +52,7 @@ impl<'a> Targets<'a> {
             (at, BoxTree::build(boxes, 1))
         });
         let trees = trees.collect();
-        Self { occludees, witness, volumes, regions, trees }
+        Self { occludees, witness, volumes, has_one_way, regions, trees }
     }
 
     /// How many cells and regions there are.
@@ -67,6 +70,8 @@ pub(super) struct RegionVisibility {
     /// What was not decided because the allowance was over; where the method was stopped, also some of what it would have left visible.
     pub(super) left: PairMask,
     pub(super) effort: Effort,
+    /// If something hides from one side only: for each cell those that are hidden from it, though it may not be hidden from them.
+    hidden_one_way: Option<BitMatrix>,
 }
 
 /// Most turns of a cell that is not decided in its share of a budget; each begins anew, for what is in doubt.
@@ -92,7 +97,9 @@ pub(super) fn see(
     let n_things = scene.occludees.len() + scene.n_boxes() - n;
     let none = || PairMask { boxes: BitMatrix::new(n, n), objects: BitMatrix::new(n, n_things) };
     let n_objects = scene.occludees.len();
-    let mut known = RegionVisibility { rows, objects, proven: none(), left: none(), effort: Effort::default() };
+    let hidden_one_way = scene.has_one_way.then(|| BitMatrix::new(n, n));
+    let (proven, left, effort) = (none(), none(), Effort::default());
+    let mut known = RegionVisibility { rows, objects, proven, left, effort, hidden_one_way };
     if !allowance.is_limited() {
         let found = see_all(scene, make, options, Some(&known))?;
         found.into_iter().enumerate().for_each(|(cell, row)| known.add(cell, &row, n_objects));
@@ -202,9 +209,15 @@ impl RegionVisibility {
         let column = |region: usize| n_objects + region - n;
         for b in gaps(&row.cells, n_boxes as u32).flatten().map(|b| b as usize).filter(|&b| a != b) {
             if b < n {
-                // Sight is symmetric: either of the two may have found that there is none.
-                self.rows.set(a, b, false);
-                self.rows.set(b, a, false);
+                // Sight is symmetric, and either of the two may have found that there is none; but not past what hides from one side.
+                let is_hidden = self.hidden_one_way.as_mut().is_none_or(|hidden| {
+                    hidden.set(a, b, true);
+                    hidden.get(b, a)
+                });
+                if is_hidden {
+                    self.rows.set(a, b, false);
+                    self.rows.set(b, a, false);
+                }
             } else {
                 self.objects.set(a, column(b), false);
             }

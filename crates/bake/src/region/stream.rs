@@ -12,6 +12,7 @@ use sightlines_cells::Scene;
 use sightlines_multifocal::Effort;
 use sightlines_packed::{PackReport, PackWriter, StreamError, StreamOptions};
 use sightlines_pvs::{CellId, ObjectId, SceneMethods, TableKind, TableParts};
+use std::collections::BTreeMap;
 use std::io::Write;
 use std::ops::Range;
 use std::time::Instant;
@@ -71,8 +72,9 @@ fn pack_here<W: Write>(
     let (method, only_in_air) = (made.name(), made.only_in_air());
     drop(made);
     let (occludees, witness) = targets_of(scene, &boxes);
-    let targets = see::Targets::new((&occludees, &witness), &volumes, &[]);
+    let targets = see::Targets::new((&occludees, &witness), &volumes, !scene.front_occluders().is_empty(), &[]);
     let rows = see::see_all(&targets, make, options, None)?;
+    let seen_one_way = if targets.has_one_way { seen_one_way(&rows) } else { BTreeMap::new() };
     state_objects(&mut parts, scene, &boxes);
     parts.cell_objects = touching.iter().map(|list| list.iter().copied().map(ObjectId).collect()).collect();
     parts.kind =
@@ -88,7 +90,14 @@ fn pack_here<W: Write>(
     let (mut seen, mut things): (Vec<CellId>, Vec<ObjectId>) = (Vec::new(), Vec::new());
     for (cell, row) in (0u32..).zip(&rows) {
         seen.clear();
-        seen.extend(both_ways(cell, row, &rows).map(CellId));
+        if targets.has_one_way {
+            seen.extend(row.cells.iter().cloned().flatten().chain([cell]).map(CellId));
+            seen.extend(seen_one_way.get(&cell).into_iter().flatten().copied().map(CellId));
+            seen.sort_unstable();
+            seen.dedup();
+        } else {
+            seen.extend(both_ways(cell, row, &rows).map(CellId));
+        }
         things.clear();
         things.extend(row.objects.iter().cloned().flatten().map(ObjectId));
         things.extend(touching[cell as usize].iter().copied().map(ObjectId));
@@ -123,6 +132,17 @@ fn both_ways<'a>(cell: u32, row: &'a CellRow, rows: &'a [CellRow]) -> impl Itera
     let others =
         |of: Box<dyn Iterator<Item = u32> + 'a>| of.filter(move |&other| has(&rows[other as usize].cells, cell));
     others(Box::new(below)).chain([cell]).chain(others(Box::new(above)))
+}
+
+/// For cells that see fewer cells than see them, those others, ascending: where something hides from one side only.
+fn seen_one_way(rows: &[CellRow]) -> BTreeMap<u32, Vec<u32>> {
+    let mut all: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+    for (cell, row) in (0u32..).zip(rows) {
+        for other in row.cells.iter().cloned().flatten().filter(|&other| !has(&rows[other as usize].cells, cell)) {
+            all.entry(other).or_default().push(cell);
+        }
+    }
+    all
 }
 
 fn has(runs: &[Range<u32>], cell: u32) -> bool {

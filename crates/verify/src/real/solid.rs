@@ -79,10 +79,7 @@ impl SolidWorld {
             object_of,
             of_object,
             is_opaque: (0u32..).zip(scene.objects()).map(|(object, _)| scene.is_opaque(object)).collect(),
-            hides_from_front: (0u32..)
-                .zip(scene.objects())
-                .map(|(object, _)| scene.hides_from_front(object))
-                .collect(),
+            hides_from_front: (0u32..).zip(scene.objects()).map(|(object, _)| scene.hides_from_front(object)).collect(),
             is_single_sided: (0u32..).zip(scene.objects()).map(|(object, _)| scene.is_single_sided(object)).collect(),
             cells,
             next: neighbours_of(table),
@@ -121,10 +118,11 @@ impl SolidWorld {
     /// Whether a triangle stops the sight of an eye. Exact.
     fn stops_sight(&self, triangle: u32, eye: Point3) -> bool {
         let object = self.object_of[triangle as usize] as usize;
-        self.is_opaque[object] || self.hides_from_front[object] && {
-            let [a, b, c] = self.triangles[triangle as usize];
-            sightlines_geometry::orient3d(a, b, c, eye) > 0.0
-        }
+        self.is_opaque[object]
+            || self.hides_from_front[object] && {
+                let [a, b, c] = self.triangles[triangle as usize];
+                sightlines_geometry::orient3d(a, b, c, eye) > 0.0
+            }
     }
 
     /// The first triangle that stops a ray from an eye, and where, as a multiple of its direction; rounded.
