@@ -31,6 +31,3 @@ pub use write::{write_plan, write_plan_file};
 
 /// Groups are below this number, because tables over groups follow.
 pub const MAX_GROUPS: u32 = 1 << 20;
-
-#[cfg(test)]
-mod tests;

@@ -85,6 +85,3 @@ pub fn write_levels_index(index: &LevelsIndex) -> String {
 fn text(value: &impl Serialize) -> String {
     serde_json::to_string(value).expect("numbers and texts are JSON")
 }
-
-#[cfg(test)]
-mod tests;

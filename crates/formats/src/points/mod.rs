@@ -16,9 +16,6 @@
 mod csv;
 mod error;
 
-#[cfg(test)]
-mod tests;
-
 pub use error::{PointsError, PointsErrorKind};
 
 use crate::{ReadError, geojson};

@@ -101,26 +101,3 @@ impl LeafClusters {
         &self.leafs[self.starts[cluster] as usize..self.starts[cluster + 1] as usize]
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn leafs_are_grouped() {
-        let leafs = LeafClusters::new(4, vec![2, 0, 2, 3, 0]).unwrap();
-        assert_eq!((leafs.n_leafs(), leafs.n_clusters()), (5, 4));
-        let groups: Vec<&[u32]> = (0..4).map(|c| leafs.leafs_of(c)).collect();
-        assert_eq!(groups, [&[1, 4][..], &[], &[0, 2], &[3]]);
-        assert_eq!(leafs.cluster_of_leaf(), [2, 0, 2, 3, 0]);
-        assert_eq!(LeafClusters::identity(3), LeafClusters::new(3, vec![0, 1, 2]));
-    }
-
-    #[test]
-    fn impossible_groups_are_refused() {
-        let text = |r: Result<LeafClusters, LeafError>| r.unwrap_err().to_string();
-        assert_eq!(text(LeafClusters::new(2, vec![0, 2])), "leaf 1 is in cluster 2, but there are 2");
-        assert_eq!(text(LeafClusters::identity(0)), "0 clusters are not from 1 to 65536");
-        assert_eq!(text(LeafClusters::identity(u32::MAX)), "4294967295 clusters are not from 1 to 65536");
-    }
-}

@@ -37,6 +37,3 @@ pub struct ViewCell {
     /// Where it is, in scene units, along the axes of the cells.
     pub bounds: Aabb<3>,
 }
-
-#[cfg(test)]
-mod tests;

@@ -227,6 +227,3 @@ impl LumpName {
         Ok(Self::from_raw(raw))
     }
 }
-
-#[cfg(test)]
-mod tests;

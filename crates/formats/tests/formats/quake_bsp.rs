@@ -2,7 +2,7 @@
 
 use crate::common::quake::{SmallBsp, check_bsp, difference_besides_visibility, small_bsps};
 use proptest::prelude::*;
-use sightlines_formats::quake::bsp::{AmbientTexture, AmbientTextures, BspError, BspLumpId, LeafRow};
+use sightlines_formats::quake::bsp::{AmbientKind, AmbientTexture, AmbientTextures, BspError, BspLumpId, LeafRow};
 use sightlines_formats::quake::visibility::{
     self, VisibilityLump, ambient, check_match, check_portals, lump_with_new_hearing, lump_with_sounds, read_hearing,
     read_visibility,
@@ -488,5 +488,28 @@ proptest! {
         prop_assert_eq!(read_visibility(&after, &leafs), Ok(Some(seen)));
         // Leafs do not change at all.
         prop_assert_eq!(after.lump_bytes(8), bsp.lump_bytes(8));
+    }
+}
+
+#[test]
+fn textures_sound_by_their_names() {
+    let kind = |name: &str| AmbientKind::of_texture(name.as_bytes());
+    for name in ["*water1", "*WATER", "*04water2", "*slime0", "*Slime"] {
+        assert_eq!(kind(name), Some(AmbientKind::Water), "{name}");
+    }
+    assert_eq!(AmbientTexture::of_name(b"*slime0"), Some(AmbientTexture::Slime));
+    assert_eq!((kind("sky4"), kind("SKY")), (Some(AmbientKind::Sky), Some(AmbientKind::Sky)));
+    assert_eq!((kind("*lava"), kind("*lava1")), (Some(AmbientKind::Lava), Some(AmbientKind::Lava)));
+    for name in ["", "sk", "water", "*teleport", "*04mwat1", "brick\0*water", "*wate\0"] {
+        assert_eq!(kind(name), None, "{name:?}");
+    }
+}
+
+#[test]
+fn textures_are_turned_off_one_by_one() {
+    let mut loud = AmbientTextures::ALL;
+    for (k, texture) in AmbientTexture::ALL.into_iter().enumerate() {
+        loud = loud.without(texture).without(texture);
+        assert_eq!(AmbientTexture::ALL.map(|t| loud.has(t)), std::array::from_fn(|other| other > k));
     }
 }

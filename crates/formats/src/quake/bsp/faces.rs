@@ -257,31 +257,3 @@ impl Runs {
         heard.fold(0, |bits, (_, kind)| bits | kind.bit())
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn textures_sound_by_their_names() {
-        let kind = |name: &str| AmbientKind::of_texture(name.as_bytes());
-        for name in ["*water1", "*WATER", "*04water2", "*slime0", "*Slime"] {
-            assert_eq!(kind(name), Some(AmbientKind::Water), "{name}");
-        }
-        assert_eq!(AmbientTexture::of_name(b"*slime0"), Some(AmbientTexture::Slime));
-        assert_eq!((kind("sky4"), kind("SKY")), (Some(AmbientKind::Sky), Some(AmbientKind::Sky)));
-        assert_eq!((kind("*lava"), kind("*lava1")), (Some(AmbientKind::Lava), Some(AmbientKind::Lava)));
-        for name in ["", "sk", "water", "*teleport", "*04mwat1", "brick\0*water", "*wate\0"] {
-            assert_eq!(kind(name), None, "{name:?}");
-        }
-    }
-
-    #[test]
-    fn textures_are_turned_off_one_by_one() {
-        let mut loud = AmbientTextures::ALL;
-        for (k, texture) in AmbientTexture::ALL.into_iter().enumerate() {
-            loud = loud.without(texture).without(texture);
-            assert_eq!(AmbientTexture::ALL.map(|t| loud.has(t)), std::array::from_fn(|other| other > k));
-        }
-    }
-}

@@ -1,5 +1,9 @@
-use super::*;
+//! The index of levels.
+
 use proptest::prelude::*;
+use sightlines_formats::levels::{
+    INDEX_NAME, LevelFile, LevelsIndex, LevelsPlace, parse_levels_index, read_levels_index, write_levels_index,
+};
 
 fn level(k: usize) -> LevelFile {
     let file = format!("level_{k}.glb");

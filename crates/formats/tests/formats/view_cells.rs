@@ -1,7 +1,10 @@
-use super::*;
+//! View cells: against an oracle that looks at the whole text as a tree of values.
+
 use proptest::prelude::*;
 use serde_json::Value;
-use sightlines_geometry::check_coordinate;
+use sightlines_formats::ViewCellsError;
+use sightlines_formats::view_cells::{ViewCell, ViewCells, ViewCellsErrorKind, parse_view_cells, read_view_cells};
+use sightlines_geometry::{Aabb, check_coordinate};
 use sightlines_testkit::mutate::{SplitMix, flipped_bits, mutate};
 
 fn parsed(text: &str) -> ViewCells {
