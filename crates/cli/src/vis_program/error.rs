@@ -2,8 +2,8 @@
 
 use crate::commands::vis;
 use crate::error::OutputError;
-use sightlines::formats::ReadError;
-use sightlines::formats::quake::{BspError, VisibilityError};
+use sightlines::formats::quake::VisibilityError;
+use sightlines::formats::{Malformed, ReadError};
 use std::io;
 use std::path::PathBuf;
 
@@ -33,5 +33,5 @@ pub(super) enum Error {
     Visibility { path: PathBuf, source: VisibilityError },
     /// A map cannot hold what is heard.
     #[error("{}: {source}", path.display())]
-    Bsp { path: PathBuf, source: BspError },
+    Bsp { path: PathBuf, source: Malformed },
 }

@@ -1,6 +1,7 @@
 //! What maps of all formats hold: lines, things, and the lists of them.
 
 use super::ML_TWOSIDED;
+use crate::error::{Malformed, malformed};
 
 /// A line from one vertex to another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -49,5 +50,39 @@ impl Content {
     /// Whether the ends of a line are two points.
     pub(super) fn has_length(&self, line: &LineDef) -> bool {
         self.vertices[line.v1 as usize] != self.vertices[line.v2 as usize]
+    }
+
+    /// The first line with a vertex or a side that is not there.
+    pub(super) fn wrong_line(&self) -> Option<(usize, NotThere)> {
+        let (n_vertices, n_sides) = (self.vertices.len(), self.side_sectors.len());
+        self.lines.iter().enumerate().find_map(|(index, line)| {
+            let vertex = NotThere::among(0, [Some(line.v1), Some(line.v2)], n_vertices);
+            Some((index, vertex.or_else(|| NotThere::among(1, [line.right, line.left], n_sides))?))
+        })
+    }
+
+    /// The first side with a sector that is not there.
+    pub(super) fn wrong_side(&self) -> Option<(usize, NotThere)> {
+        let among = |&sector: &u32| NotThere::among(0, [Some(sector)], self.n_sectors);
+        self.side_sectors.iter().enumerate().find_map(|(index, sector)| Some((index, among(sector)?)))
+    }
+}
+
+/// A number of something that is not there: of one of two kinds.
+pub(super) struct NotThere {
+    kind: usize,
+    number: u32,
+    n: usize,
+}
+
+impl NotThere {
+    fn among<const N: usize>(kind: usize, numbers: [Option<u32>; N], n: usize) -> Option<Self> {
+        let number = numbers.into_iter().flatten().find(|&number| number as usize >= n)?;
+        Some(Self { kind, number, n })
+    }
+
+    /// As an error, with what both kinds are called.
+    pub(super) fn of(&self, kinds: [&str; 2]) -> Malformed {
+        malformed!("{} {} is not among the {} there are", kinds[self.kind], self.number, self.n)
     }
 }

@@ -1,6 +1,7 @@
 //! Finding the maps of a WAD: a marker, and the lumps that follow it.
 
-use super::{DoomError, DoomErrorKind, MapFormat, MapLump};
+use super::{MapFormat, MapLump};
+use crate::error::{Malformed, malformed};
 use crate::wad::{LumpName, Wad};
 use std::ops::Range;
 
@@ -56,20 +57,20 @@ impl MapLumps {
         }
     }
 
-    pub(super) fn error(&self, kind: impl Into<DoomErrorKind>) -> DoomError {
-        DoomError { map: self.name, kind: kind.into() }
-    }
-
-    pub(super) fn require(&self, lump: MapLump) -> Result<usize, DoomError> {
-        self.lump(lump).ok_or_else(|| self.error(DoomErrorKind::MissingLump(lump)))
+    pub(super) fn require(&self, lump: MapLump) -> Result<usize, Malformed> {
+        self.lump(lump).ok_or_else(|| malformed!("there is no such lump").within(lump))
     }
 
     /// Refuses formats that are not read here, and maps with a lump twice.
-    pub(super) fn check_readable(&self) -> Result<(), DoomError> {
+    pub(super) fn check_readable(&self) -> Result<(), Malformed> {
         match (self.format, self.repeated) {
-            (MapFormat::Console, _) => Err(self.error(DoomErrorKind::Unsupported(self.format))),
-            (_, Some((lump, indices))) => Err(self.error(DoomErrorKind::RepeatedLump { lump, indices })),
-            (MapFormat::Udmf, _) if self.endmap.is_none() => Err(self.error(DoomErrorKind::NoEnd)),
+            (MapFormat::Console, _) => Err(malformed!("maps in {} format are not supported", self.format)),
+            (_, Some((lump, [first, second]))) => {
+                Err(malformed!("there are two such lumps, {first} and {second}").within(lump))
+            }
+            (MapFormat::Udmf, _) if self.endmap.is_none() => {
+                Err(malformed!("there is no such lump behind TEXTMAP").within("ENDMAP"))
+            }
             _ => Ok(()),
         }
     }

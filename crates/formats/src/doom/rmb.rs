@@ -8,53 +8,10 @@
 //! `NOMAP`, `PERFECT`, `PREPROCESS` and `PROCESS` steer the work of RMB only and mean nothing here; as with `PERFECT`, an effect is on the
 //! sectors that are named, and not on those inside them. All other options are refused.
 
+use crate::error::{Malformed, Within, in_file, malformed};
 use crate::wad::LumpName;
 use crate::{ReadError, RejectTable};
 use std::path::Path;
-
-/// What is wrong with an option file, and where, shown as `line 3: ...`.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("line {line}: {kind}")]
-pub struct RmbError {
-    /// Line of the file, from 1.
-    pub line: usize,
-    /// What is wrong there.
-    #[source]
-    pub kind: RmbErrorKind,
-}
-
-/// What is wrong with an option file.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum RmbErrorKind {
-    /// A word that is no option, or the beginning of several.
-    #[error("{0} is not an option of RMB")]
-    Unknown(String),
-    /// An option that is not taken.
-    #[error("the option {0} is not supported")]
-    Unsupported(&'static str),
-    /// A distance that is not taken.
-    #[error("the distance {0} is not supported, only 0 and 1 are")]
-    Distance(u32),
-    /// Something else stands where the option takes one thing.
-    #[error("{option} takes {expected}")]
-    Argument {
-        /// The option.
-        option: &'static str,
-        /// What it takes.
-        expected: &'static str,
-    },
-    /// A sector that is not there.
-    #[error("sector {sector} is not among the {n_sectors} of map {map}")]
-    Sector {
-        /// The map.
-        map: LumpName,
-        /// The sector.
-        sector: u32,
-        /// How many it has.
-        n_sectors: u32,
-    },
-}
 
 /// An option file that was read.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -89,38 +46,18 @@ enum EffectKind {
 }
 
 /// All options of RMB: a word is one of them, or the beginning of a single one.
+#[rustfmt::skip]
 const OPTIONS: [&str; 23] = [
-    "BAND",
-    "BLIND",
-    "BLOCK",
-    "DISTANCE",
-    "DOOR",
-    "EXCLUDE",
-    "GROUP",
-    "INCLUDE",
-    "INVERT",
-    "LEFT",
-    "LENGTH",
-    "LINE",
-    "NODOOR",
-    "NOMAP",
-    "NOPROCESS",
-    "ONE",
-    "PERFECT",
-    "PREPROCESS",
-    "PROCESS",
-    "REPORT",
-    "RIGHT",
-    "SAFE",
-    "TRACE",
+    "BAND", "BLIND", "BLOCK", "DISTANCE", "DOOR", "EXCLUDE", "GROUP", "INCLUDE", "INVERT", "LEFT", "LENGTH", "LINE",
+    "NODOOR", "NOMAP", "NOPROCESS", "ONE", "PERFECT", "PREPROCESS", "PROCESS", "REPORT", "RIGHT", "SAFE", "TRACE",
 ];
 
 impl RmbFile {
     /// Reads the text of an option file. O(length).
     ///
     /// # Errors
-    /// [`RmbError`] with the first line that is wrong, or that has an option that is not taken.
-    pub fn parse(text: &[u8]) -> Result<Self, RmbError> {
+    /// [`Malformed`] with the first line that is wrong, or that has an option that is not taken.
+    pub fn parse(text: &[u8]) -> Result<Self, Malformed> {
         let text = String::from_utf8_lossy(text);
         let mut map = None;
         let mut effects = Vec::new();
@@ -136,7 +73,7 @@ impl RmbFile {
             }
             let word = if word.is_empty() { content.as_str() } else { word };
             // The bracket that ended the word belongs to the rest.
-            let found = effect(word, content[word.len()..].trim()).map_err(|kind| RmbError { line, kind })?;
+            let found = effect(word, content[word.len()..].trim()).within(format_args!("line {line}"))?;
             effects.extend(found.map(|(kind, sectors, targets)| Effect {
                 line,
                 map: map.clone(),
@@ -153,8 +90,8 @@ impl RmbFile {
     /// # Errors
     /// [`ReadError`] with the file and what is wrong.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, ReadError> {
-        let read = || Self::parse(&std::fs::read(path.as_ref())?).map_err(crate::ReadErrorKind::content);
-        read().map_err(|kind: crate::ReadErrorKind| ReadError::new(&path, kind))
+        let path = path.as_ref();
+        in_file(path, || Ok(Self::parse(&std::fs::read(path)?)?))
     }
 
     /// Whether there are effects on a map.
@@ -172,13 +109,13 @@ impl RmbFile {
     /// counts. Costs O(n) for each sector named, and O(n²) once.
     ///
     /// # Errors
-    /// [`RmbError`] for a sector that the map does not have; then the table is as it was.
-    pub fn apply(&self, map: LumpName, table: &mut RejectTable) -> Result<u64, RmbError> {
+    /// [`Malformed`] for a sector that the map does not have; then the table is as it was.
+    pub fn apply(&self, map: LumpName, table: &mut RejectTable) -> Result<u64, Malformed> {
         let n = table.n_sectors();
         for effect in self.effects_on(map) {
             if let Some(&sector) = effect.sectors.iter().chain(&effect.targets).find(|&&s| s >= n) {
-                let kind = RmbErrorKind::Sector { map, sector, n_sectors: n };
-                return Err(RmbError { line: effect.line, kind });
+                let what = malformed!("sector {sector} is not among the {n} of map {map}");
+                return Err(what.on_line(effect.line));
             }
         }
         let before = table.clone();
@@ -212,9 +149,9 @@ impl RmbFile {
 type Found = (EffectKind, Vec<u32>, Vec<u32>);
 
 /// The effect of an option and what stands behind it; `None` for one that means nothing here.
-fn effect(word: &str, rest: &str) -> Result<Option<Found>, RmbErrorKind> {
+fn effect(word: &str, rest: &str) -> Result<Option<Found>, Malformed> {
     let option = option(word)?;
-    let argument = |expected| RmbErrorKind::Argument { option, expected };
+    let argument = |expected: &str| malformed!("{option} takes {expected}");
     match option {
         "NOMAP" | "PERFECT" | "PREPROCESS" | "PROCESS" => Ok(None),
         "INCLUDE" | "EXCLUDE" => {
@@ -230,21 +167,24 @@ fn effect(word: &str, rest: &str) -> Result<Option<Found>, RmbErrorKind> {
             let own = match distance {
                 0 => false,
                 1 => true,
-                _ => return Err(RmbErrorKind::Distance(distance)),
+                _ => return Err(malformed!("the distance {distance} is not supported, only 0 and 1 are")),
             };
             let kind = if option == "BLIND" { EffectKind::Blind { own } } else { EffectKind::Safe { own } };
             Ok(Some((kind, sectors, Vec::new())))
         }
-        _ => Err(RmbErrorKind::Unsupported(option)),
+        _ => Err(malformed!("the option {option} is not supported")),
     }
 }
 
-fn option(word: &str) -> Result<&'static str, RmbErrorKind> {
+fn option(word: &str) -> Result<&'static str, Malformed> {
     let mut found = OPTIONS.iter().filter(|option| option.starts_with(word));
     // A whole word is never the beginning of another option.
     match (found.next(), found.next()) {
         (Some(option), None) => Ok(option),
-        _ => Err(RmbErrorKind::Unknown(word.chars().take(24).collect::<String>().escape_debug().to_string())),
+        _ => {
+            let word: String = word.chars().take(24).collect();
+            Err(malformed!("{} is not an option of RMB", word.escape_debug()))
+        }
     }
 }
 

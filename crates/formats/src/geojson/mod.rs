@@ -17,7 +17,6 @@
 
 mod context;
 mod coordinates;
-mod error;
 mod geometry;
 mod node;
 mod plan_builder;
@@ -25,7 +24,6 @@ mod properties;
 mod read;
 mod write;
 
-pub use error::{GeoJsonError, GeoJsonErrorKind, GeoJsonPlace, GeometryKind};
 pub use read::{parse_plan, parse_plan_file, read_plan, read_plan_file};
 pub use write::{write_plan, write_plan_file};
 

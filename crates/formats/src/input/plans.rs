@@ -1,8 +1,9 @@
 //! Plans of any format, with options.
 
 use super::{Source, detect_file};
+use crate::error::in_file;
 use crate::plan::{PlanFile, PlanReadOptions};
-use crate::{ReadError, ReadErrorKind, dxf, geojson};
+use crate::{ReadError, dxf, geojson};
 use std::path::Path;
 
 /// Reads a plan from a file of any format of plans; GeoJSON if no format recognises it.
@@ -13,11 +14,7 @@ pub fn read_plan_file(path: impl AsRef<Path>, options: &PlanReadOptions) -> Resu
     let path = path.as_ref();
     match detect_file(path)? {
         Some(format) if format.name == "dxf" => {
-            let read = || -> Result<PlanFile, ReadErrorKind> {
-                let bytes = Source::File(path).bytes()?;
-                Ok(dxf::parse_dxf(&bytes, options)?)
-            };
-            read().map_err(|kind| ReadError::new(path, kind))
+            in_file(path, || Ok(dxf::parse_dxf(&Source::File(path).bytes()?, options)?))
         }
         _ => geojson::read_plan_file(path),
     }

@@ -16,10 +16,8 @@
 //! first than in the whole scene: what was allowed, and what is promised. `occluder` states whether the level lies inside the scene, as in
 //! [`Simplified`](crate::scene::Simplified). `file` is beside the index. Members that are not shown here mean nothing.
 
-mod error;
 mod read;
 
-pub use error::{LevelsIndexError, LevelsIndexErrorKind, LevelsPlace};
 pub use read::{parse_levels_index, read_levels_index};
 
 use serde::{Deserialize, Serialize};

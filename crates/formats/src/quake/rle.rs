@@ -3,35 +3,7 @@
 //! Bit `j % 8` of byte `j / 8` stands for column `j`. A byte that is not 0 stands for itself; a 0 is followed
 //! by a byte that says how many zeros there are, 1 to 255.
 
-/// Why bytes are not a row.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum RleError {
-    /// The bytes end within the row.
-    #[error("the bytes end after {found} of {needed} bytes of a row")]
-    Truncated {
-        /// Bytes of the row so far.
-        found: usize,
-        /// Bytes of a row.
-        needed: usize,
-    },
-    /// A run of zeros goes past the end of the row.
-    #[error("a run of {run} zeros at byte {at} of a row goes past its {needed} bytes")]
-    Overrun {
-        /// Zeros in the run.
-        run: u8,
-        /// Where it begins in the row.
-        at: usize,
-        /// Bytes of a row.
-        needed: usize,
-    },
-    /// A run has no zeros. No compiler writes that.
-    #[error("a run of no zeros at byte {at} of a row")]
-    EmptyRun {
-        /// Where it is in the row.
-        at: usize,
-    },
-}
+use crate::error::{Malformed, malformed};
 
 /// Bytes of a row of `n_columns` bits.
 pub fn row_len(n_columns: usize) -> usize {
@@ -58,23 +30,25 @@ pub fn encode(row: &[u8], out: &mut Vec<u8>) {
 /// Fills `row` from the front of `bytes`; returns how many of them it takes. O(row).
 ///
 /// # Errors
-/// [`RleError`]; the content of `row` is then unspecified.
-pub fn decode(bytes: &[u8], row: &mut [u8]) -> Result<usize, RleError> {
+/// [`Malformed`]; the content of `row` is then unspecified.
+pub fn decode(bytes: &[u8], row: &mut [u8]) -> Result<usize, Malformed> {
     let needed = row.len();
     let (mut read, mut at) = (0, 0);
     while at < needed {
-        let truncated = RleError::Truncated { found: at, needed };
-        let byte = *bytes.get(read).ok_or(truncated)?;
+        let truncated = || malformed!("the bytes end after {at} of {needed} bytes of a row");
+        let byte = *bytes.get(read).ok_or_else(truncated)?;
         if byte != 0 {
             row[at] = byte;
             (read, at) = (read + 1, at + 1);
             continue;
         }
-        let run = *bytes.get(read + 1).ok_or(truncated)?;
+        let run = *bytes.get(read + 1).ok_or_else(truncated)?;
         if run == 0 {
-            return Err(RleError::EmptyRun { at });
+            return Err(malformed!("a run of no zeros at byte {at} of a row"));
         }
-        let zeros = row.get_mut(at..at + usize::from(run)).ok_or(RleError::Overrun { run, at, needed })?;
+        let Some(zeros) = row.get_mut(at..at + usize::from(run)) else {
+            return Err(malformed!("a run of {run} zeros at byte {at} of a row goes past its {needed} bytes"));
+        };
         zeros.fill(0);
         (read, at) = (read + 2, at + usize::from(run));
     }

@@ -331,7 +331,7 @@ fn mirrors_are_marked() {
         (r#"{"mirror":true,"sight":"transparent"}"#, "property \"mirror\" is not false where lines do not block sight"),
     ] {
         let error = all(&["{}", bad]).unwrap_err();
-        assert!(error.kind.to_string().contains(text), "{error}");
+        assert!(error.what.contains(text), "{error}");
     }
 }
 

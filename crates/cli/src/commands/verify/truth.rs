@@ -6,7 +6,7 @@ use crate::input::{self, refuse};
 use crate::map_portals::portals_for;
 use sightlines::bake::{Bakeable, Gap, PrtBakeError};
 use sightlines::cells::{CellGraph, Convex, Plan, Scene};
-use sightlines::formats::quake::bsp::BspError;
+use sightlines::formats::Malformed;
 use sightlines::formats::quake::graph_of_prt;
 use sightlines::formats::quake::visibility::check_portals;
 use sightlines::formats::scene::SceneReadOptions;
@@ -49,7 +49,7 @@ impl Real {
                 check_portals(&bsp, &portals)
                     .map_err(|source| InputError::of_portals(&file, path, Box::new(source)))?;
                 let broken =
-                    |error: BspError| Error::BakePrt { path: path.to_owned(), source: PrtBakeError::Bsp(error) };
+                    |error: Malformed| Error::BakePrt { path: path.to_owned(), source: PrtBakeError::Bsp(error) };
                 Self::Map(graph_of_prt(&portals), WorldTree::of_map(&bsp, &portals).map_err(broken)?)
             }
         })

@@ -1,6 +1,6 @@
 //! Words, strings and marks of a text, and where they are.
 
-use super::error::{TextError, TextErrorKind};
+use crate::error::{Malformed, malformed};
 
 /// A place in the text; both count from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -10,8 +10,8 @@ pub(super) struct Place {
 }
 
 impl Place {
-    pub(super) fn error(self, kind: TextErrorKind) -> TextError {
-        TextError { line: self.line, column: self.column, kind }
+    pub(super) fn error(self, what: Malformed) -> Malformed {
+        what.within(format_args!("line {}, column {}", self.line, self.column))
     }
 }
 
@@ -57,7 +57,7 @@ impl<'t> Lexer<'t> {
     }
 
     /// The next piece and its place; comments and space before it are skipped.
-    pub(super) fn next(&mut self) -> Result<(Piece<'t>, Place), TextError> {
+    pub(super) fn next(&mut self) -> Result<(Piece<'t>, Place), Malformed> {
         self.skip()?;
         let place = self.place();
         let Some(&first) = self.text.get(self.at) else { return Ok((Piece::End, place)) };
@@ -91,7 +91,7 @@ impl<'t> Lexer<'t> {
     }
 
     /// Goes past space and comments.
-    fn skip(&mut self) -> Result<(), TextError> {
+    fn skip(&mut self) -> Result<(), Malformed> {
         loop {
             let rest = &self.text[self.at..];
             match rest {
@@ -103,12 +103,12 @@ impl<'t> Lexer<'t> {
         }
     }
 
-    fn comment(&mut self) -> Result<(), TextError> {
+    fn comment(&mut self) -> Result<(), Malformed> {
         let place = self.place();
         self.at += 2;
         while !self.text[self.at..].starts_with(b"*/") {
             if self.at == self.text.len() {
-                return Err(place.error(TextErrorKind::Unterminated("comment")));
+                return Err(place.error(malformed!("this comment has no end")));
             }
             self.step();
         }
@@ -117,7 +117,7 @@ impl<'t> Lexer<'t> {
     }
 
     /// Goes past a string; `\` takes its meaning from the character behind it.
-    fn string(&mut self, place: Place) -> Result<(), TextError> {
+    fn string(&mut self, place: Place) -> Result<(), Malformed> {
         self.at += 1;
         loop {
             match self.text[self.at..] {
@@ -127,7 +127,7 @@ impl<'t> Lexer<'t> {
                     self.step();
                 }
                 [_, ..] => self.step(),
-                [] => return Err(place.error(TextErrorKind::Unterminated("string"))),
+                [] => return Err(place.error(malformed!("this string has no end"))),
             }
         }
         self.at += 1;
@@ -147,7 +147,7 @@ fn is_word(byte: u8) -> bool {
 mod tests {
     use super::*;
 
-    fn pieces(text: &str) -> Result<Vec<String>, TextError> {
+    fn pieces(text: &str) -> Result<Vec<String>, Malformed> {
         let mut lexer = Lexer::new(text.as_bytes());
         let mut found = Vec::new();
         loop {

@@ -1,7 +1,9 @@
 //! Which faces of a map's world hide what is behind them.
 
+use super::Bsp;
 use super::layout::FaceForm;
-use super::{Bsp, BspError, i32_at, u16_at, u32_at};
+use crate::bytes::{i32_at, u16_at, u32_at};
+use crate::error::Malformed;
 use sightlines_geometry::Point3;
 
 /// What tells whether a face is opaque: the records of textures, and what they say.
@@ -50,12 +52,12 @@ impl Bsp {
     /// leafs are opaque or not as a whole. O(file).
     ///
     /// # Errors
-    /// [`BspError`] for lumps that are not a whole number of records, and for a face, plane or texture record that is not there.
+    /// [`Malformed`] for lumps that are not a whole number of records, and for a face, plane or texture record that is not there.
     ///
     /// # Source
     /// As [`Bsp::parse`]; that engines draw textures whose names begin with `{` with holes, and those with `*` or `!` as liquids, is a convention of
     /// theirs.
-    pub fn face_covers(&self) -> Result<Option<Vec<FaceCover>>, BspError> {
+    pub fn face_covers(&self) -> Result<Option<Vec<FaceCover>>, Malformed> {
         let layout = self.format().layout();
         if matches!(layout.face_form, FaceForm::Vertices { .. }) {
             return Ok(None);
@@ -70,7 +72,7 @@ impl Bsp {
         let infos = self.records(textures.lump, textures.len)?;
         let planes = self.records(layout.planes.lump, layout.planes.len)?;
         let (n_planes, n_infos) = (planes.len() / layout.planes.len, infos.len() / textures.len);
-        let cover = |k: usize| -> Result<FaceCover, BspError> {
+        let cover = |k: usize| -> Result<FaceCover, Malformed> {
             let face = &faces[k * len..][..len];
             let (plane, side, info) = match is_wide {
                 true => (i64::from(i32_at(face, 0)), i32_at(face, 4), i64::from(i32_at(face, 16))),

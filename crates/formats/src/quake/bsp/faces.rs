@@ -1,6 +1,8 @@
 //! What can be heard in a leaf: its faces of water, sky and lava.
 
-use super::{Bsp, BspError, i32_at, u16_at, u32_at};
+use super::Bsp;
+use crate::bytes::{i32_at, u16_at, u32_at};
+use crate::error::{Malformed, malformed};
 
 const TEXTURES: usize = 2;
 const TEXINFO: usize = 6;
@@ -120,8 +122,8 @@ impl Bsp {
     /// A map whose lump of textures is empty makes no sounds.
     ///
     /// # Errors
-    /// [`BspError`] for a list of faces, a face or a texture of a visible leaf that is not there.
-    pub fn leaf_sounds(&self) -> Result<Vec<u8>, BspError> {
+    /// [`Malformed`] for a list of faces, a face or a texture of a visible leaf that is not there.
+    pub fn leaf_sounds(&self) -> Result<Vec<u8>, Malformed> {
         self.leaf_sounds_of(AmbientTextures::ALL)
     }
 
@@ -129,7 +131,7 @@ impl Bsp {
     ///
     /// # Errors
     /// As there.
-    pub fn leaf_sounds_of(&self, textures: AmbientTextures) -> Result<Vec<u8>, BspError> {
+    pub fn leaf_sounds_of(&self, textures: AmbientTextures) -> Result<Vec<u8>, Malformed> {
         if !self.format().has_sounds() {
             return Ok(vec![0; self.n_visible_leafs()]);
         }
@@ -142,13 +144,13 @@ impl Bsp {
         leafs
             .map(|(leaf, index)| {
                 let (first, count, n_listed) = (leaf.first_face, leaf.n_faces, marks.len());
-                let error = BspError::LeafFaces { leaf: index, first, count, n_listed };
                 let end = u64::from(first) + u64::from(count);
                 if count == 0 {
                     return Ok(0);
                 }
                 if end > n_listed as u64 {
-                    return Err(error);
+                    let what = format_args!("faces {first} to {first} + {count} of the list");
+                    return Err(malformed!("leaf {index}: {what} are not among its {n_listed}"));
                 }
                 let range = first as usize..end as usize;
                 if runs.has_errors(range.clone()) {
@@ -160,12 +162,13 @@ impl Bsp {
     }
 
     /// The first face of a leaf that cannot be used, where there is one.
-    fn first_error(&self, leaf: usize, marks: &[u32], marked: &[Face]) -> BspError {
+    fn first_error(&self, leaf: usize, marks: &[u32], marked: &[Face]) -> Malformed {
         let bad = marked.iter().position(|face| !matches!(face, Face::Sounds(_)));
         let k = bad.expect("the caller counted faces with errors");
+        let face = marks[k];
         match marked[k] {
-            Face::Missing => BspError::Face { leaf, face: marks[k], n_faces: self.n_faces() },
-            _ => BspError::Texture { leaf, face: marks[k] },
+            Face::Missing => malformed!("leaf {leaf}: there is no face {face} among {}", self.n_faces()),
+            _ => malformed!("leaf {leaf}: face {face} has a texture that is not in the file"),
         }
     }
 

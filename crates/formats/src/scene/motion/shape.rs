@@ -1,8 +1,7 @@
 //! Meshes that change their shape: morph targets and skins.
 
 use super::{Motions, Moved, ROUNDING, Vertices};
-use crate::scene::accessor::Elements;
-use crate::scene::error::AccessorRole;
+use crate::scene::accessor::{AccessorRole, Elements};
 use crate::scene::json::{Mesh, Node, Primitive};
 use crate::scene::range::{Range, RangeBox, bounded, box_of, mapped, united};
 use crate::scene::transform::Transform;
