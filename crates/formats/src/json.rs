@@ -1,7 +1,7 @@
 //! JSON that is read as it comes, with reasons of our own where it is not what it should be.
 
 use crate::error::Malformed;
-use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
+use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde_json::error::Category;
 use std::fmt::{self, Display};
 
@@ -50,6 +50,8 @@ pub(crate) enum Scalar<'t> {
     Integer(u64),
     Number(f64),
     Text(&'t str),
+    /// A list or an object, of which nothing is made.
+    Other,
 }
 
 /// What is made of a JSON value. Values of a type of which nothing is made are refused.
@@ -69,6 +71,27 @@ pub(crate) trait Shape<'de>: Sized {
 
     fn object<A: MapAccess<'de>>(self, _: A) -> Result<Self::Value, A::Error> {
         Err(A::Error::custom("an object"))
+    }
+}
+
+/// What a function makes of any value.
+pub(crate) struct Any<F>(pub(crate) F);
+
+impl<'de, T, F: FnOnce(Scalar<'_>) -> T> Shape<'de> for Any<F> {
+    type Value = T;
+
+    fn scalar<E: Error>(self, value: Scalar<'_>) -> Result<T, E> {
+        Ok((self.0)(value))
+    }
+
+    fn list<A: SeqAccess<'de>>(self, mut list: A) -> Result<T, A::Error> {
+        while list.next_element::<IgnoredAny>()?.is_some() {}
+        Ok((self.0)(Scalar::Other))
+    }
+
+    fn object<A: MapAccess<'de>>(self, mut object: A) -> Result<T, A::Error> {
+        while object.next_entry::<IgnoredAny, IgnoredAny>()?.is_some() {}
+        Ok((self.0)(Scalar::Other))
     }
 }
 

@@ -38,7 +38,7 @@ pub use debris::{Hidden, process_mark, remove_left};
 pub use doom::{DoomMap, MapLumps};
 pub use error::{Malformed, ReadError, ReadErrorKind};
 pub use files::{WriteError, atomic_write};
-pub use input::{Input, InputKind, Source, detect_file, read_input};
+pub use input::{Input, InputKind, Source, detect_file};
 pub use levels::{LevelFile, LevelsIndex};
 pub use plan::{DroppedLines, PlanFile, PlanReadOptions};
 pub use quake::{Bsp, Prt};

@@ -52,37 +52,23 @@ impl Content {
         self.vertices[line.v1 as usize] != self.vertices[line.v2 as usize]
     }
 
-    /// The first line with a vertex or a side that is not there.
-    pub(super) fn wrong_line(&self) -> Option<(usize, NotThere)> {
+    /// The first line with a vertex or a side that is not there, and what is wrong with it, by what these are called.
+    pub(super) fn wrong_line(&self, vertex: &str, side: &str) -> Option<(usize, Malformed)> {
         let (n_vertices, n_sides) = (self.vertices.len(), self.side_sectors.len());
         self.lines.iter().enumerate().find_map(|(index, line)| {
-            let vertex = NotThere::among(0, [Some(line.v1), Some(line.v2)], n_vertices);
-            Some((index, vertex.or_else(|| NotThere::among(1, [line.right, line.left], n_sides))?))
+            let wrong = not_there(vertex, [Some(line.v1), Some(line.v2)], n_vertices);
+            Some((index, wrong.or_else(|| not_there(side, [line.right, line.left], n_sides))?))
         })
     }
 
-    /// The first side with a sector that is not there.
-    pub(super) fn wrong_side(&self) -> Option<(usize, NotThere)> {
-        let among = |&sector: &u32| NotThere::among(0, [Some(sector)], self.n_sectors);
-        self.side_sectors.iter().enumerate().find_map(|(index, sector)| Some((index, among(sector)?)))
+    /// The first side with a sector that is not there, and what is wrong with it.
+    pub(super) fn wrong_side(&self) -> Option<(usize, Malformed)> {
+        let wrong = |&sector: &u32| not_there("sector", [Some(sector)], self.n_sectors);
+        self.side_sectors.iter().enumerate().find_map(|(index, sector)| Some((index, wrong(sector)?)))
     }
 }
 
-/// A number of something that is not there: of one of two kinds.
-pub(super) struct NotThere {
-    kind: usize,
-    number: u32,
-    n: usize,
-}
-
-impl NotThere {
-    fn among<const N: usize>(kind: usize, numbers: [Option<u32>; N], n: usize) -> Option<Self> {
-        let number = numbers.into_iter().flatten().find(|&number| number as usize >= n)?;
-        Some(Self { kind, number, n })
-    }
-
-    /// As an error, with what both kinds are called.
-    pub(super) fn of(&self, kinds: [&str; 2]) -> Malformed {
-        malformed!("{} {} is not among the {} there are", kinds[self.kind], self.number, self.n)
-    }
+fn not_there<const N: usize>(what: &str, numbers: [Option<u32>; N], n: usize) -> Option<Malformed> {
+    let number = numbers.into_iter().flatten().find(|&number| number as usize >= n)?;
+    Some(malformed!("{what} {number} is not among the {n} there are"))
 }

@@ -121,8 +121,8 @@ impl DoomMap {
 
 /// Refuses what no plan can be made from; returns the number of sectors.
 fn check(content: &Content) -> Result<u32, Malformed> {
-    if let Some((index, wrong)) = content.wrong_line() {
-        return Err(wrong.of(["vertex", "side"]).within(format_args!("LINEDEFS {index}")));
+    if let Some((index, wrong)) = content.wrong_line("vertex", "side") {
+        return Err(wrong.within(format_args!("LINEDEFS {index}")));
     }
     let empty = |lump: MapLump| Err(malformed!("the map is empty").within(lump));
     if !content.lines.iter().any(|line| content.has_length(line)) {
@@ -136,7 +136,7 @@ fn check(content: &Content) -> Result<u32, Malformed> {
     let many = || malformed!("{n} sectors are more than the {MAX_SECTORS} that a map can have").within("SECTORS");
     let n_sectors = n_sectors.ok_or_else(many)?;
     match content.wrong_side() {
-        Some((index, wrong)) => Err(wrong.of(["sector"; 2]).within(format_args!("SIDEDEFS {index}"))),
+        Some((index, wrong)) => Err(wrong.within(format_args!("SIDEDEFS {index}"))),
         None => Ok(n_sectors),
     }
 }

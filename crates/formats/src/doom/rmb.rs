@@ -128,11 +128,13 @@ impl RmbFile {
             };
             effect.sectors.iter().for_each(|&s| list[s as usize] = Some(own));
         }
-        for (sector, own) in (0..n).zip(blind).filter_map(|(s, own)| Some((s, own?))) {
-            (0..n).filter(|&other| !own || other != sector).for_each(|other| table.set(sector, other, true));
-        }
-        for (sector, own) in (0..n).zip(safe).filter_map(|(s, own)| Some((s, own?))) {
-            (0..n).filter(|&other| !own || other != sector).for_each(|other| table.set(other, sector, true));
+        for (list, is_blind) in [(blind, true), (safe, false)] {
+            for (sector, own) in (0..n).zip(list).filter_map(|(sector, own)| Some((sector, own?))) {
+                for other in (0..n).filter(|&other| !own || other != sector) {
+                    let (viewer, target) = if is_blind { (sector, other) } else { (other, sector) };
+                    table.set(viewer, target, true);
+                }
+            }
         }
         for (kind, rejected) in [(EffectKind::Include, false), (EffectKind::Exclude, true)] {
             for effect in self.effects_on(map).filter(|e| e.kind == kind) {

@@ -7,9 +7,9 @@ use super::context::Place;
 use super::coordinates::Coordinates;
 use super::geometry::{Geometry, GeometryKind};
 use super::plan_builder::PlanBuilder;
-use super::properties::{AnyValue, OfFeature, Properties, Value};
+use super::properties::{OfFeature, Properties, name_of, text_of};
 use crate::error::{Malformed, malformed};
-use crate::json::{NOT_AN_OBJECT, Scalar, Seed, Shape};
+use crate::json::{Any, NOT_AN_OBJECT, Scalar, Seed, Shape};
 use serde::de::{Error, IgnoredAny, MapAccess, SeqAccess};
 use serde_json::value::RawValue;
 
@@ -78,7 +78,7 @@ impl Node<'_> {
         let base = if let Level::Geometry(base) = self.level { base.unwrap_or(0) } else { 0 };
         let is_repeated = match key {
             "type" => {
-                let Value::Text(kind) = map.next_value_seed(Seed(AnyValue))? else {
+                let Some(kind) = map.next_value_seed(Seed(Any(text_of)))? else {
                     return Err(builder.context.fail(wrong_type("text")));
                 };
                 members.kind.replace(kind).is_some()
@@ -104,7 +104,7 @@ impl Node<'_> {
                 members.properties.replace(properties).is_some()
             }
             "id" if top || feature => {
-                members.id = map.next_value_seed(Seed(AnyValue))?.into_name();
+                members.id = map.next_value_seed(Seed(Any(name_of)))?;
                 false
             }
             "crs" if top => {

@@ -24,20 +24,11 @@ use std::path::Path;
 pub(crate) use super::buffers::MAGIC;
 
 /// Extensions that do not change where a triangle is, and quantised meshes, which are understood.
+#[rustfmt::skip]
 const HARMLESS: [&str; 13] = [
-    "EXT_lights_",
-    "EXT_texture_",
-    INSTANCING,
-    "KHR_animation_pointer",
-    "KHR_implicit_shapes",
-    "KHR_lights_",
-    "KHR_materials_",
-    "KHR_mesh_quantization",
-    "KHR_node_visibility",
-    "KHR_physics_rigid_bodies",
-    "KHR_texture_",
-    "KHR_xmp",
-    "MSFT_texture_",
+    "EXT_lights_", "EXT_texture_", INSTANCING, "KHR_animation_pointer", "KHR_implicit_shapes", "KHR_lights_",
+    "KHR_materials_", "KHR_mesh_quantization", "KHR_node_visibility", "KHR_physics_rigid_bodies", "KHR_texture_",
+    "KHR_xmp", "MSFT_texture_",
 ];
 
 /// Reads a GLB, or the text of a glTF if it does not begin like a GLB.
@@ -61,18 +52,11 @@ const HARMLESS: [&str; 13] = [
 /// never leave, or from everywhere if there is no telling.
 pub fn parse_glb(bytes: &[u8], folder: Option<&Path>) -> Result<SceneFile, Malformed> {
     let folder = folder.map(|folder| Folder(folder.to_owned()));
-    parse_gltf(bytes, folder.as_ref().map(|folder| folder as &dyn Neighbours))
-}
-
-/// As [`parse_glb`], with buffers wherever `beside` has them; without it, those in files are refused.
-///
-/// # Errors
-/// As [`parse_glb`].
-pub fn parse_gltf(bytes: &[u8], beside: Option<&dyn Neighbours>) -> Result<SceneFile, Malformed> {
+    let beside = folder.as_ref().map(|folder| folder as &dyn Neighbours);
     parse_gltf_with(bytes, beside, &SceneReadOptions::default())
 }
 
-/// As [`parse_gltf`], with options.
+/// As [`parse_glb`], with options, and with buffers wherever `beside` has them; without it, those in files are refused.
 ///
 /// # Errors
 /// As [`parse_glb`].

@@ -45,7 +45,7 @@ mod write_error;
 mod write_obj;
 
 pub(crate) use gltf::MAGIC as GLB_MAGIC;
-pub use gltf::{parse_glb, parse_gltf, parse_gltf_with};
+pub use gltf::{parse_glb, parse_gltf_with};
 pub use obj::{parse_obj, parse_obj_with};
 pub use pattern::{EmptyPattern, NamePattern};
 pub use rewrite::RewriteError;
@@ -53,7 +53,7 @@ pub use role::Role;
 pub use source::{GltfSource, ObjectOrigin, parse_glb_with_source};
 pub use surface::{Classified, SceneReadOptions};
 pub use write::{Rounding, write_glb, write_rounded_glb, write_simplified_glb};
-pub use write_error::{ObjLimit, SceneWriteError};
+pub use write_error::SceneWriteError;
 pub use write_obj::{write_obj, write_simplified_obj};
 
 use crate::ReadError;

@@ -35,17 +35,13 @@ impl Transform {
         }
     }
 
-    /// The map with these columns, if it is affine.
-    pub(super) fn of_columns(m: &[f64; 16]) -> Option<Self> {
-        Self::from_columns(m).ok()
-    }
-
     /// The rows, as ranges that hold nothing else.
     pub(super) fn ranges(&self) -> [[Range; 4]; 3] {
         self.rows.map(|row| row.map(Range::of))
     }
 
-    fn from_columns(m: &[f64; 16]) -> Result<Self, Malformed> {
+    /// The map with these columns, if it is affine.
+    pub(super) fn from_columns(m: &[f64; 16]) -> Result<Self, Malformed> {
         if [m[3], m[7], m[11], m[15]] != [0., 0., 0., 1.] {
             return Err(malformed!("its matrix is not affine"));
         }

@@ -2,6 +2,7 @@
 
 mod common;
 mod dxf;
+mod extras;
 mod files;
 mod geojson_plans;
 mod levels;
@@ -10,6 +11,7 @@ mod maps;
 mod materials;
 mod motion;
 mod mutations;
+mod obj_polygons;
 mod points;
 mod quake_bsp;
 mod quake_family;

@@ -495,7 +495,7 @@ proptest! {
 
 #[test]
 fn textures_sound_by_their_names() {
-    let kind = |name: &str| AmbientKind::of_texture(name.as_bytes());
+    let kind = |name: &str| AmbientTexture::of_name(name.as_bytes()).map(AmbientTexture::sound);
     for name in ["*water1", "*WATER", "*04water2", "*slime0", "*Slime"] {
         assert_eq!(kind(name), Some(AmbientKind::Water), "{name}");
     }

@@ -299,3 +299,16 @@ proptest! {
         assert_same(&DoomMap::parse(&text, &list_maps(&text)[0]).unwrap(), &binary);
     }
 }
+
+#[test]
+fn what_has_no_end_is_named_where_it_begins() {
+    for (text, error) in [
+        ("a\n  /* b", "line 2, column 3: this comment has no end"),
+        ("/*/", "line 1, column 1: this comment has no end"),
+        ("a = \"b;\n", "line 1, column 5: this string has no end"),
+        ("\"\\\"", "line 1, column 1: this string has no end"),
+        ("\"\\", "line 1, column 1: this string has no end"),
+    ] {
+        assert_eq!(refused(text), error, "{text}");
+    }
+}

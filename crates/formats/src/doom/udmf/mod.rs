@@ -136,15 +136,11 @@ impl<'t> Reader<'t> {
 
     /// Refuses numbers of blocks that are not there.
     fn check(&self) -> Result<(), Malformed> {
-        if let Some((index, wrong)) = self.content.wrong_line() {
-            let what = wrong.of(["vertex", "sidedef"]).within(format_args!("linedef {index}"));
-            return Err(self.lines[index].error(what));
+        if let Some((index, wrong)) = self.content.wrong_line("vertex", "sidedef") {
+            return Err(self.lines[index].error(wrong.within(format_args!("linedef {index}"))));
         }
         match self.content.wrong_side() {
-            Some((index, wrong)) => {
-                let what = wrong.of(["sector"; 2]).within(format_args!("sidedef {index}"));
-                Err(self.sides[index].error(what))
-            }
+            Some((index, wrong)) => Err(self.sides[index].error(wrong.within(format_args!("sidedef {index}")))),
             None => Ok(()),
         }
     }

@@ -4,7 +4,8 @@ use super::Bsp;
 use crate::bytes::{i32_at, u16_at, u32_at};
 use crate::error::{Malformed, malformed};
 
-const TEXTURES: usize = 2;
+/// The lump of textures.
+pub(super) const TEXTURES: usize = 2;
 const TEXINFO: usize = 6;
 /// Bytes of a texinfo; the texture's index is behind 8 floats.
 const TEXINFO_LEN: usize = 40;
@@ -25,11 +26,6 @@ pub enum AmbientKind {
 
 impl AmbientKind {
     const ALL: [Self; 3] = [Self::Water, Self::Sky, Self::Lava];
-
-    /// The sound of a texture; see [`AmbientTexture::of_name`].
-    pub fn of_texture(name: &[u8]) -> Option<Self> {
-        AmbientTexture::of_name(name).map(AmbientTexture::sound)
-    }
 
     const fn bit(self) -> u8 {
         1 << self as u8
@@ -213,14 +209,19 @@ impl Bsp {
             // A texture that was not found when the map was made.
             -1 => Face::Sounds(0),
             start => {
-                let start = usize::try_from(start).ok();
-                let name = start.and_then(|start| lump.get(start..start.checked_add(NAME_LEN)?));
                 let loud = |name| AmbientTexture::of_name(name).filter(|&texture| textures.has(texture));
-                name.map_or(Face::NoTexture, |name| Face::Sounds(loud(name).map_or(0, |texture| texture.sound().bit())))
+                texture_name(lump, start)
+                    .map_or(Face::NoTexture, |name| Face::Sounds(loud(name).map_or(0, |texture| texture.sound().bit())))
             }
         };
         Some(places.map(sound).collect())
     }
+}
+
+/// The name of a texture that begins at a place of its lump, if it is inside.
+pub(super) fn texture_name(lump: &[u8], start: i32) -> Option<&[u8]> {
+    let start = usize::try_from(start).ok()?;
+    lump.get(start..start.checked_add(NAME_LEN)?)
 }
 
 /// For each sound, and for errors, how many there are before each place of a list: leafs may share their

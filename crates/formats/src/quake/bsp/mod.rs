@@ -17,7 +17,6 @@
 mod covers;
 mod faces;
 mod family;
-mod kind;
 mod layout;
 mod leaf;
 mod places;
@@ -29,9 +28,8 @@ mod world_faces;
 
 pub use covers::FaceCover;
 pub use faces::{AmbientKind, AmbientTexture, AmbientTextures};
-pub use kind::LeafKind;
 pub(in crate::quake) use layout::RowForm;
-pub use leaf::{BspLeaf, LeafRow};
+pub use leaf::{BspLeaf, LeafKind, LeafRow};
 pub use places::ClusterPlaces;
 pub(in crate::quake) use rewrite::NewVisibility;
 pub use surfaces::LeafFaces;
@@ -83,7 +81,7 @@ impl BspFormat {
     ];
 
     /// The first bytes of files of each.
-    pub const MAGICS: [&'static [u8]; 9] = {
+    pub(crate) const MAGICS: [&'static [u8]; 9] = {
         let mut magics: [&[u8]; 9] = [b""; 9];
         let mut k = 0;
         while k < magics.len() {

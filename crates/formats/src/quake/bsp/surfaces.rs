@@ -47,13 +47,19 @@ impl Bsp {
         let layout = self.format().layout();
         let vertices = self.vertices()?;
         let faces = self.records(layout.faces.lump, layout.faces.len)?;
-        let (model, at) = (self.world_model()?, layout.model_faces);
-        let run = [i32_at(model, at), i32_at(model, at + 4)].map(i64::from);
-        let world = self.run((layout.models.lump, 0), run, layout.faces.lump, faces.len() / layout.faces.len)?;
+        let world = self.world_face_run(faces.len() / layout.faces.len)?;
         match layout.face_form {
             FaceForm::Edges(edges) => self.faces_of_edges(edges, world, faces, &vertices),
             FaceForm::Vertices { indices } => triangles::faces(self, indices, world, faces, &vertices),
         }
+    }
+
+    /// The faces of the world, of so many in the file.
+    pub(super) fn world_face_run(&self, n_faces: usize) -> Result<Range<usize>, Malformed> {
+        let layout = self.format().layout();
+        let (model, at) = (self.world_model()?, layout.model_faces);
+        let run = [i32_at(model, at), i32_at(model, at + 4)].map(i64::from);
+        self.run((layout.models.lump, 0), run, layout.faces.lump, n_faces)
     }
 
     fn faces_of_edges(

@@ -146,7 +146,7 @@ impl<'a> Motions<'a, '_> {
             let bind = match binds {
                 Some(binds) if k < binds.count => {
                     let columns: [f64; 16] = binds.numbers(k).try_into().ok()?;
-                    Transform::of_columns(&columns)?
+                    Transform::from_columns(&columns).ok()?
                 }
                 Some(_) => return None,
                 None => Transform::IDENTITY,
