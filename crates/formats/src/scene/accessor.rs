@@ -1,6 +1,6 @@
 //! Accessors of a glTF: numbers in buffers, found only after their place has been checked.
 
-use super::buffers::Buffers;
+use super::buffers::{Buffers, missing};
 use super::json::{Accessor, Document, Sparse};
 use crate::error::{Malformed, Within, malformed};
 use sightlines_cells::Point3;
@@ -197,11 +197,6 @@ impl<'a> Elements<'a> {
     pub(super) fn index(&self, k: usize) -> u32 {
         self.get(k).map_or(0, |bytes| self.component.index(bytes))
     }
-}
-
-/// The error of an accessor, or a buffer, that a document does not have.
-pub(super) fn missing() -> Malformed {
-    malformed!("it does not exist")
 }
 
 /// The error of a buffer view that a document does not have.

@@ -1,6 +1,5 @@
 //! Bytes of a glTF: the GLB container, and the buffers of a document wherever they are.
 
-use super::accessor::missing;
 use super::json;
 use crate::beside::Neighbours;
 use crate::bytes::number_at;
@@ -127,6 +126,11 @@ impl<'a> Buffers<'a> {
             _ => load_file(self.beside, uri).map(Cow::Owned),
         }
     }
+}
+
+/// The error of a buffer, or an accessor, that a document does not have.
+pub(super) fn missing() -> Malformed {
+    malformed!("it does not exist")
 }
 
 /// The file beside the document that a URI names, in the same folder or below.

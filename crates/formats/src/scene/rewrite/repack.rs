@@ -5,7 +5,8 @@ use super::document::{Object, as_index, as_object, attributes, for_each_accessor
 use super::error::RewriteError;
 use super::images::{OutsideImage, put};
 use crate::error::Within;
-use crate::scene::accessor::{AccessorRole, Elements, missing, no_view, view_bytes};
+use crate::scene::accessor::{AccessorRole, Elements, no_view, view_bytes};
+use crate::scene::buffers::missing;
 use serde_json::{Value, json};
 
 /// Puts all data together.
