@@ -5,7 +5,7 @@ use crate::quake::{PortalsError, portals_of_map};
 use sightlines_cells::{Plan, PlanError};
 use sightlines_formats::doom::{MapChoiceError, choose_map, list_maps};
 use sightlines_formats::quake::{Bsp, Prt};
-use sightlines_formats::{DoomError, DoomMap, Input, LumpName, ReadError, SceneFile, Simplified, Source, Wad};
+use sightlines_formats::{DoomMap, Input, LumpName, Malformed, ReadError, SceneFile, Simplified, Source, Wad};
 
 /// What was read from a file and can be baked. Owns what a [`BakeInput`] borrows: [`bake`](fn@crate::bake) takes a reference.
 #[derive(Debug)]
@@ -40,7 +40,7 @@ pub enum BakeableError {
     Choice(#[from] MapChoiceError),
     /// The map of a WAD is damaged, or in a format that is not read.
     #[error(transparent)]
-    Doom(#[from] DoomError),
+    Doom(#[from] Malformed),
     /// The lines of a map do not make a plan.
     #[error("map {map}: {source}")]
     Plan {

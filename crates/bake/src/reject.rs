@@ -28,8 +28,8 @@ pub use wads::{RejectMaps, RejectTables, RejectWadsError, reject_wad, reject_wad
 
 use crate::error::BakeError;
 use crate::sectors::see_groups;
-use sightlines_formats::doom::{DoomMap, MapFormat, MapLumps, RmbError, RmbFile};
-use sightlines_formats::{DoomError, LumpName, RejectTable, Wad, WadError};
+use sightlines_formats::doom::{DoomMap, MapFormat, MapLumps, RmbFile};
+use sightlines_formats::{LumpName, Malformed, RejectTable, Wad, WadError};
 use sightlines_progress::{Halt, Observer, Units};
 use sightlines_pvs::BitMatrix;
 use sightlines_stabtree::SearchOptions;
@@ -78,7 +78,7 @@ pub enum RejectError {
     NoSuchMap(String),
     /// A map is damaged, or in a format whose geometry is not read.
     #[error(transparent)]
-    Map(#[from] DoomError),
+    Map(#[from] Malformed),
     /// A map has nothing to cut.
     #[error("map {map}: {kind}")]
     Bake {
@@ -90,7 +90,7 @@ pub enum RejectError {
     },
     /// An effect names a sector that is not there.
     #[error(transparent)]
-    Rmb(#[from] RmbError),
+    Rmb(Malformed),
     /// The new file cannot be laid out.
     #[error(transparent)]
     Write(#[from] WadError),
@@ -215,7 +215,7 @@ fn do_map(wad: &Wad, lumps: &MapLumps, insist: bool, options: &RejectOptions<'_>
     }
     let (mut table, mut summary) = reject_table(&map, options)?;
     if let Some(rmb) = rmb {
-        summary.n_effects = rmb.apply(lumps.name(), &mut table)?;
+        summary.n_effects = rmb.apply(lumps.name(), &mut table).map_err(RejectError::Rmb)?;
         summary.n_rejected = table.n_rejected();
     }
     Ok((n, MapStatus::Written(summary), Some(table.into_bytes())))

@@ -1,7 +1,10 @@
 //! Errors of reading a file: its path, and what is wrong inside.
 
+use sightlines_cells::{PlanError, SceneError};
+use sightlines_geometry::CoordinateError;
 use sightlines_pvs::DecodeError;
 use std::error::Error;
+use std::fmt::{self, Display};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -30,21 +33,95 @@ pub enum ReadErrorKind {
     /// The system could not read it.
     #[error(transparent)]
     Io(#[from] io::Error),
-    /// Its content is not of the format that it is read as. The error is that of the format, such as
-    /// [`WadError`](crate::WadError).
+    /// Its content is not of the format that it is read as: [`Malformed`], or a table that cannot be decoded.
     #[error(transparent)]
     Content(Box<dyn Error + Send + Sync>),
 }
 
-impl ReadErrorKind {
-    /// The error of a format.
-    pub fn content(error: impl Error + Send + Sync + 'static) -> Self {
+impl From<Malformed> for ReadErrorKind {
+    fn from(error: Malformed) -> Self {
         Self::Content(Box::new(error))
     }
 }
 
 impl From<DecodeError> for ReadErrorKind {
     fn from(error: DecodeError) -> Self {
-        Self::content(error)
+        Self::Content(Box::new(error))
     }
 }
+
+/// Reads from a file, and puts its name before what is wrong.
+pub(crate) fn in_file<T>(path: &Path, read: impl FnOnce() -> Result<T, ReadErrorKind>) -> Result<T, ReadError> {
+    read().map_err(|kind| ReadError::new(path, kind))
+}
+
+/// A file, or what was read of it, that is not what its format asks for, shown as `line 12: this is no finite number`.
+///
+/// Both texts are for users. No program decides anything by them: what a program does decide by is an enum of its own, such as
+/// [`VisibilityError`](crate::quake::VisibilityError).
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Malformed {
+    /// Where, from the outside inwards, as in `map MAP01: LINEDEFS 12`: lines and columns count from 1, everything else from 0 unless
+    /// its format has it otherwise. Empty for the whole.
+    pub place: String,
+    /// What is wrong there.
+    pub what: String,
+}
+
+impl Malformed {
+    /// Something wrong with the whole.
+    pub(crate) fn new(what: impl Display) -> Self {
+        Self { place: String::new(), what: what.to_string() }
+    }
+
+    /// The same, in a part of a whole.
+    #[must_use]
+    pub fn within(self, part: impl Display) -> Self {
+        let place = if self.place.is_empty() { part.to_string() } else { format!("{part}: {}", self.place) };
+        Self { place, ..self }
+    }
+
+    /// The same, on a line of a text, which counts from 1.
+    pub(crate) fn on_line(self, line: usize) -> Self {
+        self.within(format_args!("line {line}"))
+    }
+}
+
+impl Display for Malformed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { place, what } = self;
+        if place.is_empty() { f.write_str(what) } else { write!(f, "{place}: {what}") }
+    }
+}
+
+impl Error for Malformed {}
+
+/// Makes a [`Malformed`] whole of a text as `format!` does.
+macro_rules! malformed {
+    ($($what:tt)+) => { $crate::error::Malformed::new(format_args!($($what)+)) };
+}
+pub(crate) use malformed;
+
+/// Results with a place for their errors.
+pub(crate) trait Within {
+    /// The same, with an error in a part of a whole.
+    fn within(self, part: impl Display) -> Self;
+}
+
+impl<T> Within for Result<T, Malformed> {
+    fn within(self, part: impl Display) -> Self {
+        self.map_err(|error| error.within(part))
+    }
+}
+
+/// What other crates refuse of the content of a file.
+macro_rules! is_malformed {
+    ($($error:ty),+) => {
+        $(impl From<$error> for Malformed {
+            fn from(error: $error) -> Self {
+                Self::new(error)
+            }
+        })+
+    };
+}
+is_malformed!(CoordinateError, PlanError, SceneError);

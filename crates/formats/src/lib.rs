@@ -15,6 +15,7 @@
 //!   or refused, never guessed; the same value is always written as the same bytes.
 
 mod beside;
+mod bytes;
 mod debris;
 pub mod doom;
 pub mod dxf;
@@ -22,6 +23,7 @@ pub mod error;
 pub mod files;
 pub mod geojson;
 pub mod input;
+mod json;
 pub mod levels;
 pub mod plan;
 mod point;
@@ -33,16 +35,14 @@ pub mod view_cells;
 pub mod wad;
 
 pub use debris::{Hidden, process_mark, remove_left};
-pub use doom::{DoomError, DoomMap, MapLumps};
-pub use dxf::DxfError;
-pub use error::{ReadError, ReadErrorKind};
+pub use doom::{DoomMap, MapLumps};
+pub use error::{Malformed, ReadError, ReadErrorKind};
 pub use files::{WriteError, atomic_write};
-pub use geojson::GeoJsonError;
-pub use input::{Input, InputKind, Source, detect_file, read_input};
-pub use levels::{LevelFile, LevelsIndex, LevelsIndexError};
+pub use input::{Input, InputKind, Source, detect_file};
+pub use levels::{LevelFile, LevelsIndex};
 pub use plan::{DroppedLines, PlanFile, PlanReadOptions};
 pub use quake::{Bsp, Prt};
 pub use reject::RejectTable;
-pub use scene::{GltfSource, SceneFile, SceneInfo, SceneReadError, Simplified};
-pub use view_cells::{ViewCell, ViewCells, ViewCellsError};
+pub use scene::{GltfSource, SceneFile, SceneInfo, Simplified};
+pub use view_cells::{ViewCell, ViewCells};
 pub use wad::{LumpName, Wad, WadBuilder, WadError};

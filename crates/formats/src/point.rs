@@ -1,8 +1,9 @@
 //! Points of files in space, as predicates take them.
 
+use crate::error::Malformed;
 use sightlines_cells::Point3;
 use sightlines_geometry::coordinate::MIN_MAGNITUDE;
-use sightlines_geometry::{CoordinateError, Point2, check_coordinate, orient2d};
+use sightlines_geometry::{Point2, check_coordinate, orient2d};
 
 /// Whether three points lie on one line, exactly: they do in all three projections.
 pub(crate) fn are_collinear([a, b, c]: [Point3; 3]) -> bool {
@@ -15,7 +16,7 @@ pub(crate) fn are_collinear([a, b, c]: [Point3; 3]) -> bool {
 
 /// A point with accepted coordinates. What is nearer to zero than a coordinate may be becomes zero: such numbers are
 /// what rounding leaves of zeros, when a file was written or where transforms are composed.
-pub(crate) fn check_point(p: Point3) -> Result<Point3, CoordinateError> {
+pub(crate) fn check_point(p: Point3) -> Result<Point3, Malformed> {
     let [x, y, z] = p.map(|x| if x.abs() < MIN_MAGNITUDE { 0.0 } else { x });
     Ok([check_coordinate(x)?, check_coordinate(y)?, check_coordinate(z)?])
 }

@@ -1,7 +1,8 @@
 //! The tree of a Quake map, as tables are checked against it.
 
 use crate::{WorldChild, WorldFace, WorldNode, WorldTree};
-use sightlines_formats::quake::bsp::{BspChild, BspError};
+use sightlines_formats::Malformed;
+use sightlines_formats::quake::bsp::BspChild;
 use sightlines_formats::quake::{Bsp, Prt};
 
 impl WorldTree {
@@ -9,8 +10,8 @@ impl WorldTree {
     /// [`check_portals`](sightlines_formats::quake::visibility::check_portals) finds out.
     ///
     /// # Errors
-    /// [`BspError`] with the place in the map, if its tree or its faces are damaged.
-    pub fn of_map(bsp: &Bsp, prt: &Prt) -> Result<Self, BspError> {
+    /// [`Malformed`] with the place in the map, if its tree or its faces are damaged.
+    pub fn of_map(bsp: &Bsp, prt: &Prt) -> Result<Self, Malformed> {
         let (tree, faces, lists) = (bsp.world_tree()?, bsp.world_faces()?, bsp.leaf_faces()?);
         let of_leaf = prt.leaf_clusters();
         // Portal files count leafs from 0, maps from 1, and their leaf 0 is what is solid.

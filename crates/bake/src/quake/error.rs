@@ -1,6 +1,7 @@
 //! Why portals cannot be baked.
 
-use sightlines_formats::quake::{BspError, VisibilityError};
+use sightlines_formats::Malformed;
+use sightlines_formats::quake::VisibilityError;
 use sightlines_progress::{Cancelled, Halt};
 use sightlines_pvs::TableError;
 
@@ -19,7 +20,7 @@ pub enum PrtBakeError {
     Visibility(#[from] VisibilityError),
     /// The map cannot be written with its visibility.
     #[error(transparent)]
-    Bsp(#[from] BspError),
+    Bsp(#[from] Malformed),
     /// The observer cancelled the search.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),

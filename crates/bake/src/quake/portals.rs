@@ -9,9 +9,10 @@
 use super::covered::{Covers, is_sliver};
 use rayon::prelude::*;
 use sightlines_bsp::{Child, Node, Opening, Plane, Region, Tree, TreeError, openings};
+use sightlines_formats::Malformed;
 use sightlines_formats::quake::bsp::{BspChild, BspTree, LeafKind};
-use sightlines_formats::quake::prt::{LeafList, PORTAL_POINTS, PrtErrorKind};
-use sightlines_formats::quake::{Bsp, BspError, Prt};
+use sightlines_formats::quake::prt::{LeafList, PORTAL_POINTS};
+use sightlines_formats::quake::{Bsp, Prt};
 use sightlines_geometry::Point3;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
@@ -35,10 +36,10 @@ pub struct MapPortals {
 pub enum PortalsError {
     /// The tree, the faces or their textures cannot be read.
     #[error(transparent)]
-    Bsp(#[from] BspError),
+    Bsp(#[from] Malformed),
     /// The map has no leafs that can be seen, or too many; or a portal is beyond what portal files hold.
     #[error(transparent)]
-    Prt(#[from] PrtErrorKind),
+    Prt(Malformed),
     /// A plane has no normal, or is farther from the origin than 2^30 map units.
     #[error("node {node} of the map: its plane has no normal, or a distance of {distance}")]
     Plane {
@@ -69,14 +70,14 @@ pub fn portals_of_map(bsp: &Bsp) -> Result<MapPortals, PortalsError> {
     let source = bsp.world_tree()?;
     let (tree, size) = tree_of(bsp, &source)?;
     let n_clusters = if bsp.format().has_clusters() { bsp.n_clusters() } else { bsp.n_visible_leafs() } as u32;
-    Prt::new(n_clusters)?;
+    Prt::new(n_clusters).map_err(PortalsError::Prt)?;
     let places = Places { bsp, n_clusters };
     let all = openings(&tree, size, |_| true);
     let all = all.ok_or(PortalsError::TooManyCuts { n_nodes: tree.nodes().len() })?;
     let covered = covered(bsp, &source, &places, &all)?;
     let passages = Passages::new(&places, &all, &covered);
 
-    let mut prt = Prt::new(n_clusters + passages.n)?;
+    let mut prt = Prt::new(n_clusters + passages.n).map_err(PortalsError::Prt)?;
     for (opening, _) in all.iter().zip(&covered).filter(|(_, is_covered)| !**is_covered) {
         let cluster = |k: usize| places.cluster(opening.regions[k]);
         let passage = |k: usize| passages.of_region.get(&opening.regions[k]).map(|k| n_clusters + k);
@@ -94,13 +95,13 @@ pub fn portals_of_map(bsp: &Bsp) -> Result<MapPortals, PortalsError> {
             && front != back
         {
             for piece in pieces(&opening.corners) {
-                prt.push_portal([back, front], &piece)?;
+                prt.push_portal([back, front], &piece).map_err(PortalsError::Prt)?;
             }
         }
     }
     // Clusters without leafs; what Quake II calls clusters are the leafs of such a file.
     if passages.n > 0 {
-        prt = prt.with_leafs(LeafList::PerCluster, (0..n_clusters).collect())?;
+        prt = prt.with_leafs(LeafList::PerCluster, (0..n_clusters).collect()).map_err(PortalsError::Prt)?;
     }
     Ok(MapPortals { prt, n_passages: passages.n })
 }

@@ -1,6 +1,7 @@
 //! What maps of all formats hold: lines, things, and the lists of them.
 
 use super::ML_TWOSIDED;
+use crate::error::{Malformed, malformed};
 
 /// A line from one vertex to another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,4 +51,24 @@ impl Content {
     pub(super) fn has_length(&self, line: &LineDef) -> bool {
         self.vertices[line.v1 as usize] != self.vertices[line.v2 as usize]
     }
+
+    /// The first line with a vertex or a side that is not there, and what is wrong with it, by what these are called.
+    pub(super) fn wrong_line(&self, vertex: &str, side: &str) -> Option<(usize, Malformed)> {
+        let (n_vertices, n_sides) = (self.vertices.len(), self.side_sectors.len());
+        self.lines.iter().enumerate().find_map(|(index, line)| {
+            let wrong = not_there(vertex, [Some(line.v1), Some(line.v2)], n_vertices);
+            Some((index, wrong.or_else(|| not_there(side, [line.right, line.left], n_sides))?))
+        })
+    }
+
+    /// The first side with a sector that is not there, and what is wrong with it.
+    pub(super) fn wrong_side(&self) -> Option<(usize, Malformed)> {
+        let wrong = |&sector: &u32| not_there("sector", [Some(sector)], self.n_sectors);
+        self.side_sectors.iter().enumerate().find_map(|(index, sector)| Some((index, wrong(sector)?)))
+    }
+}
+
+fn not_there<const N: usize>(what: &str, numbers: [Option<u32>; N], n: usize) -> Option<Malformed> {
+    let number = numbers.into_iter().flatten().find(|&number| number as usize >= n)?;
+    Some(malformed!("{what} {number} is not among the {n} there are"))
 }

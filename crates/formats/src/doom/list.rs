@@ -1,6 +1,7 @@
 //! Finding the maps of a WAD: a marker, and the lumps that follow it.
 
-use super::{DoomError, DoomErrorKind, MapFormat, MapLump};
+use super::{MapFormat, MapLump};
+use crate::error::{Malformed, malformed};
 use crate::wad::{LumpName, Wad};
 use std::ops::Range;
 
@@ -56,20 +57,20 @@ impl MapLumps {
         }
     }
 
-    pub(super) fn error(&self, kind: impl Into<DoomErrorKind>) -> DoomError {
-        DoomError { map: self.name, kind: kind.into() }
-    }
-
-    pub(super) fn require(&self, lump: MapLump) -> Result<usize, DoomError> {
-        self.lump(lump).ok_or_else(|| self.error(DoomErrorKind::MissingLump(lump)))
+    pub(super) fn require(&self, lump: MapLump) -> Result<usize, Malformed> {
+        self.lump(lump).ok_or_else(|| malformed!("there is no such lump").within(lump))
     }
 
     /// Refuses formats that are not read here, and maps with a lump twice.
-    pub(super) fn check_readable(&self) -> Result<(), DoomError> {
+    pub(super) fn check_readable(&self) -> Result<(), Malformed> {
         match (self.format, self.repeated) {
-            (MapFormat::Console, _) => Err(self.error(DoomErrorKind::Unsupported(self.format))),
-            (_, Some((lump, indices))) => Err(self.error(DoomErrorKind::RepeatedLump { lump, indices })),
-            (MapFormat::Udmf, _) if self.endmap.is_none() => Err(self.error(DoomErrorKind::NoEnd)),
+            (MapFormat::Console, _) => Err(malformed!("maps in {} format are not supported", self.format)),
+            (_, Some((lump, [first, second]))) => {
+                Err(malformed!("there are two such lumps, {first} and {second}").within(lump))
+            }
+            (MapFormat::Udmf, _) if self.endmap.is_none() => {
+                Err(malformed!("there is no such lump behind TEXTMAP").within("ENDMAP"))
+            }
             _ => Ok(()),
         }
     }
@@ -146,68 +147,4 @@ pub(super) fn is_doom_map_name(name: &[u8]) -> bool {
         m.is_some_and(|m| number(&text[..m]) && number(&text[m + 1..]))
     };
     name.strip_prefix(b"MAP").is_some_and(number) || name.strip_prefix(b"E").is_some_and(episode)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::wad::{WadBuilder, WadKind};
-
-    fn wad(names: &[&str]) -> Wad {
-        let mut builder = WadBuilder::new(WadKind::Patch);
-        for name in names {
-            builder.lump(name, b"").unwrap();
-        }
-        Wad::parse(builder.finish().unwrap()).unwrap()
-    }
-
-    fn found(names: &[&str]) -> Vec<(String, Range<usize>, MapFormat)> {
-        list_maps(&wad(names)).into_iter().map(|m| (m.name().to_string(), m.range(), m.format())).collect()
-    }
-
-    fn map(name: &str, range: Range<usize>, format: MapFormat) -> (String, Range<usize>, MapFormat) {
-        (name.to_owned(), range, format)
-    }
-
-    #[test]
-    fn maps_are_found_between_other_lumps() {
-        let names =
-            ["PLAYPAL", "E1M1", "THINGS", "LINEDEFS", "REJECT", "E1M2", "SECTORS", "GL_E1M2", "GL_VERT", "S_END"];
-        assert_eq!(found(&names), [map("E1M1", 1..5, MapFormat::Doom), map("E1M2", 5..9, MapFormat::Doom)]);
-        assert_eq!(list_maps(&wad(&names))[0].lump(MapLump::Reject), Some(4));
-        assert_eq!(found(&["START", "NODES", "REJECT"]), []);
-        assert_eq!(found(&["THINGS", "LINEDEFS"]), [], "lumps without a marker");
-    }
-
-    #[test]
-    fn order_names_and_case_are_free() {
-        let names = ["MyLevel", "vertexes", "REJECT", "SECTORS", "NODES", "LINEDEFS"];
-        assert_eq!(found(&names), [map("MyLevel", 0..6, MapFormat::Doom)]);
-        assert_eq!(list_maps(&wad(&names))[0].lump(MapLump::Vertexes), Some(1));
-    }
-
-    #[test]
-    fn formats_are_recognised() {
-        assert_eq!(found(&["MAP01", "LINEDEFS", "BEHAVIOR"]), [map("MAP01", 0..3, MapFormat::Hexen)]);
-        assert_eq!(found(&["MAP01", "LINEDEFS", "LEAFS"]), [map("MAP01", 0..3, MapFormat::Console)]);
-        let text = ["X", "TEXTMAP", "ZNODES", "DIALOGUE", "ENDMAP", "MAP02", "THINGS"];
-        assert_eq!(found(&text), [map("X", 0..5, MapFormat::Udmf), map("MAP02", 5..7, MapFormat::Doom)]);
-        assert_eq!(found(&["X", "TEXTMAP"]), [map("X", 0..2, MapFormat::Udmf)]);
-        let open = ["X", "TEXTMAP", "Y", "TEXTMAP", "ENDMAP"];
-        assert_eq!(found(&open), [map("X", 0..2, MapFormat::Udmf), map("Y", 2..5, MapFormat::Udmf)]);
-    }
-
-    #[test]
-    fn bare_markers_of_maps_are_maps() {
-        assert_eq!(found(&["MAP01"]), [map("MAP01", 0..1, MapFormat::Doom)]);
-        assert_eq!(found(&["e10m2", "MAP7"]).len(), 2);
-        assert_eq!(found(&["MAPINFO", "EXM1", "E1M", "MAP", "E1"]), []);
-    }
-
-    #[test]
-    fn repeated_lumps_are_refused() {
-        let wad = wad(&["MAP01", "THINGS", "SECTORS", "LINEDEFS", "SECTORS"]);
-        let error = list_maps(&wad)[0].check_readable().unwrap_err();
-        assert_eq!(error.to_string(), "map MAP01: SECTORS: there are two such lumps, 2 and 4");
-    }
 }

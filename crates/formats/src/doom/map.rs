@@ -1,7 +1,8 @@
 //! One map: its lines, sides, sectors and things, checked, and the plan they make.
 
 use super::content::{Content, LineDef, Thing};
-use super::{DoomError, DoomErrorKind, MAX_SECTORS, MapFormat, MapLump, MapLumps, records, udmf};
+use super::{MAX_SECTORS, MapFormat, MapLump, MapLumps, records, udmf};
+use crate::error::{Malformed, Within, malformed};
 use crate::wad::{LumpName, Wad};
 use sightlines_cells::{Plan, PlanError, PlanLine, PlanObject};
 use sightlines_geometry::{Aabb, Point2};
@@ -23,18 +24,22 @@ impl DoomMap {
     /// A coordinate of a map as text is the double nearest to what the text says.
     ///
     /// # Errors
-    /// [`DoomError`] for a format that is not read, a missing or repeated lump, a lump of odd size, a text that is wrong somewhere,
+    /// [`Malformed`] with the map and the lump, for a format that is not read, a missing or repeated lump, a lump of odd size, a text that is wrong somewhere,
     /// no lines of any length or no sectors, an index out of range.
     ///
     /// # Panics
     /// If `lumps` were not listed from this `wad`.
-    pub fn parse(wad: &Wad, lumps: &MapLumps) -> Result<Self, DoomError> {
+    pub fn parse(wad: &Wad, lumps: &MapLumps) -> Result<Self, Malformed> {
+        Self::try_parse(wad, lumps).within(format_args!("map {}", lumps.name()))
+    }
+
+    fn try_parse(wad: &Wad, lumps: &MapLumps) -> Result<Self, Malformed> {
         lumps.check_readable()?;
         let content = match lumps.text() {
-            Some(text) => udmf::parse(wad.lump_bytes(text)).map_err(|error| lumps.error(error))?,
+            Some(text) => udmf::parse(wad.lump_bytes(text)).within("TEXTMAP")?,
             None => records::parse(wad, lumps)?,
         };
-        let n_sectors = check(&content).map_err(|kind| lumps.error(kind))?;
+        let n_sectors = check(&content)?;
         let reject = lumps.lump(MapLump::Reject).map(|lump| wad.lump_bytes(lump).to_vec());
         Ok(Self { name: lumps.name(), format: lumps.format(), content, n_sectors, reject })
     }
@@ -115,27 +120,23 @@ impl DoomMap {
 }
 
 /// Refuses what no plan can be made from; returns the number of sectors.
-fn check(content: &Content) -> Result<u32, DoomErrorKind> {
-    for (line, l) in content.lines.iter().enumerate() {
-        let n_vertices = content.vertices.len();
-        if let Some(vertex) = [l.v1, l.v2].into_iter().find(|&v| v as usize >= n_vertices) {
-            return Err(DoomErrorKind::Vertex { line, vertex, n_vertices });
-        }
-        let n_sides = content.side_sectors.len();
-        if let Some(side) = [l.right, l.left].into_iter().flatten().find(|&s| s as usize >= n_sides) {
-            return Err(DoomErrorKind::Side { line, side, n_sides });
-        }
+fn check(content: &Content) -> Result<u32, Malformed> {
+    if let Some((index, wrong)) = content.wrong_line("vertex", "side") {
+        return Err(wrong.within(format_args!("LINEDEFS {index}")));
     }
+    let empty = |lump: MapLump| Err(malformed!("the map is empty").within(lump));
     if !content.lines.iter().any(|line| content.has_length(line)) {
-        return Err(DoomErrorKind::Empty(MapLump::Linedefs));
+        return empty(MapLump::Linedefs);
     }
     if content.n_sectors == 0 {
-        return Err(DoomErrorKind::Empty(MapLump::Sectors));
+        return empty(MapLump::Sectors);
     }
-    let n_sectors = u32::try_from(content.n_sectors).ok().filter(|&n| n <= MAX_SECTORS);
-    let n_sectors = n_sectors.ok_or(DoomErrorKind::TooManySectors(content.n_sectors))?;
-    match content.side_sectors.iter().enumerate().find(|&(_, &sector)| sector >= n_sectors) {
-        Some((side, &sector)) => Err(DoomErrorKind::Sector { side, sector, n_sectors }),
+    let n = content.n_sectors;
+    let n_sectors = u32::try_from(n).ok().filter(|&n| n <= MAX_SECTORS);
+    let many = || malformed!("{n} sectors are more than the {MAX_SECTORS} that a map can have").within("SECTORS");
+    let n_sectors = n_sectors.ok_or_else(many)?;
+    match content.wrong_side() {
+        Some((index, wrong)) => Err(wrong.within(format_args!("SIDEDEFS {index}"))),
         None => Ok(n_sectors),
     }
 }

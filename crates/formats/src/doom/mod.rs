@@ -6,7 +6,6 @@
 
 mod choose;
 mod content;
-mod error;
 mod list;
 mod lumps;
 mod map;
@@ -17,13 +16,11 @@ mod udmf;
 
 pub use choose::{MapChoiceError, choose_map};
 pub use content::{LineDef, Thing};
-pub use error::{DoomError, DoomErrorKind};
 pub use list::{MapLumps, list_maps};
 pub use lumps::{MapFormat, MapLump};
 pub use map::DoomMap;
-pub use rmb::{RmbError, RmbErrorKind, RmbFile};
+pub use rmb::RmbFile;
 pub use source::{DoomMapSource, SourceLine, SourceThing, write_doom_map};
-pub use udmf::{TextError, TextErrorKind};
 
 use crate::wad::{Edit, LumpName, Wad, WadError};
 

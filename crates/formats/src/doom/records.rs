@@ -1,14 +1,16 @@
 //! The records of binary maps.
 
 use super::content::{Content, LineDef, Thing};
-use super::{DoomError, DoomErrorKind, MapFormat, MapLump, MapLumps};
+use super::{MapFormat, MapLump, MapLumps};
+use crate::bytes::{i16_at, u16_at};
+use crate::error::{Malformed, malformed};
 use crate::wad::Wad;
 
 /// Reads the lumps of a map in a binary format.
 ///
 /// # Errors
-/// [`DoomError`] for a missing lump, or one of odd size.
-pub(super) fn parse(wad: &Wad, lumps: &MapLumps) -> Result<Content, DoomError> {
+/// [`Malformed`] for a missing lump, or one of odd size.
+pub(super) fn parse(wad: &Wad, lumps: &MapLumps) -> Result<Content, Malformed> {
     let read = Records { wad, lumps };
     let hexen = lumps.format() == MapFormat::Hexen;
     let point = |r| [f64::from(i16_at(r, 0)), f64::from(i16_at(r, 2))];
@@ -32,11 +34,12 @@ struct Records<'w> {
 
 impl<'w> Records<'w> {
     /// The records of a lump, each of `record` bytes.
-    fn of(&self, lump: MapLump, record: usize) -> Result<std::slice::ChunksExact<'w, u8>, DoomError> {
+    fn of(&self, lump: MapLump, record: usize) -> Result<std::slice::ChunksExact<'w, u8>, Malformed> {
         let bytes = self.wad.lump_bytes(self.lumps.require(lump)?);
         let (size, index) = (bytes.len(), bytes.len() / record);
         if size % record != 0 {
-            return Err(self.lumps.error(DoomErrorKind::RecordSize { lump, size, record, index }));
+            let what = malformed!("{size} bytes do not divide into records of {record}; record {index} is cut short");
+            return Err(what.within(lump));
         }
         Ok(bytes.chunks_exact(record))
     }
@@ -57,14 +60,4 @@ fn line_def(record: &[u8]) -> LineDef {
 fn thing(record: &[u8], place_at: usize, kind_at: usize) -> Thing {
     let [x, y] = [place_at, place_at + 2].map(|at| f64::from(i16_at(record, at)));
     Thing { x, y, kind: u16_at(record, kind_at).into() }
-}
-
-/// The little-endian u16 at `at`, which the caller knows to be inside.
-fn u16_at(record: &[u8], at: usize) -> u16 {
-    u16::from_le_bytes([record[at], record[at + 1]])
-}
-
-/// The little-endian i16 at `at`, which the caller knows to be inside.
-fn i16_at(record: &[u8], at: usize) -> i16 {
-    i16::from_le_bytes([record[at], record[at + 1]])
 }

@@ -8,53 +8,10 @@
 //! `NOMAP`, `PERFECT`, `PREPROCESS` and `PROCESS` steer the work of RMB only and mean nothing here; as with `PERFECT`, an effect is on the
 //! sectors that are named, and not on those inside them. All other options are refused.
 
+use crate::error::{Malformed, Within, in_file, malformed};
 use crate::wad::LumpName;
 use crate::{ReadError, RejectTable};
 use std::path::Path;
-
-/// What is wrong with an option file, and where, shown as `line 3: ...`.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("line {line}: {kind}")]
-pub struct RmbError {
-    /// Line of the file, from 1.
-    pub line: usize,
-    /// What is wrong there.
-    #[source]
-    pub kind: RmbErrorKind,
-}
-
-/// What is wrong with an option file.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum RmbErrorKind {
-    /// A word that is no option, or the beginning of several.
-    #[error("{0} is not an option of RMB")]
-    Unknown(String),
-    /// An option that is not taken.
-    #[error("the option {0} is not supported")]
-    Unsupported(&'static str),
-    /// A distance that is not taken.
-    #[error("the distance {0} is not supported, only 0 and 1 are")]
-    Distance(u32),
-    /// Something else stands where the option takes one thing.
-    #[error("{option} takes {expected}")]
-    Argument {
-        /// The option.
-        option: &'static str,
-        /// What it takes.
-        expected: &'static str,
-    },
-    /// A sector that is not there.
-    #[error("sector {sector} is not among the {n_sectors} of map {map}")]
-    Sector {
-        /// The map.
-        map: LumpName,
-        /// The sector.
-        sector: u32,
-        /// How many it has.
-        n_sectors: u32,
-    },
-}
 
 /// An option file that was read.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -89,38 +46,18 @@ enum EffectKind {
 }
 
 /// All options of RMB: a word is one of them, or the beginning of a single one.
+#[rustfmt::skip]
 const OPTIONS: [&str; 23] = [
-    "BAND",
-    "BLIND",
-    "BLOCK",
-    "DISTANCE",
-    "DOOR",
-    "EXCLUDE",
-    "GROUP",
-    "INCLUDE",
-    "INVERT",
-    "LEFT",
-    "LENGTH",
-    "LINE",
-    "NODOOR",
-    "NOMAP",
-    "NOPROCESS",
-    "ONE",
-    "PERFECT",
-    "PREPROCESS",
-    "PROCESS",
-    "REPORT",
-    "RIGHT",
-    "SAFE",
-    "TRACE",
+    "BAND", "BLIND", "BLOCK", "DISTANCE", "DOOR", "EXCLUDE", "GROUP", "INCLUDE", "INVERT", "LEFT", "LENGTH", "LINE",
+    "NODOOR", "NOMAP", "NOPROCESS", "ONE", "PERFECT", "PREPROCESS", "PROCESS", "REPORT", "RIGHT", "SAFE", "TRACE",
 ];
 
 impl RmbFile {
     /// Reads the text of an option file. O(length).
     ///
     /// # Errors
-    /// [`RmbError`] with the first line that is wrong, or that has an option that is not taken.
-    pub fn parse(text: &[u8]) -> Result<Self, RmbError> {
+    /// [`Malformed`] with the first line that is wrong, or that has an option that is not taken.
+    pub fn parse(text: &[u8]) -> Result<Self, Malformed> {
         let text = String::from_utf8_lossy(text);
         let mut map = None;
         let mut effects = Vec::new();
@@ -136,7 +73,7 @@ impl RmbFile {
             }
             let word = if word.is_empty() { content.as_str() } else { word };
             // The bracket that ended the word belongs to the rest.
-            let found = effect(word, content[word.len()..].trim()).map_err(|kind| RmbError { line, kind })?;
+            let found = effect(word, content[word.len()..].trim()).within(format_args!("line {line}"))?;
             effects.extend(found.map(|(kind, sectors, targets)| Effect {
                 line,
                 map: map.clone(),
@@ -153,8 +90,8 @@ impl RmbFile {
     /// # Errors
     /// [`ReadError`] with the file and what is wrong.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, ReadError> {
-        let read = || Self::parse(&std::fs::read(path.as_ref())?).map_err(crate::ReadErrorKind::content);
-        read().map_err(|kind: crate::ReadErrorKind| ReadError::new(&path, kind))
+        let path = path.as_ref();
+        in_file(path, || Ok(Self::parse(&std::fs::read(path)?)?))
     }
 
     /// Whether there are effects on a map.
@@ -172,13 +109,13 @@ impl RmbFile {
     /// counts. Costs O(n) for each sector named, and O(n²) once.
     ///
     /// # Errors
-    /// [`RmbError`] for a sector that the map does not have; then the table is as it was.
-    pub fn apply(&self, map: LumpName, table: &mut RejectTable) -> Result<u64, RmbError> {
+    /// [`Malformed`] for a sector that the map does not have; then the table is as it was.
+    pub fn apply(&self, map: LumpName, table: &mut RejectTable) -> Result<u64, Malformed> {
         let n = table.n_sectors();
         for effect in self.effects_on(map) {
             if let Some(&sector) = effect.sectors.iter().chain(&effect.targets).find(|&&s| s >= n) {
-                let kind = RmbErrorKind::Sector { map, sector, n_sectors: n };
-                return Err(RmbError { line: effect.line, kind });
+                let what = malformed!("sector {sector} is not among the {n} of map {map}");
+                return Err(what.on_line(effect.line));
             }
         }
         let before = table.clone();
@@ -191,11 +128,13 @@ impl RmbFile {
             };
             effect.sectors.iter().for_each(|&s| list[s as usize] = Some(own));
         }
-        for (sector, own) in (0..n).zip(blind).filter_map(|(s, own)| Some((s, own?))) {
-            (0..n).filter(|&other| !own || other != sector).for_each(|other| table.set(sector, other, true));
-        }
-        for (sector, own) in (0..n).zip(safe).filter_map(|(s, own)| Some((s, own?))) {
-            (0..n).filter(|&other| !own || other != sector).for_each(|other| table.set(other, sector, true));
+        for (list, is_blind) in [(blind, true), (safe, false)] {
+            for (sector, own) in (0..n).zip(list).filter_map(|(sector, own)| Some((sector, own?))) {
+                for other in (0..n).filter(|&other| !own || other != sector) {
+                    let (viewer, target) = if is_blind { (sector, other) } else { (other, sector) };
+                    table.set(viewer, target, true);
+                }
+            }
         }
         for (kind, rejected) in [(EffectKind::Include, false), (EffectKind::Exclude, true)] {
             for effect in self.effects_on(map).filter(|e| e.kind == kind) {
@@ -212,9 +151,9 @@ impl RmbFile {
 type Found = (EffectKind, Vec<u32>, Vec<u32>);
 
 /// The effect of an option and what stands behind it; `None` for one that means nothing here.
-fn effect(word: &str, rest: &str) -> Result<Option<Found>, RmbErrorKind> {
+fn effect(word: &str, rest: &str) -> Result<Option<Found>, Malformed> {
     let option = option(word)?;
-    let argument = |expected| RmbErrorKind::Argument { option, expected };
+    let argument = |expected: &str| malformed!("{option} takes {expected}");
     match option {
         "NOMAP" | "PERFECT" | "PREPROCESS" | "PROCESS" => Ok(None),
         "INCLUDE" | "EXCLUDE" => {
@@ -230,21 +169,24 @@ fn effect(word: &str, rest: &str) -> Result<Option<Found>, RmbErrorKind> {
             let own = match distance {
                 0 => false,
                 1 => true,
-                _ => return Err(RmbErrorKind::Distance(distance)),
+                _ => return Err(malformed!("the distance {distance} is not supported, only 0 and 1 are")),
             };
             let kind = if option == "BLIND" { EffectKind::Blind { own } } else { EffectKind::Safe { own } };
             Ok(Some((kind, sectors, Vec::new())))
         }
-        _ => Err(RmbErrorKind::Unsupported(option)),
+        _ => Err(malformed!("the option {option} is not supported")),
     }
 }
 
-fn option(word: &str) -> Result<&'static str, RmbErrorKind> {
+fn option(word: &str) -> Result<&'static str, Malformed> {
     let mut found = OPTIONS.iter().filter(|option| option.starts_with(word));
     // A whole word is never the beginning of another option.
     match (found.next(), found.next()) {
         (Some(option), None) => Ok(option),
-        _ => Err(RmbErrorKind::Unknown(word.chars().take(24).collect::<String>().escape_debug().to_string())),
+        _ => {
+            let word: String = word.chars().take(24).collect();
+            Err(malformed!("{} is not an option of RMB", word.escape_debug()))
+        }
     }
 }
 
@@ -263,92 +205,4 @@ fn sectors(text: &str) -> Option<(Vec<u32>, &str)> {
     let (list, rest) = list.split_once(')')?;
     let sectors: Option<Vec<u32>> = list.split_whitespace().map(|s| s.parse().ok()).collect();
     Some((sectors.filter(|s| !s.is_empty())?, rest.trim_start()))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn name(text: &str) -> LumpName {
-        LumpName::new(text).unwrap()
-    }
-
-    /// The table of a map of four sectors after the options of a file, from one in which 0 and 3 do not see each other.
-    fn table(text: &str, map: &str) -> (String, u64) {
-        let mut table = RejectTable::new(4);
-        table.set(0, 3, true);
-        table.set(3, 0, true);
-        let n = RmbFile::parse(text.as_bytes()).unwrap().apply(name(map), &mut table).unwrap();
-        let bit = |a, b| if table.get(a, b) { '1' } else { '0' };
-        let rows: Vec<String> = (0..4).map(|a| (0..4).map(|b| bit(a, b)).collect()).collect();
-        (rows.join(" "), n)
-    }
-
-    #[test]
-    fn options_have_the_effects_that_they_name() {
-        for (text, rows, n) in [
-            ("", "0001 0000 0000 1000", 0),
-            ("BLIND 0 (1)", "0001 1111 0000 1000", 4),
-            ("blind 1 (0 1)", "0111 1011 0000 1000", 5),
-            ("SAFE 0 1", "0101 0100 0100 1100", 4),
-            ("safe 1 (3)", "0001 0001 0001 1000", 2),
-            ("INCLUDE (0) (3 2)", "0000 0000 0000 1000", 1),
-            ("EXC 1 (2 0)", "0001 1010 0000 1000", 2),
-            // The later of two counts, whatever the order of others.
-            ("SAFE 0 1\nSAFE 1 1", "0101 0000 0100 1100", 3),
-            ("EXCLUDE (1) (2)\nINCLUDE (1) (2 3)\nBLIND 0 (1)", "0001 1110 0000 1000", 3),
-            ("BLIND 0 2\nSAFE 1 2", "0011 0010 1111 1010", 7),
-            ("NOMAP\nPERFECT # as always\n\n# a comment\nPREPROCESS 4\nPROC (1 2)", "0001 0000 0000 1000", 0),
-        ] {
-            assert_eq!(table(text, "MAP01"), (rows.to_owned(), n), "{text}");
-        }
-    }
-
-    #[test]
-    fn headings_choose_maps() {
-        let text = "BLIND 0 (0)\nE1M1\nINC (0) (1)\nmap02\nEXCLUDE(3)(3)\ne1m1\nSAFE 0 (2)";
-        assert_eq!(table(text, "E1M1").0, "1011 0010 0010 1010");
-        assert_eq!(table(text, "MAP02").0, "1111 0000 0000 1001");
-        assert_eq!(table(text, "MAP03").0, "1111 0000 0000 1000");
-        let file = RmbFile::parse(b"E1M1\nBLIND 0 (0)").unwrap();
-        assert!(file.is_for(name("e1m1")) && !file.is_for(name("E1M2")));
-    }
-
-    #[test]
-    fn what_is_wrong_is_named_with_its_line() {
-        for (text, error) in [
-            ("\nFOO 1", "line 2: FOO is not an option of RMB"),
-            ("B 1 2", "line 1: B is not an option of RMB"),
-            ("(1)", "line 1: (1) is not an option of RMB"),
-            ("# x\nLEFT 311", "line 2: the option LEFT is not supported"),
-            ("INV BLIND 1 (2)", "line 1: the option INVERT is not supported"),
-            ("BLIND 2 (1)", "line 1: the distance 2 is not supported, only 0 and 1 are"),
-            ("SAFE (1)", "line 1: SAFE takes a distance and a list of sectors"),
-            ("BLIND 0", "line 1: BLIND takes a distance and a list of sectors"),
-            ("BLIND 0 ()", "line 1: BLIND takes a distance and a list of sectors"),
-            ("BLIND 0 (1", "line 1: BLIND takes a distance and a list of sectors"),
-            ("BLIND 0 1 2", "line 1: BLIND takes a distance and a list of sectors"),
-            ("BLIND 99999999999 (1)", "line 1: BLIND takes a distance and a list of sectors"),
-            ("INCLUDE (1) (x)", "line 1: INCLUDE takes two lists of sectors"),
-            ("EXCLUDE (1)", "line 1: EXCLUDE takes two lists of sectors"),
-        ] {
-            assert_eq!(RmbFile::parse(text.as_bytes()).unwrap_err().to_string(), error, "{text}");
-        }
-        let mut table = RejectTable::new(4);
-        let file = RmbFile::parse(b"BLIND 0 1\nE1M1\nEXCLUDE 1 4").unwrap();
-        let error = file.apply(name("E1M1"), &mut table).unwrap_err();
-        assert_eq!(error.to_string(), "line 3: sector 4 is not among the 4 of map E1M1");
-        assert_eq!(table, RejectTable::new(4));
-        assert_eq!(file.apply(name("E1M2"), &mut table), Ok(4));
-    }
-
-    #[test]
-    fn broken_bytes_are_refused() {
-        for k in 0..=255 {
-            for text in [vec![k], [&b"BLIND 0 "[..], &[k]].concat(), [&b"INCLUDE ("[..], &[k, b')']].concat()] {
-                drop(RmbFile::parse(&text));
-            }
-        }
-        assert!(RmbFile::parse(&[0xff; 1000]).is_err());
-    }
 }

@@ -1,7 +1,7 @@
 //! Writing maps: from lines and sectors to lumps, for generators and tests.
 
-use super::{DoomError, DoomErrorKind, MapFormat};
-use crate::wad::{LumpName, WadBuilder, WadKind};
+use super::MapFormat;
+use crate::wad::{LumpName, WadBuilder, WadError, WadKind};
 
 /// A line of a map to be written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,26 +52,22 @@ pub struct DoomMapSource {
 /// A WAD with one map in it, named `name`.
 ///
 /// # Errors
-/// As [`DoomMapSource::add_to`]; [`DoomErrorKind::Wad`] for a file that would be too large.
-pub fn write_doom_map(name: LumpName, source: &DoomMapSource) -> Result<Vec<u8>, DoomError> {
+/// As [`DoomMapSource::add_to`].
+pub fn write_doom_map(name: LumpName, source: &DoomMapSource) -> Result<Vec<u8>, WadError> {
     let mut builder = WadBuilder::new(WadKind::Patch);
     source.add_to(&mut builder, name)?;
-    builder.finish().map_err(|error| DoomError { map: name, kind: error.into() })
+    builder.finish()
 }
 
 impl DoomMapSource {
     /// Appends the map to a WAD: a marker named `name`, then its lumps in the order that engines expect.
     ///
     /// # Errors
-    /// [`DoomErrorKind::TooManySides`] from 65,535 sides on, [`DoomErrorKind::Wad`] for a WAD too large.
-    pub fn add_to(&self, builder: &mut WadBuilder, name: LumpName) -> Result<(), DoomError> {
-        self.try_add_to(builder, name).map_err(|kind| DoomError { map: name, kind })
-    }
-
-    fn try_add_to(&self, builder: &mut WadBuilder, name: LumpName) -> Result<(), DoomErrorKind> {
+    /// [`WadError::TooManySides`] from 65,535 sides on, [`WadError::TooLarge`].
+    pub fn add_to(&self, builder: &mut WadBuilder, name: LumpName) -> Result<(), WadError> {
         let n_sides = self.lines.iter().flat_map(|l| [l.right, l.left]).flatten().count();
         if n_sides >= 0xFFFF {
-            return Err(DoomErrorKind::TooManySides(n_sides));
+            return Err(WadError::TooManySides { map: name, n_sides });
         }
         let (lines, sides) = self.lines_and_sides();
         builder.lump_named(name, b"")?;

@@ -1,8 +1,20 @@
 //! Maps of space: what inserts and extrusion directions do.
 
 use super::angle::sin_cos;
-use super::error::DxfErrorKind;
-use super::insert::Insert;
+use crate::error::{Malformed, malformed};
+
+/// An insert of a block.
+#[derive(Debug)]
+pub(super) struct Insert {
+    pub(super) block: String,
+    pub(super) at: [f64; 3],
+    pub(super) scale: [f64; 3],
+    /// In degrees, counter-clockwise.
+    pub(super) rotation: f64,
+    /// Columns and rows.
+    pub(super) counts: [u32; 2],
+    pub(super) spacing: [f64; 2],
+}
 
 /// A map of space: the images of the axes, and of the origin.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,12 +46,12 @@ impl Affine {
 
     /// From the coordinates of an entity with an extrusion direction to those around it, by the rule of DXF: its x axis is at right
     /// angles to the world's y axis where the direction is within 1/64 of the world's z axis, else to the z axis.
-    pub(super) fn of_extrusion(normal: [f64; 3]) -> Result<Self, DxfErrorKind> {
-        let z = unit(normal).ok_or(DxfErrorKind::Value { what: "an extrusion direction", value: normal[2] })?;
+    pub(super) fn of_extrusion(normal: [f64; 3]) -> Result<Self, Malformed> {
+        let z = checked_unit(normal)?;
         let is_steep = z[0].abs() < 1.0 / 64.0 && z[1].abs() < 1.0 / 64.0;
         let across = cross(if is_steep { [0.0, 1.0, 0.0] } else { [0.0, 0.0, 1.0] }, z);
         // The direction is not parallel to the axis that was chosen.
-        let x = unit(across).ok_or(DxfErrorKind::Value { what: "an extrusion direction", value: normal[2] })?;
+        let x = checked_unit(across)?;
         Ok(Self { axes: [x, cross(z, x), z], origin: [0.0; 3] })
     }
 
@@ -61,11 +73,16 @@ pub(super) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 }
 
 /// The direction with length 1; `None` for zero. Along an axis it is exact.
-pub(super) fn unit(v: [f64; 3]) -> Option<[f64; 3]> {
+fn unit(v: [f64; 3]) -> Option<[f64; 3]> {
     let largest = v.iter().fold(0.0f64, |most, x| most.max(x.abs()));
     let scaled = v.map(|x| x / largest);
     let length = scaled.iter().map(|x| x * x).sum::<f64>().sqrt();
     (largest > 0.0 && length.is_finite()).then(|| scaled.map(|x| x / length))
+}
+
+/// The unit vector of an extrusion direction.
+pub(super) fn checked_unit(normal: [f64; 3]) -> Result<[f64; 3], Malformed> {
+    unit(normal).ok_or_else(|| malformed!("an extrusion direction is {}, which cannot be", normal[2]))
 }
 
 #[cfg(test)]

@@ -1,10 +1,10 @@
 //! The parts of a drawing: layers, blocks, and the entities of the model.
 
 use super::entity::{Entity, Read, read_entity};
-use super::error::{DxfError, DxfErrorKind};
 use super::groups::{Group, Groups, next_record, refuse_binary, unended};
 use super::layers::Layers;
 use super::text::{decode, folded};
+use crate::error::{Malformed, malformed};
 use std::collections::HashMap;
 
 /// A drawing as its file has it.
@@ -29,7 +29,7 @@ pub(super) struct Block {
 }
 
 /// Reads all sections.
-pub(super) fn read(text: &[u8]) -> Result<Drawing, DxfError> {
+pub(super) fn read(text: &[u8]) -> Result<Drawing, Malformed> {
     refuse_binary(text)?;
     let mut groups = Groups::new(text);
     let mut drawing = Drawing::default();
@@ -39,11 +39,11 @@ pub(super) fn read(text: &[u8]) -> Result<Drawing, DxfError> {
             return Ok(drawing);
         }
         if !group.is(0, "SECTION") {
-            return Err(DxfError::at(group.line, DxfErrorKind::Expected("SECTION or EOF")));
+            return Err(group.expected("SECTION or EOF"));
         }
         let name = groups.next()?;
         if name.code != 2 {
-            return Err(DxfError::at(name.line, DxfErrorKind::Expected("the name of a section")));
+            return Err(name.expected("the name of a section"));
         }
         match name.value {
             b"TABLES" => drawing.read_tables(&mut groups)?,
@@ -58,7 +58,7 @@ pub(super) fn read(text: &[u8]) -> Result<Drawing, DxfError> {
 }
 
 /// Skips the rest of a section.
-fn skip(groups: &mut Groups<'_>) -> Result<(), DxfError> {
+fn skip(groups: &mut Groups<'_>) -> Result<(), Malformed> {
     loop {
         let group = groups.next()?;
         match (group.code, group.value) {
@@ -71,7 +71,7 @@ fn skip(groups: &mut Groups<'_>) -> Result<(), DxfError> {
 
 impl Drawing {
     /// Reads the table of layers, and skips the others.
-    fn read_tables(&mut self, groups: &mut Groups<'_>) -> Result<(), DxfError> {
+    fn read_tables(&mut self, groups: &mut Groups<'_>) -> Result<(), Malformed> {
         let mut fields = Vec::new();
         loop {
             let record = next_record(groups, &mut fields)?;
@@ -88,7 +88,7 @@ impl Drawing {
         }
     }
 
-    fn read_blocks(&mut self, groups: &mut Groups<'_>) -> Result<(), DxfError> {
+    fn read_blocks(&mut self, groups: &mut Groups<'_>) -> Result<(), Malformed> {
         let mut fields = Vec::new();
         loop {
             let record = next_record(groups, &mut fields)?;
@@ -97,7 +97,7 @@ impl Drawing {
             }
             expect(&record, "BLOCK")?;
             let field = |code| fields.iter().find(|group: &&Group<'_>| group.code == code);
-            let name = field(2).ok_or(missing(&record, "name"))?;
+            let name = field(2).ok_or_else(|| malformed!("the BLOCK has no name").on_line(record.line))?;
             let number = |code| field(code).map_or(Ok(0.0), Group::number);
             let base = [number(10)?, number(20)?, number(30)?];
             /// Flags of a block that is an external reference, or overlays one.
@@ -113,12 +113,8 @@ impl Drawing {
     }
 }
 
-fn missing(record: &Group<'_>, what: &'static str) -> DxfError {
-    DxfError::at(record.line, DxfErrorKind::Missing { entity: "BLOCK", what })
-}
-
-fn expect(record: &Group<'_>, what: &'static str) -> Result<(), DxfError> {
-    if record.is(0, what) { Ok(()) } else { Err(DxfError::at(record.line, DxfErrorKind::Expected(what))) }
+fn expect(record: &Group<'_>, what: &str) -> Result<(), Malformed> {
+    if record.is(0, what) { Ok(()) } else { Err(record.expected(what)) }
 }
 
 /// Reads entities up to the record that ends them, which it returns.
@@ -126,7 +122,7 @@ fn read_entities<'a>(
     groups: &mut Groups<'a>,
     layers: &mut Layers,
     entities: &mut Vec<Entity>,
-) -> Result<Group<'a>, DxfError> {
+) -> Result<Group<'a>, Malformed> {
     loop {
         match read_entity(groups, layers)? {
             Read::Entity(entity) => entities.push(entity),

@@ -1,11 +1,11 @@
 //! The entities of a drawing, in their own coordinates.
 
-use super::error::{DxfError, DxfErrorKind};
+use super::affine::Insert;
 use super::groups::{Group, Groups, next_record};
-use super::insert::Insert;
 use super::layers::Layers;
 use super::spline::Spline;
 use super::text::decode;
+use crate::error::{Malformed, malformed};
 
 /// An entity, and what concerns all of them.
 #[derive(Debug)]
@@ -81,39 +81,35 @@ impl<'a> Fields<'_, 'a> {
         self.groups.iter().find(|group| group.code == code)
     }
 
-    fn number(&self, code: i32, default: f64) -> Result<f64, DxfError> {
+    fn number(&self, code: i32, default: f64) -> Result<f64, Malformed> {
         self.find(code).map_or(Ok(default), Group::number)
     }
 
-    fn integer(&self, code: i32) -> Result<i64, DxfError> {
+    fn integer(&self, code: i32) -> Result<i64, Malformed> {
         self.find(code).map_or(Ok(0), Group::integer)
     }
 
-    fn needed(&self, code: i32, what: &'static str) -> Result<f64, DxfError> {
-        self.find(code).ok_or(self.missing(what))?.number()
+    fn needed(&self, code: i32, what: &str) -> Result<f64, Malformed> {
+        self.find(code).ok_or_else(|| self.missing(what))?.number()
     }
 
-    fn missing(&self, what: &'static str) -> DxfError {
-        DxfError::at(self.line, DxfErrorKind::Missing { entity: self.kind, what })
+    fn missing(&self, what: &str) -> Malformed {
+        malformed!("the {} has no {what}", self.kind).on_line(self.line)
     }
 
     /// The point whose x has this code; y and z follow in steps of ten. Without z it is at height 0.
-    fn point(&self, code: i32, what: &'static str) -> Result<[f64; 3], DxfError> {
+    fn point(&self, code: i32, what: &str) -> Result<[f64; 3], Malformed> {
         Ok([self.needed(code, what)?, self.needed(code + 10, what)?, self.number(code + 20, 0.0)?])
     }
 
     /// All numbers with that code.
-    fn numbers(&self, code: i32) -> Result<Vec<f64>, DxfError> {
+    fn numbers(&self, code: i32) -> Result<Vec<f64>, Malformed> {
         self.groups.iter().filter(|group| group.code == code).map(Group::number).collect()
-    }
-
-    fn value(&self, what: &'static str, value: f64, fits: bool) -> Result<f64, DxfError> {
-        if fits { Ok(value) } else { Err(DxfError::at(self.line, DxfErrorKind::Value { what, value })) }
     }
 }
 
 /// Reads the next entity with all that belongs to it.
-pub(super) fn read_entity<'a>(groups: &mut Groups<'a>, layers: &mut Layers) -> Result<Read<'a>, DxfError> {
+pub(super) fn read_entity<'a>(groups: &mut Groups<'a>, layers: &mut Layers) -> Result<Read<'a>, Malformed> {
     let mut buffer = Vec::new();
     let record = next_record(groups, &mut buffer)?;
     let fields = |kind| Fields { kind, line: record.line, groups: &buffer };
@@ -146,7 +142,7 @@ pub(super) fn read_entity<'a>(groups: &mut Groups<'a>, layers: &mut Layers) -> R
     Ok(Read::Entity(Entity { line: record.line, layer, normal, shown, shape }))
 }
 
-fn light_polyline(fields: &Fields<'_, '_>) -> Result<Shape, DxfError> {
+fn light_polyline(fields: &Fields<'_, '_>) -> Result<Shape, Malformed> {
     let height = fields.number(38, 0.0)?;
     let mut vertices: Vec<([f64; 3], f64)> = Vec::new();
     let mut has_y = true;
@@ -179,7 +175,7 @@ mod flag {
 }
 
 /// Reads the vertices too, up to SEQEND.
-fn polyline(fields: &Fields<'_, '_>, groups: &mut Groups<'_>) -> Result<Shape, DxfError> {
+fn polyline(fields: &Fields<'_, '_>, groups: &mut Groups<'_>) -> Result<Shape, Malformed> {
     let flags = fields.integer(70)?;
     let is_own = flags & flag::IN_SPACE == 0;
     let height = fields.number(30, 0.0)?;
@@ -190,7 +186,7 @@ fn polyline(fields: &Fields<'_, '_>, groups: &mut Groups<'_>) -> Result<Shape, D
         match record.value {
             b"SEQEND" => break,
             b"VERTEX" => {}
-            _ => return Err(DxfError::at(record.line, DxfErrorKind::Expected("VERTEX or SEQEND"))),
+            _ => return Err(record.expected("VERTEX or SEQEND")),
         }
         let vertex = Fields { kind: "VERTEX", line: record.line, groups: &buffer };
         if flags & flag::MESH != 0 || (flags & flag::SMOOTH != 0 && vertex.integer(70)? & flag::CONTROL != 0) {
@@ -206,14 +202,16 @@ fn polyline(fields: &Fields<'_, '_>, groups: &mut Groups<'_>) -> Result<Shape, D
     Ok(Shape::Path { vertices, is_closed: flags & flag::CLOSED != 0, is_own })
 }
 
-fn arc(fields: &Fields<'_, '_>, has_angles: bool) -> Result<Shape, DxfError> {
+fn arc(fields: &Fields<'_, '_>, has_angles: bool) -> Result<Shape, Malformed> {
     let radius = fields.needed(40, "radius")?;
-    fields.value("a radius", radius, radius >= 0.0)?;
+    if radius < 0.0 {
+        return Err(malformed!("a radius is {radius}, which cannot be").on_line(fields.line));
+    }
     let angles = [fields.number(50, 0.0)?, fields.number(51, 360.0)?];
     Ok(Shape::Arc { center: fields.point(10, "centre")?, radius, angles: has_angles.then_some(angles) })
 }
 
-fn ellipse(fields: &Fields<'_, '_>) -> Result<Shape, DxfError> {
+fn ellipse(fields: &Fields<'_, '_>) -> Result<Shape, Malformed> {
     Ok(Shape::Ellipse {
         center: fields.point(10, "centre")?,
         major: fields.point(11, "major axis")?,
@@ -222,7 +220,7 @@ fn ellipse(fields: &Fields<'_, '_>) -> Result<Shape, DxfError> {
     })
 }
 
-fn spline(fields: &Fields<'_, '_>) -> Result<Shape, DxfError> {
+fn spline(fields: &Fields<'_, '_>) -> Result<Shape, Malformed> {
     let [x, y] = [fields.numbers(10)?, fields.numbers(20)?];
     // A plane curve may have no heights.
     let mut z = fields.numbers(30)?;
@@ -237,12 +235,12 @@ fn spline(fields: &Fields<'_, '_>) -> Result<Shape, DxfError> {
     let points = x.into_iter().zip(y).zip(z).map(|((x, y), z)| [x, y, z]).collect();
     let (degree, is_closed) = (fields.integer(71)?, fields.integer(70)? & 1 != 0);
     let spline = Spline::new(degree, fields.numbers(40)?, points, fields.numbers(41)?, is_closed);
-    spline.map(Shape::Spline).map_err(|what| DxfError::at(fields.line, DxfErrorKind::Spline(what)))
+    spline.map(Shape::Spline).map_err(|what| malformed!("the spline is malformed: {what}").on_line(fields.line))
 }
 
-fn insert(fields: &Fields<'_, '_>) -> Result<Insert, DxfError> {
-    let block = fields.find(2).ok_or(fields.missing("name of a block"))?;
-    let count = |code| Ok::<u32, DxfError>(fields.integer(code)?.clamp(1, i64::from(u32::MAX)) as u32);
+fn insert(fields: &Fields<'_, '_>) -> Result<Insert, Malformed> {
+    let block = fields.find(2).ok_or_else(|| fields.missing("name of a block"))?;
+    let count = |code| Ok::<u32, Malformed>(fields.integer(code)?.clamp(1, i64::from(u32::MAX)) as u32);
     Ok(Insert {
         block: decode(block.value),
         at: fields.point(10, "place")?,

@@ -1,14 +1,13 @@
 //! The entities of the model, with blocks where they are inserted: straight and curved pieces in the plane.
 
-use super::affine::{Affine, cross, unit};
+use super::affine::{Affine, Insert, checked_unit, cross};
 use super::curve::{Bezier, arc, bulged};
 use super::drawing::Drawing;
 use super::entity::{Entity, Shape, Shown};
-use super::error::{DxfError, DxfErrorKind};
-use super::insert::Insert;
 use super::layers::Chosen;
-use super::text::folded;
+use super::text::{folded, list};
 use super::{MAX_ELEMENTS, MAX_NESTING};
+use crate::error::{Malformed, malformed};
 use sightlines_geometry::check_coordinate;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -34,13 +33,13 @@ impl Expanded {
         let mut warnings = Vec::new();
         if !self.ignored.is_empty() {
             let kinds = self.ignored.iter().map(|(kind, n)| format!("{n} {}", kind.escape_debug()));
-            warnings.push(format!("ignored what is no line or curve: {}", list(kinds)));
+            warnings.push(format!("ignored what is no line or curve: {}", list(kinds, MOST)));
         }
         let entities = |n: usize| if n == 1 { "1 entity".to_owned() } else { format!("{n} entities") };
         if self.n_hidden > 0 {
             let names = self.hidden_layers.iter().map(|&id| drawing.layers.name(id).escape_debug().to_string());
             let what = entities(self.n_hidden);
-            warnings.push(format!("left out {what} on layers that are frozen or off: {}", list(names)));
+            warnings.push(format!("left out {what} on layers that are frozen or off: {}", list(names, MOST)));
         }
         if self.n_on_paper > 0 {
             warnings.push(format!("left out {} in paper space", entities(self.n_on_paper)));
@@ -52,15 +51,8 @@ impl Expanded {
     }
 }
 
-fn list(all: impl ExactSizeIterator<Item = String>) -> String {
-    let n = all.len();
-    let shown: Vec<String> = all.take(MOST).collect();
-    let more = if n > MOST { format!(" and {} more", n - MOST) } else { String::new() };
-    format!("{}{more}", shown.join(", "))
-}
-
 /// Follows the inserts of the model.
-pub(super) fn expand(drawing: &Drawing, chosen: &Chosen) -> Result<Expanded, DxfError> {
+pub(super) fn expand(drawing: &Drawing, chosen: &Chosen) -> Result<Expanded, Malformed> {
     let mut walk = Walk { drawing, chosen, out: Expanded::default(), n_elements: 0, open: Vec::new() };
     walk.entities(&drawing.entities, &Affine::IDENTITY, None)?;
     Ok(walk.out)
@@ -76,16 +68,16 @@ struct Walk<'d> {
 }
 
 impl Walk<'_> {
-    fn count(&mut self, n: usize) -> Result<(), DxfErrorKind> {
+    fn count(&mut self, n: usize) -> Result<(), Malformed> {
         self.n_elements = self.n_elements.saturating_add(n);
-        if self.n_elements > MAX_ELEMENTS { Err(DxfErrorKind::TooMany) } else { Ok(()) }
+        if self.n_elements > MAX_ELEMENTS { Err(too_many()) } else { Ok(()) }
     }
 
     /// * `map`: from the coordinates of these entities to the world's
     /// * `layer`: what the layer `0` stands for
-    fn entities(&mut self, entities: &[Entity], map: &Affine, layer: Option<u32>) -> Result<(), DxfError> {
+    fn entities(&mut self, entities: &[Entity], map: &Affine, layer: Option<u32>) -> Result<(), Malformed> {
         for entity in entities {
-            let at = |kind| DxfError::at(entity.line, kind);
+            let at = |what: Malformed| what.on_line(entity.line);
             self.count(1).map_err(at)?;
             match entity.shown {
                 Shown::Paper => self.out.n_on_paper += 1,
@@ -113,25 +105,25 @@ impl Walk<'_> {
         }
     }
 
-    fn insert(&mut self, entity: &Entity, insert: &Insert, map: &Affine, on: u32) -> Result<(), DxfError> {
-        let at = |kind| DxfError::at(entity.line, kind);
+    fn insert(&mut self, entity: &Entity, insert: &Insert, map: &Affine, on: u32) -> Result<(), Malformed> {
+        let at = |what: Malformed| what.on_line(entity.line);
         if self.chosen.is_frozen[on as usize] {
             self.hide(on);
             return Ok(());
         }
         let drawing = self.drawing;
         let found = drawing.by_name.get(&folded(&insert.block));
-        let &idx = found.ok_or_else(|| at(DxfErrorKind::NoSuchBlock(insert.block.clone())))?;
+        let &idx = found.ok_or_else(|| at(malformed!("there is no block \"{}\"", insert.block)))?;
         let block = &drawing.blocks[idx];
         if block.is_external {
             *self.out.ignored.entry("INSERT of another file".to_owned()).or_default() += 1;
             return Ok(());
         }
         if self.open.contains(&idx) {
-            return Err(at(DxfErrorKind::Recursion(block.name.clone())));
+            return Err(at(malformed!("the block \"{}\" contains itself", block.name)));
         }
         if self.open.len() == MAX_NESTING {
-            return Err(at(DxfErrorKind::Nesting));
+            return Err(at(malformed!("blocks are nested more than {MAX_NESTING} deep")));
         }
         let own = map.after(&Affine::of_extrusion(entity.normal).map_err(at)?);
         self.open.push(idx);
@@ -147,8 +139,8 @@ impl Walk<'_> {
         Ok(())
     }
 
-    fn curve(&mut self, entity: &Entity, shape: &Shape, map: &Affine) -> Result<(), DxfErrorKind> {
-        let own = || Ok::<_, DxfErrorKind>(map.after(&Affine::of_extrusion(entity.normal)?));
+    fn curve(&mut self, entity: &Entity, shape: &Shape, map: &Affine) -> Result<(), Malformed> {
+        let own = || Affine::of_extrusion(entity.normal).map(|own| map.after(&own));
         match shape {
             Shape::Line(ends) => self.add(&[straight(ends[0], ends[1])], map),
             Shape::Path { vertices, is_closed, is_own } => {
@@ -172,10 +164,7 @@ impl Walk<'_> {
             &Shape::Ellipse { center, major, ratio, parameters } => {
                 /// Programs write a full turn with six digits or more behind the point: it is one within that many degrees.
                 const ROUNDED: f64 = 1e-4;
-                let normal = unit(entity.normal);
-                let normal =
-                    normal.ok_or(DxfErrorKind::Value { what: "an extrusion direction", value: entity.normal[2] })?;
-                let minor = cross(normal, major).map(|x| ratio * x);
+                let minor = cross(checked_unit(entity.normal)?, major).map(|x| ratio * x);
                 let [start, end] = parameters.map(|t| t * (180.0 / std::f64::consts::PI));
                 let is_full = ((end - start).abs() - 360.0).abs() < ROUNDED;
                 let turn = if is_full { 360.0 } else { sweep(start, end) };
@@ -189,7 +178,7 @@ impl Walk<'_> {
         }
     }
 
-    fn add(&mut self, pieces: &[Bezier<3>], map: &Affine) -> Result<(), DxfErrorKind> {
+    fn add(&mut self, pieces: &[Bezier<3>], map: &Affine) -> Result<(), Malformed> {
         self.count(pieces.iter().map(|piece| piece.corners.len()).sum())?;
         let mut flat: Vec<Bezier<2>> = pieces.iter().map(|piece| piece.seen_from_above(map)).collect();
         for x in flat.iter_mut().flat_map(|piece| &mut piece.corners).flat_map(|(corner, _)| corner) {
@@ -198,6 +187,11 @@ impl Walk<'_> {
         self.out.pieces.push(flat);
         Ok(())
     }
+}
+
+/// The error of a drawing that is too large.
+pub(super) fn too_many() -> Malformed {
+    malformed!("the drawing, with its blocks inserted, has more than {MAX_ELEMENTS} elements")
 }
 
 fn straight(a: [f64; 3], b: [f64; 3]) -> Bezier<3> {

@@ -1,14 +1,15 @@
 //! Straight pieces of curves, and the plan that they make.
 
 use super::curve::Bezier;
-use super::error::{DxfError, DxfErrorKind};
+use super::expand::too_many;
 use super::{DEFAULT_DEVIATION, MAX_ELEMENTS};
+use crate::error::Malformed;
 use crate::plan::{PlanFile, PlanLines};
 use sightlines_cells::PlanLine;
 use sightlines_geometry::{Aabb, Point2, check_coordinate};
 
 /// The plan of all pieces, entity by entity.
-pub(super) fn flatten(entities: &[Vec<Bezier<2>>], deviation: Option<f64>) -> Result<PlanFile, DxfError> {
+pub(super) fn flatten(entities: &[Vec<Bezier<2>>], deviation: Option<f64>) -> Result<PlanFile, Malformed> {
     let deviation = deviation.unwrap_or_else(|| default_deviation(entities));
     let mut lines = PlanLines::default();
     let mut n_lines = 0;
@@ -20,7 +21,7 @@ pub(super) fn flatten(entities: &[Vec<Bezier<2>>], deviation: Option<f64>) -> Re
             while let Some(piece) = stack.pop() {
                 n_lines += 1;
                 if n_lines > MAX_ELEMENTS {
-                    return Err(DxfError::whole(DxfErrorKind::TooMany));
+                    return Err(too_many());
                 }
                 if !piece.is_flat(deviation) {
                     let [first, second] = piece.halves();
@@ -40,13 +41,12 @@ pub(super) fn flatten(entities: &[Vec<Bezier<2>>], deviation: Option<f64>) -> Re
             lines.count_without_length();
         }
     }
-    lines.finish(Vec::new()).map_err(|error| DxfError::whole(error.into()))
+    Ok(lines.finish(Vec::new())?)
 }
 
 /// A point that may have been computed.
-fn checked(point: [f64; 2]) -> Result<Point2, DxfError> {
-    let coordinate = |x| check_coordinate(x).map_err(|error| DxfError::whole(error.into()));
-    Ok(Point2::new(coordinate(point[0])?, coordinate(point[1])?))
+fn checked(point: [f64; 2]) -> Result<Point2, Malformed> {
+    Ok(Point2::new(check_coordinate(point[0])?, check_coordinate(point[1])?))
 }
 
 fn default_deviation(entities: &[Vec<Bezier<2>>]) -> f64 {

@@ -1,11 +1,11 @@
 //! The groups of a drawing: pairs of a code and a value, a line each.
 
-use super::error::{DxfError, DxfErrorKind};
+use crate::bytes::without_mark;
+use crate::error::{Malformed, malformed};
+use std::str::FromStr;
 
 /// How binary DXF begins.
 const BINARY: &[u8] = b"AutoCAD Binary DXF";
-/// The three bytes that some editors put before a text.
-const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
 /// The code of a comment.
 const COMMENT: i32 = 999;
 
@@ -23,18 +23,32 @@ impl<'a> Group<'a> {
         self.code == code && self.value == value.as_bytes()
     }
 
+    /// The error of a group that stands where another should.
+    pub(super) fn expected(&self, what: &str) -> Malformed {
+        malformed!("expected {what}").on_line(self.line)
+    }
+
     /// The value as a finite number.
-    pub(super) fn number(&self) -> Result<f64, DxfError> {
-        let number = std::str::from_utf8(self.value).ok().and_then(|text| text.parse::<f64>().ok());
-        let finite = number.filter(|x| x.is_finite());
-        finite.ok_or(DxfError::at(self.line, DxfErrorKind::Number))
+    pub(super) fn number(&self) -> Result<f64, Malformed> {
+        self.parsed().filter(|x: &f64| x.is_finite()).ok_or_else(|| self.no_number())
     }
 
     /// The value as a whole number.
-    pub(super) fn integer(&self) -> Result<i64, DxfError> {
-        let number = std::str::from_utf8(self.value).ok().and_then(|text| text.parse::<i64>().ok());
-        number.ok_or(DxfError::at(self.line, DxfErrorKind::Number))
+    pub(super) fn integer(&self) -> Result<i64, Malformed> {
+        self.parsed().ok_or_else(|| self.no_number())
     }
+
+    fn parsed<T: FromStr>(&self) -> Option<T> {
+        parsed(self.value)
+    }
+
+    fn no_number(&self) -> Malformed {
+        malformed!("this is no finite number").on_line(self.line)
+    }
+}
+
+fn parsed<T: FromStr>(text: &[u8]) -> Option<T> {
+    std::str::from_utf8(text).ok()?.parse().ok()
 }
 
 /// Goes through the groups of a text. Comments are skipped.
@@ -48,11 +62,11 @@ pub(super) struct Groups<'a> {
 
 impl<'a> Groups<'a> {
     pub(super) fn new(text: &'a [u8]) -> Self {
-        Self { rest: text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text), n_lines: 0, peeked: None }
+        Self { rest: without_mark(text), n_lines: 0, peeked: None }
     }
 
     /// The next group; an error if there is none, as the drawing ends with `EOF`.
-    pub(super) fn next(&mut self) -> Result<Group<'a>, DxfError> {
+    pub(super) fn next(&mut self) -> Result<Group<'a>, Malformed> {
         match self.peeked.take() {
             Some(group) => Ok(group),
             None => self.read(),
@@ -60,22 +74,24 @@ impl<'a> Groups<'a> {
     }
 
     /// The next group, which stays the next.
-    pub(super) fn peek(&mut self) -> Result<Group<'a>, DxfError> {
+    pub(super) fn peek(&mut self) -> Result<Group<'a>, Malformed> {
         let group = self.next()?;
         self.peeked = Some(group);
         Ok(group)
     }
 
-    fn read(&mut self) -> Result<Group<'a>, DxfError> {
+    fn read(&mut self) -> Result<Group<'a>, Malformed> {
         loop {
-            let truncated = DxfError::at(self.n_lines.max(1), DxfErrorKind::Truncated);
-            let Some(code) = self.line() else { return Err(truncated) };
+            let before = self.n_lines.max(1);
+            let what = "the drawing ends without EOF, so that a part of it may be missing";
+            let truncated = || malformed!("{what}").on_line(before);
+            let code = self.line().ok_or_else(truncated)?;
             if code.is_empty() && self.rest.trim_ascii().is_empty() {
-                return Err(truncated);
+                return Err(truncated());
             }
-            let number = std::str::from_utf8(code).ok().and_then(|text| text.parse().ok());
-            let code = number.ok_or(DxfError::at(self.n_lines, DxfErrorKind::Code))?;
-            let Some(value) = self.line() else { return Err(truncated) };
+            let wrong = || malformed!("this is no group code, which is a whole number").on_line(self.n_lines);
+            let code = parsed(code).ok_or_else(wrong)?;
+            let value = self.line().ok_or_else(truncated)?;
             if code != COMMENT {
                 return Ok(Group { code, value, line: self.n_lines });
             }
@@ -98,11 +114,11 @@ impl<'a> Groups<'a> {
 }
 
 /// Reads the group that begins a record, and the groups of the record.
-pub(super) fn next_record<'a>(groups: &mut Groups<'a>, fields: &mut Vec<Group<'a>>) -> Result<Group<'a>, DxfError> {
+pub(super) fn next_record<'a>(groups: &mut Groups<'a>, fields: &mut Vec<Group<'a>>) -> Result<Group<'a>, Malformed> {
     fields.clear();
     let record = groups.next()?;
     if record.code != 0 {
-        return Err(DxfError::at(record.line, DxfErrorKind::Expected("a group with the code 0")));
+        return Err(record.expected("a group with the code 0"));
     }
     if record.value == b"EOF" {
         return Err(unended(&record));
@@ -117,13 +133,16 @@ pub(super) fn next_record<'a>(groups: &mut Groups<'a>, fields: &mut Vec<Group<'a
 }
 
 /// The error of an end mark within a section.
-pub(super) fn unended(end: &Group<'_>) -> DxfError {
-    DxfError::at(end.line, DxfErrorKind::Expected("the end of the section before EOF"))
+pub(super) fn unended(end: &Group<'_>) -> Malformed {
+    end.expected("the end of the section before EOF")
 }
 
 /// Refuses the binary form.
-pub(super) fn refuse_binary(text: &[u8]) -> Result<(), DxfError> {
-    if text.starts_with(BINARY) { Err(DxfError::whole(DxfErrorKind::Binary)) } else { Ok(()) }
+pub(super) fn refuse_binary(text: &[u8]) -> Result<(), Malformed> {
+    match text.starts_with(BINARY) {
+        true => Err(malformed!("this is binary DXF, which is not read: save it as text (ASCII)")),
+        false => Ok(()),
+    }
 }
 
 /// Whether a file begins as a drawing: a section is opened, or it is the binary form.

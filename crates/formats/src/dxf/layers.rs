@@ -1,7 +1,7 @@
 //! The layers of a drawing, and which of them are read.
 
-use super::error::{DxfError, DxfErrorKind};
-use super::text::{decode, folded};
+use super::text::{decode, folded, list};
+use crate::error::{Malformed, malformed};
 use std::collections::HashMap;
 
 /// A layer.
@@ -57,7 +57,7 @@ impl Layers {
     }
 
     /// The layers with these names; without names all that are neither frozen nor off.
-    pub(super) fn choose(&self, names: Option<&[String]>) -> Result<Chosen, DxfError> {
+    pub(super) fn choose(&self, names: Option<&[String]>) -> Result<Chosen, Malformed> {
         let Some(names) = names else {
             let is_read = self.layers.iter().map(|layer| !layer.is_frozen && !layer.is_off).collect();
             return Ok(Chosen {
@@ -75,9 +75,22 @@ impl Layers {
             }
         }
         if !unknown.is_empty() {
-            let names = self.layers.iter().map(|layer| layer.name.clone()).collect();
-            return Err(DxfError::whole(DxfErrorKind::NoSuchLayer { unknown, names }));
+            return Err(self.no_such(&unknown));
         }
         Ok(Chosen { by_name: true, is_read, is_frozen: vec![false; self.layers.len()] })
+    }
+
+    /// The error of layers that are not there.
+    fn no_such(&self, unknown: &[String]) -> Malformed {
+        /// Most names of a list.
+        const MOST: usize = 40;
+        let names = list(self.layers.iter().map(|layer| layer.name.escape_debug().to_string()), MOST);
+        let there = match self.layers.len() {
+            0 => "are none".to_owned(),
+            1 => format!("is {names}"),
+            _ => format!("are {names}"),
+        };
+        let unknown = list(unknown.iter().map(|name| name.escape_debug().to_string()), MOST);
+        malformed!("there is no layer {unknown}; there {there}")
     }
 }

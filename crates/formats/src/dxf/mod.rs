@@ -31,18 +31,16 @@ mod angle;
 mod curve;
 mod drawing;
 mod entity;
-mod error;
 mod expand;
 mod flatten;
 mod groups;
-mod insert;
 mod layers;
 mod spline;
 mod text;
 
-pub use error::{DxfError, DxfErrorKind};
 pub(crate) use groups::is_dxf;
 
+use crate::error::{Malformed, malformed};
 use crate::{PlanFile, PlanReadOptions};
 
 /// The deviation of curves that is taken where none is given, as a share of the longer side of the box around the plan: 5 mm for 50 m.
@@ -61,9 +59,12 @@ pub const MAX_NESTING: usize = 64;
 /// [`MAX_ELEMENTS`].
 ///
 /// # Errors
-/// [`DxfError`] with the line of the text.
-pub fn parse_dxf(text: &[u8], options: &PlanReadOptions) -> Result<PlanFile, DxfError> {
-    let deviation = options.deviation.map(error::check_deviation).transpose()?;
+/// [`Malformed`] with the line of the text.
+pub fn parse_dxf(text: &[u8], options: &PlanReadOptions) -> Result<PlanFile, Malformed> {
+    let deviation = options.deviation;
+    if let Some(other) = deviation.filter(|&deviation| !(deviation.is_finite() && deviation > 0.0)) {
+        return Err(malformed!("{other} is no deviation of curves, which is a number above 0"));
+    }
     let drawing = drawing::read(text)?;
     let chosen = drawing.layers.choose(options.layers.as_deref())?;
     let expanded = expand::expand(&drawing, &chosen)?;

@@ -32,6 +32,14 @@ pub(super) fn folded(name: &str) -> String {
     name.to_lowercase()
 }
 
+/// Texts with commas between, the first `most` of them.
+pub(super) fn list(all: impl ExactSizeIterator<Item = String>, most: usize) -> String {
+    let n = all.len();
+    let shown: Vec<String> = all.take(most).collect();
+    let more = if n > most { format!(" and {} more", n - most) } else { String::new() };
+    format!("{}{more}", shown.join(", "))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,38 +1,28 @@
-//! Where in a text the reader is, and what is wrong there.
+//! Where in a text the reader is.
 
-use super::error::{GeoJsonError, GeoJsonErrorKind, GeoJsonPlace};
-use serde::de::Error;
-use serde_json::error::Category;
+use std::fmt;
 
 /// The place in the text's scene, and why reading failed or is about to fail there.
-#[derive(Debug, Default)]
-pub(super) struct Context {
-    pub(super) place: GeoJsonPlace,
-    failure: Option<GeoJsonErrorKind>,
-    /// What is wrong if the next value is of another JSON type than it should be.
-    mismatch: Option<GeoJsonErrorKind>,
+pub(super) type Context = crate::json::Context<Place>;
+
+/// A place in a scene; what is not known or not meant is `None`.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Place {
+    /// Index of the feature; 0 for a lone feature or geometry.
+    pub(super) feature: Option<usize>,
+    /// Index of the geometry in a GeometryCollection, nested ones counted through.
+    pub(super) geometry: Option<usize>,
+    /// Index of the line or ring in the geometry, those of several polygons counted through.
+    pub(super) part: Option<usize>,
+    /// Index of the position in that line or ring.
+    pub(super) position: Option<usize>,
 }
 
-impl Context {
-    /// Sets what is wrong if the value that is read next is of another JSON type than expected.
-    pub(super) fn expect(&mut self, otherwise: GeoJsonErrorKind) {
-        self.mismatch = Some(otherwise);
-    }
-
-    /// Keeps the reason and makes the error that carries the position in the text.
-    pub(super) fn fail<E: Error>(&mut self, kind: GeoJsonErrorKind) -> E {
-        self.failure = Some(kind);
-        E::custom("not a plan")
-    }
-
-    /// The error for what the JSON reader reports.
-    pub(super) fn explain(&mut self, error: &serde_json::Error) -> GeoJsonError {
-        let found = match error.classify() {
-            Category::Eof => GeoJsonErrorKind::Truncated,
-            Category::Data => self.mismatch.take().unwrap_or(GeoJsonErrorKind::Syntax),
-            Category::Syntax | Category::Io => GeoJsonErrorKind::Syntax,
-        };
-        let kind = self.failure.take().unwrap_or(found);
-        GeoJsonError { line: error.line(), column: error.column(), place: self.place, kind }
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let indices = [self.feature, self.geometry, self.part, self.position];
+        let levels = ["feature", "geometry", "part", "position"].into_iter().zip(indices);
+        let levels: Vec<String> = levels.filter_map(|(level, index)| Some(format!("{level} {}", index?))).collect();
+        f.write_str(&levels.join(": "))
     }
 }

@@ -1,10 +1,9 @@
 //! The coordinates of a geometry: nested lists, read flat.
 
 use super::context::Context;
-use super::error::GeoJsonErrorKind;
-use serde::de::{DeserializeSeed, Deserializer, Error, SeqAccess, Visitor};
+use crate::json::{Scalar, Seed, Shape};
+use serde::de::{Error, MapAccess, SeqAccess};
 use sightlines_geometry::{Point2, check_coordinate};
-use std::fmt;
 
 /// Positions, and where lines or rings end among them.
 #[derive(Debug, Default)]
@@ -31,21 +30,18 @@ impl Coordinates {
 /// Most lists around a position: those of a MultiPolygon.
 const MAX_DEPTH: u8 = 3;
 
-/// Reads the value of a member `coordinates`.
-pub(super) struct CoordinatesSeed<'r>(pub(super) &'r mut Context);
+const OTHERWISE: &str = "the coordinates are not lists of positions of two numbers or more, all equally deep";
 
-impl<'de> DeserializeSeed<'de> for CoordinatesSeed<'_> {
-    type Value = Coordinates;
-
-    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Coordinates, D::Error> {
-        let mut out = Coordinates::default();
-        self.0.expect(GeoJsonErrorKind::Coordinates);
-        match (Nested { context: self.0, out: &mut out, level: 0 }).deserialize(deserializer)? {
-            Item::Number(_) => return Err(self.0.fail(GeoJsonErrorKind::Coordinates)),
+impl Coordinates {
+    /// Reads the value of a member `coordinates`.
+    pub(super) fn read<'de, A: MapAccess<'de>>(context: &mut Context, map: &mut A) -> Result<Self, A::Error> {
+        let mut out = Self::default();
+        match map.next_value_seed(Seed(Nested { context, out: &mut out, level: 0 }))? {
+            Item::Number(_) => return Err(context.fail(OTHERWISE)),
             Item::Empty => {}
             Item::List(depth) => out.depth = Some(depth),
         }
-        (self.0.place.part, self.0.place.position) = (None, None);
+        (context.place.part, context.place.position) = (None, None);
         Ok(out)
     }
 }
@@ -66,34 +62,22 @@ struct Nested<'r, 'o> {
     level: u8,
 }
 
-impl<'de> DeserializeSeed<'de> for Nested<'_, '_> {
+impl<'de> Shape<'de> for Nested<'_, '_> {
     type Value = Item;
 
-    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Item, D::Error> {
-        deserializer.deserialize_any(self)
-    }
-}
-
-impl<'de> Visitor<'de> for Nested<'_, '_> {
-    type Value = Item;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("coordinates")
+    fn begin(&mut self) {
+        self.context.expect(OTHERWISE);
     }
 
-    fn visit_f64<E>(self, x: f64) -> Result<Item, E> {
-        Ok(Item::Number(x))
+    fn scalar<E: Error>(self, value: Scalar<'_>) -> Result<Item, E> {
+        match value {
+            Scalar::Number(x) => Ok(Item::Number(x)),
+            Scalar::Integer(x) => Ok(Item::Number(x as f64)),
+            _ => Err(self.context.fail(OTHERWISE)),
+        }
     }
 
-    fn visit_u64<E>(self, x: u64) -> Result<Item, E> {
-        Ok(Item::Number(x as f64))
-    }
-
-    fn visit_i64<E>(self, x: i64) -> Result<Item, E> {
-        Ok(Item::Number(x as f64))
-    }
-
-    fn visit_seq<A: SeqAccess<'de>>(mut self, mut seq: A) -> Result<Item, A::Error> {
+    fn list<A: SeqAccess<'de>>(mut self, mut seq: A) -> Result<Item, A::Error> {
         if self.level > MAX_DEPTH {
             return Err(self.fail());
         }
@@ -104,11 +88,11 @@ impl<'de> Visitor<'de> for Nested<'_, '_> {
             self.mark_place();
             let level = self.level + 1;
             let item = Nested { context: self.context, out: self.out, level };
-            let Some(item) = seq.next_element_seed(item)? else { break };
+            let Some(item) = seq.next_element_seed(Seed(item))? else { break };
             match (first, item) {
                 (None | Some(Item::Number(_)), Item::Number(x)) => {
                     if let Some(slot) = position.get_mut(n_numbers) {
-                        *slot = check_coordinate(x).map_err(|error| self.context.fail(error.into()))?;
+                        *slot = check_coordinate(x).map_err(|error| self.context.fail(error))?;
                     }
                     n_numbers += 1;
                     first = Some(item);
@@ -143,6 +127,6 @@ impl Nested<'_, '_> {
     }
 
     fn fail<E: Error>(&mut self) -> E {
-        self.context.fail(GeoJsonErrorKind::Coordinates)
+        self.context.fail(OTHERWISE)
     }
 }

@@ -17,7 +17,6 @@
 
 mod context;
 mod coordinates;
-mod error;
 mod geometry;
 mod node;
 mod plan_builder;
@@ -25,12 +24,8 @@ mod properties;
 mod read;
 mod write;
 
-pub use error::{GeoJsonError, GeoJsonErrorKind, GeoJsonPlace, GeometryKind};
 pub use read::{parse_plan, parse_plan_file, read_plan, read_plan_file};
 pub use write::{write_plan, write_plan_file};
 
 /// Groups are below this number, because tables over groups follow.
 pub const MAX_GROUPS: u32 = 1 << 20;
-
-#[cfg(test)]
-mod tests;

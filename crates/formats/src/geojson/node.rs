@@ -3,14 +3,15 @@
 //! Members come in any order, so an object is understood at its end; only the features of a collection
 //! are handed over one by one.
 
-use super::coordinates::{Coordinates, CoordinatesSeed};
-use super::error::{GeoJsonErrorKind, GeoJsonPlace, GeometryKind};
-use super::geometry::Geometry;
+use super::context::Place;
+use super::coordinates::Coordinates;
+use super::geometry::{Geometry, GeometryKind};
 use super::plan_builder::PlanBuilder;
-use super::properties::{Properties, PropertiesSeed, Scalar, ScalarSeed};
-use serde::de::{DeserializeSeed, Deserializer, IgnoredAny, MapAccess, SeqAccess, Visitor};
+use super::properties::{OfFeature, Properties, name_of, text_of};
+use crate::error::{Malformed, malformed};
+use crate::json::{Any, NOT_AN_OBJECT, Scalar, Seed, Shape};
+use serde::de::{Error, IgnoredAny, MapAccess, SeqAccess};
 use serde_json::value::RawValue;
-use std::fmt;
 
 /// Which object is expected.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,34 +41,25 @@ struct Members {
     id: Option<String>,
 }
 
-impl<'de> DeserializeSeed<'de> for Node<'_> {
+impl<'de> Shape<'de> for Node<'_> {
     type Value = Vec<Geometry>;
 
-    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Vec<Geometry>, D::Error> {
-        self.builder.context.expect(GeoJsonErrorKind::NotAnObject);
-        deserializer.deserialize_any(self)
-    }
-}
-
-impl<'de> Visitor<'de> for Node<'_> {
-    type Value = Vec<Geometry>;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a GeoJSON object")
+    fn begin(&mut self) {
+        self.builder.context.expect(NOT_AN_OBJECT);
     }
 
     /// A feature may have `null` for its geometry.
-    fn visit_unit<E: serde::de::Error>(self) -> Result<Vec<Geometry>, E> {
-        let fits = self.level == Level::Geometry(None);
-        if fits { Ok(Vec::new()) } else { Err(self.builder.context.fail(GeoJsonErrorKind::NotAnObject)) }
+    fn scalar<E: Error>(self, value: Scalar<'_>) -> Result<Vec<Geometry>, E> {
+        let fits = self.level == Level::Geometry(None) && value == Scalar::Null;
+        if fits { Ok(Vec::new()) } else { Err(self.builder.context.fail(NOT_AN_OBJECT)) }
     }
 
-    fn visit_map<A: MapAccess<'de>>(mut self, mut map: A) -> Result<Vec<Geometry>, A::Error> {
+    fn object<A: MapAccess<'de>>(mut self, mut map: A) -> Result<Vec<Geometry>, A::Error> {
         let mut members = Members::default();
         while let Some(key) = map.next_key::<String>()? {
             self.read_member(&key, &mut members, &mut map)?;
         }
-        self.understand(members).map_err(|kind| self.builder.context.fail(kind))
+        self.understand(members).map_err(|what| self.builder.context.fail(what))
     }
 }
 
@@ -84,62 +76,65 @@ impl Node<'_> {
             builder.context.place.feature = Some(0);
         }
         let base = if let Level::Geometry(base) = self.level { base.unwrap_or(0) } else { 0 };
-        let repeated = match key {
+        let is_repeated = match key {
             "type" => {
-                let Scalar::Text(kind) = map.next_value_seed(ScalarSeed)? else {
-                    return Err(builder.context.fail(GeoJsonErrorKind::Member { member: "type", expected: "text" }));
+                let Some(kind) = map.next_value_seed(Seed(Any(text_of)))? else {
+                    return Err(builder.context.fail(wrong_type("text")));
                 };
-                members.kind.replace(kind).map(|_| "type")
+                members.kind.replace(kind).is_some()
             }
             "features" if top => {
-                map.next_value_seed(FeaturesSeed(builder))?;
-                members.features.replace(()).map(|()| "features")
+                map.next_value_seed(Seed(Features(builder)))?;
+                members.features.replace(()).is_some()
             }
             "geometry" if top || feature => {
-                let geometry = map.next_value_seed(Node { builder, level: Level::Geometry(None) })?;
-                members.geometry.replace(geometry).map(|_| "geometry")
+                let geometry = map.next_value_seed(Seed(Node { builder, level: Level::Geometry(None) }))?;
+                members.geometry.replace(geometry).is_some()
             }
             "geometries" if !feature => {
-                let geometries = map.next_value_seed(GeometriesSeed { builder, base })?;
-                members.geometries.replace(geometries).map(|_| "geometries")
+                let geometries = map.next_value_seed(Seed(Geometries { builder, base }))?;
+                members.geometries.replace(geometries).is_some()
             }
             "coordinates" if !feature => {
-                let coordinates = map.next_value_seed(CoordinatesSeed(&mut builder.context))?;
-                members.coordinates.replace(coordinates).map(|_| "coordinates")
+                let coordinates = Coordinates::read(&mut builder.context, map)?;
+                members.coordinates.replace(coordinates).is_some()
             }
             "properties" if top || feature => {
-                let properties = map.next_value_seed(PropertiesSeed(&mut builder.context))?;
-                members.properties.replace(properties).map(|_| "properties")
+                let properties = map.next_value_seed(Seed(OfFeature(&mut builder.context)))?;
+                members.properties.replace(properties).is_some()
             }
             "id" if top || feature => {
-                members.id = map.next_value_seed(ScalarSeed)?.into_name();
-                None
+                members.id = map.next_value_seed(Seed(Any(name_of)))?;
+                false
             }
             "crs" if top => {
                 let crs = map.next_value::<Box<RawValue>>()?;
-                builder.crs.replace(crs.get().to_owned()).map(|_| "crs")
+                builder.crs.replace(crs.get().to_owned()).is_some()
             }
             _ => {
                 map.next_value::<IgnoredAny>()?;
-                None
+                false
             }
         };
-        repeated.map_or(Ok(()), |member| Err(self.builder.context.fail(GeoJsonErrorKind::Repeated(member))))
+        if is_repeated {
+            return Err(self.builder.context.fail(format_args!("there are two members \"{key}\"")));
+        }
+        Ok(())
     }
 
     /// Makes of the members what the object is, now that all are known.
-    fn understand(&mut self, mut members: Members) -> Result<Vec<Geometry>, GeoJsonErrorKind> {
-        let kind = members.kind.take().ok_or(GeoJsonErrorKind::Missing("type"))?;
+    fn understand(&mut self, mut members: Members) -> Result<Vec<Geometry>, Malformed> {
+        let kind = members.kind.take().ok_or_else(|| missing("type"))?;
         match (self.level, kind.as_str()) {
             (Level::Top, "FeatureCollection") => {
-                members.features.ok_or(GeoJsonErrorKind::Missing("features"))?;
+                members.features.ok_or_else(|| missing("features"))?;
             }
             (Level::Top, _) if members.features.is_some() => {
                 return Err(wrong_type("\"FeatureCollection\", though there are \"features\""));
             }
             (Level::Top | Level::Feature, "Feature") => {
                 self.builder.context.place.feature.get_or_insert(0);
-                let geometry = members.geometry.ok_or(GeoJsonErrorKind::Missing("geometry"))?;
+                let geometry = members.geometry.ok_or_else(|| missing("geometry"))?;
                 let mut about = members.properties.unwrap_or_default();
                 about.id = about.id.or(members.id);
                 self.builder.add_feature(&geometry, &about)?;
@@ -156,87 +151,71 @@ impl Node<'_> {
     }
 }
 
-fn understand_geometry(kind: &str, members: Members, index: Option<usize>) -> Result<Vec<Geometry>, GeoJsonErrorKind> {
+fn understand_geometry(kind: &str, members: Members, index: Option<usize>) -> Result<Vec<Geometry>, Malformed> {
     if kind == "GeometryCollection" {
-        return members.geometries.ok_or(GeoJsonErrorKind::Missing("geometries"));
+        return members.geometries.ok_or_else(|| missing("geometries"));
     }
-    let Some(kind) = GeometryKind::ALL.into_iter().find(|k| k.name() == kind) else {
-        return Err(wrong_type("a type of GeoJSON"));
-    };
-    let coordinates = members.coordinates.ok_or(GeoJsonErrorKind::Missing("coordinates"))?;
-    match (coordinates.depth, kind) {
-        (Some(depth), _) if depth == kind.depth() => Ok(vec![Geometry { kind, coordinates, index }]),
+    let known = GeometryKind::named(kind).ok_or_else(|| wrong_type("a type of GeoJSON"))?;
+    let coordinates = members.coordinates.ok_or_else(|| missing("coordinates"))?;
+    match coordinates.depth {
+        Some(depth) if depth == known.depth() => Ok(vec![Geometry { kind: known, coordinates, index }]),
         // Empty lists are what programs write for nothing at all.
-        (None, kind) if kind != GeometryKind::Point => Ok(vec![]),
-        _ => Err(GeoJsonErrorKind::Depth(kind)),
+        None if known != GeometryKind::Point => Ok(vec![]),
+        _ => Err(malformed!("the coordinates are not those of a {kind}")),
     }
 }
 
-fn wrong_type(expected: &'static str) -> GeoJsonErrorKind {
-    GeoJsonErrorKind::Member { member: "type", expected }
+fn wrong_type(expected: &str) -> Malformed {
+    malformed!("\"type\" is not {expected}")
 }
 
-/// Reads the list of a FeatureCollection into the plan.
-struct FeaturesSeed<'r>(&'r mut PlanBuilder);
+fn missing(member: &str) -> Malformed {
+    malformed!("there is no \"{member}\"")
+}
 
-impl<'de> DeserializeSeed<'de> for FeaturesSeed<'_> {
+/// The list of a FeatureCollection, which goes into the plan.
+struct Features<'r>(&'r mut PlanBuilder);
+
+impl<'de> Shape<'de> for Features<'_> {
     type Value = ();
 
-    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
-        self.0.context.expect(GeoJsonErrorKind::Member { member: "features", expected: "a list" });
-        deserializer.deserialize_any(self)
-    }
-}
-
-impl<'de> Visitor<'de> for FeaturesSeed<'_> {
-    type Value = ();
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a list of features")
+    fn begin(&mut self) {
+        self.0.context.expect("\"features\" is not a list");
     }
 
-    fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<(), A::Error> {
+    fn list<A: SeqAccess<'de>>(self, mut seq: A) -> Result<(), A::Error> {
         for feature in 0.. {
-            self.0.context.place = GeoJsonPlace { feature: Some(feature), ..GeoJsonPlace::default() };
-            if seq.next_element_seed(Node { builder: self.0, level: Level::Feature })?.is_none() {
+            self.0.context.place = Place { feature: Some(feature), ..Place::default() };
+            if seq.next_element_seed(Seed(Node { builder: self.0, level: Level::Feature }))?.is_none() {
                 break;
             }
         }
-        self.0.context.place = GeoJsonPlace::default();
+        self.0.context.place = Place::default();
         Ok(())
     }
 }
 
-/// Reads the list of a GeometryCollection, nested ones flattened.
-struct GeometriesSeed<'r> {
+/// The list of a GeometryCollection, nested ones flattened.
+struct Geometries<'r> {
     builder: &'r mut PlanBuilder,
     /// Geometries before it, in the collection it is in.
     base: usize,
 }
 
-impl<'de> DeserializeSeed<'de> for GeometriesSeed<'_> {
+impl<'de> Shape<'de> for Geometries<'_> {
     type Value = Vec<Geometry>;
 
-    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Vec<Geometry>, D::Error> {
-        self.builder.context.expect(GeoJsonErrorKind::Member { member: "geometries", expected: "a list" });
-        deserializer.deserialize_any(self)
-    }
-}
-
-impl<'de> Visitor<'de> for GeometriesSeed<'_> {
-    type Value = Vec<Geometry>;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a list of geometries")
+    fn begin(&mut self) {
+        self.builder.context.expect("\"geometries\" is not a list");
     }
 
-    fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Vec<Geometry>, A::Error> {
+    fn list<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Vec<Geometry>, A::Error> {
         let mut all = Vec::new();
         loop {
             let index = Some(self.base + all.len());
             self.builder.context.place.geometry = index;
             let node = Node { builder: self.builder, level: Level::Geometry(index) };
-            let Some(more) = seq.next_element_seed(node)? else { break };
+            let Some(more) = seq.next_element_seed(Seed(node))? else { break };
             all.extend(more);
         }
         self.builder.context.place.geometry = None;

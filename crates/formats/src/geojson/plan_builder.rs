@@ -2,9 +2,9 @@
 
 use super::context::Context;
 use super::coordinates::Coordinates;
-use super::error::{GeoJsonError, GeoJsonErrorKind, GeoJsonPlace, GeometryKind};
-use super::geometry::Geometry;
+use super::geometry::{Geometry, GeometryKind};
 use super::properties::{Properties, wrong};
+use crate::error::Malformed;
 use crate::plan::{PlanFile, PlanLines};
 use sightlines_cells::{PlanLine, PlanObject};
 use sightlines_geometry::{Aabb, Point2};
@@ -21,16 +21,14 @@ pub(super) struct PlanBuilder {
 
 impl PlanBuilder {
     /// The plan, when all is read.
-    pub(super) fn finish(self) -> Result<PlanFile, GeoJsonError> {
-        let place = GeoJsonPlace::default();
+    pub(super) fn finish(self) -> Result<PlanFile, Malformed> {
         // Coordinates and lengths were checked on the way; only the number of lines is left.
-        let file = self.lines.finish(self.objects);
-        let file = file.map_err(|e| GeoJsonError { line: 1, column: 1, place, kind: e.into() })?;
+        let file = self.lines.finish(self.objects)?;
         Ok(PlanFile { crs: self.crs, ..file })
     }
 
     /// Adds the geometries of one feature to the plan.
-    pub(super) fn add_feature(&mut self, geometries: &[Geometry], about: &Properties) -> Result<(), GeoJsonErrorKind> {
+    pub(super) fn add_feature(&mut self, geometries: &[Geometry], about: &Properties) -> Result<(), Malformed> {
         if about.is_mirror && about.transparent {
             return Err(wrong("mirror", "false where lines do not block sight"));
         }

@@ -1,7 +1,6 @@
 //! The members of a JSON object, looked at without reading all of it.
 
-/// The three bytes that some editors put before a text.
-const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
+use crate::bytes::without_mark;
 
 /// Whether a text begins as a JSON object.
 pub(super) fn is_object(head: &[u8]) -> bool {
@@ -10,7 +9,7 @@ pub(super) fn is_object(head: &[u8]) -> bool {
 
 /// What follows the brace that opens the object.
 fn inside(head: &[u8]) -> Option<&[u8]> {
-    head.strip_prefix(BYTE_ORDER_MARK).unwrap_or(head).trim_ascii_start().strip_prefix(b"{")
+    without_mark(head).trim_ascii_start().strip_prefix(b"{")
 }
 
 /// Whether an object has a member of that name, as far as its text goes. Names with escapes count as others.

@@ -1,7 +1,7 @@
 //! Which format a file has, and what it holds, in one place.
 //!
 //! [`FORMATS`] lists what is read: name, endings, how it is recognised, reader. [`detect`] returns the format of bytes with a
-//! name, [`detect_file`] that of a file, and [`read_input`] reads it. A new format is a module with a reader, one line
+//! name, [`detect_file`] that of a file, and [`Source::read`] reads it. A new format is a module with a reader, one line
 //! in that list, and a sample in its test.
 //!
 //! ```
@@ -16,18 +16,16 @@
 
 mod format;
 mod members;
-mod plans;
 mod registry;
 
 pub use crate::beside::{Folder, Neighbours};
 pub use format::{Format, InputKind, Sign};
-pub use plans::read_plan_file;
 pub use registry::{FORMATS, detect};
 
-use crate::error::ReadErrorKind;
+use crate::error::{ReadErrorKind, in_file};
 use crate::quake::prt::parse_prt;
 use crate::quake::{Bsp, Prt, portals_beside};
-use crate::{LevelsIndex, PlanFile, ReadError, SceneFile, ViewCells, Wad};
+use crate::{LevelsIndex, PlanFile, PlanReadOptions, ReadError, SceneFile, ViewCells, Wad, dxf, geojson};
 use sightlines_pvs::Table;
 use std::borrow::Cow;
 use std::fs::{self, File};
@@ -148,10 +146,16 @@ pub fn detect_file(path: impl AsRef<Path>) -> Result<Option<&'static Format>, Re
     Ok(detect(path, &head))
 }
 
-/// Reads a file of any format; `None` if no format recognises it. Other files that it names are read from its folder.
+/// Reads a plan from a file of any format of plans; GeoJSON if no format recognises it.
 ///
 /// # Errors
-/// [`ReadError`] with the file's name and the place in it.
-pub fn read_input(path: impl AsRef<Path>) -> Result<Option<Input>, ReadError> {
-    Source::File(path.as_ref()).read()
+/// [`ReadError`] with the file and what is wrong.
+pub fn read_plan_file(path: impl AsRef<Path>, options: &PlanReadOptions) -> Result<PlanFile, ReadError> {
+    let path = path.as_ref();
+    match detect_file(path)? {
+        Some(format) if format.name == "dxf" => {
+            in_file(path, || Ok(dxf::parse_dxf(&Source::File(path).bytes()?, options)?))
+        }
+        _ => geojson::read_plan_file(path),
+    }
 }

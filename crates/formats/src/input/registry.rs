@@ -1,28 +1,29 @@
 //! All formats that are read, a line for each.
 
 use super::format::{Format, InputKind, Sign};
-use super::{Folder, Input, Source};
-use crate::error::ReadErrorKind;
+use super::{Folder, Input, Neighbours, Source};
+use crate::error::{Malformed, ReadErrorKind};
 use crate::quake::prt::{self, PrtDialect};
 use crate::quake::{Bsp, BspFormat};
-use crate::{PlanReadOptions, Wad, dxf, geojson, levels, scene, view_cells};
+use crate::scene::{GLB_MAGIC, SceneReadOptions, parse_gltf_with, parse_obj_with};
+use crate::{PlanReadOptions, SceneFile, Wad, dxf, geojson, levels, view_cells};
 use sightlines_pvs::{Table, format};
 use std::path::Path;
 
 /// The formats that are read. What lies further up is recognised first.
 #[rustfmt::skip]
 pub static FORMATS: [Format; 12] = [
-    Format { name: "wad", noun: "a WAD", extensions: &["wad"], sign: Sign::Magic(&[b"IWAD", b"PWAD"]), kind: InputKind::Wad, read: wad },
-    Format { name: "pvs", noun: "a table", extensions: &["pvs"], sign: Sign::Magic(&[&format::MAGIC]), kind: InputKind::Table, read: table },
+    Format { name: "wad", noun: "a WAD", extensions: &["wad"], sign: Sign::Magic(&[b"IWAD", b"PWAD"]), kind: InputKind::Wad, read: |s| Ok(Input::Wad(Wad::parse(s.bytes()?.into_owned())?)) },
+    Format { name: "pvs", noun: "a table", extensions: &["pvs"], sign: Sign::Magic(&[&format::MAGIC]), kind: InputKind::Table, read: |s| Ok(Input::Table(Box::new(Table::from_bytes(&s.bytes()?)?))) },
     Format { name: "pvz", noun: "a packed table", extensions: &["pvz"], sign: Sign::Magic(&[PACKED]), kind: InputKind::Packed, read: |_| Ok(Input::Packed) },
     Format { name: "proofs", noun: "proofs of a table", extensions: &["cert"], sign: Sign::Magic(&[PROOFS]), kind: InputKind::Proofs, read: |_| Ok(Input::Proofs) },
-    Format { name: "gltf", noun: "a scene", extensions: &["glb", "gltf"], sign: Sign::MagicOrNamedJson(scene::GLB_MAGIC), kind: InputKind::Scene, read: gltf },
-    Format { name: "obj", noun: "a scene", extensions: &["obj"], sign: Sign::Name, kind: InputKind::Scene, read: obj },
-    Format { name: "prt", noun: "a portal file", extensions: &["prt"], sign: Sign::Magic(&PrtDialect::MAGICS), kind: InputKind::Prt, read: portals },
-    Format { name: "bsp", noun: "a Quake map", extensions: &["bsp"], sign: Sign::Magic(&BspFormat::MAGICS), kind: InputKind::Bsp, read: bsp },
-    Format { name: "dxf", noun: "a DXF drawing", extensions: &["dxf"], sign: Sign::Dxf, kind: InputKind::Plan, read: dxf },
-    Format { name: "levels", noun: "an index of levels", extensions: &["json"], sign: Sign::JsonMember("sightlines_levels"), kind: InputKind::Levels, read: levels },
-    Format { name: "view-cells", noun: "view cells", extensions: &["json"], sign: Sign::JsonMember("cells"), kind: InputKind::ViewCells, read: view_cells },
+    Format { name: "gltf", noun: "a scene", extensions: &["glb", "gltf"], sign: Sign::MagicOrNamedJson(GLB_MAGIC), kind: InputKind::Scene, read: |s| scene(s, parse_gltf_with) },
+    Format { name: "obj", noun: "a scene", extensions: &["obj"], sign: Sign::Name, kind: InputKind::Scene, read: |s| scene(s, parse_obj_with) },
+    Format { name: "prt", noun: "a portal file", extensions: &["prt"], sign: Sign::Magic(&PrtDialect::MAGICS), kind: InputKind::Prt, read: |s| Ok(Input::Prt(prt::parse_prt(&s.bytes()?)?)) },
+    Format { name: "bsp", noun: "a Quake map", extensions: &["bsp"], sign: Sign::Magic(&BspFormat::MAGICS), kind: InputKind::Bsp, read: |s| Ok(Input::Bsp(Bsp::parse(s.bytes()?.into_owned())?)) },
+    Format { name: "dxf", noun: "a DXF drawing", extensions: &["dxf"], sign: Sign::Dxf, kind: InputKind::Plan, read: |s| Ok(Input::Plan(dxf::parse_dxf(&s.bytes()?, &PlanReadOptions::default())?)) },
+    Format { name: "levels", noun: "an index of levels", extensions: &["json"], sign: Sign::JsonMember("sightlines_levels"), kind: InputKind::Levels, read: |s| Ok(Input::Levels(levels::parse_levels_index(&s.bytes()?)?)) },
+    Format { name: "view-cells", noun: "view cells", extensions: &["json"], sign: Sign::JsonMember("cells"), kind: InputKind::ViewCells, read: |s| Ok(Input::ViewCells(view_cells::parse_view_cells(&s.bytes()?)?)) },
     Format { name: "geojson", noun: "JSON, such as a floor plan", extensions: &["geojson", "json"], sign: Sign::Json, kind: InputKind::Plan, read: plan },
 ];
 
@@ -47,48 +48,15 @@ pub fn detect(name: &Path, head: &[u8]) -> Option<&'static Format> {
     }
 }
 
-fn wad(source: &Source<'_>) -> Result<Input, ReadErrorKind> {
-    Ok(Input::Wad(Wad::parse(source.bytes()?.into_owned())?))
-}
-
-fn table(source: &Source<'_>) -> Result<Input, ReadErrorKind> {
-    Ok(Input::Table(Box::new(Table::from_bytes(&source.bytes()?)?)))
-}
-
-fn gltf(source: &Source<'_>) -> Result<Input, ReadErrorKind> {
-    let bytes = source.bytes()?;
+fn scene(
+    source: &Source<'_>,
+    parse: impl Fn(&[u8], Option<&dyn Neighbours>, &SceneReadOptions) -> Result<SceneFile, Malformed>,
+) -> Result<Input, ReadErrorKind> {
+    let (bytes, options) = (source.bytes()?, SceneReadOptions::default());
     Ok(Input::Scene(match *source {
-        Source::File(path) => scene::parse_gltf(&bytes, Some(&Folder::of(path))),
-        Source::Memory { beside, .. } => scene::parse_gltf(&bytes, beside),
+        Source::File(path) => parse(&bytes, Some(&Folder::of(path)), &options),
+        Source::Memory { beside, .. } => parse(&bytes, beside, &options),
     }?))
-}
-
-fn obj(source: &Source<'_>) -> Result<Input, ReadErrorKind> {
-    let (bytes, options) = (source.bytes()?, scene::SceneReadOptions::default());
-    Ok(Input::Scene(match *source {
-        Source::File(path) => scene::parse_obj_with(&bytes, Some(&Folder::of(path)), &options),
-        Source::Memory { beside, .. } => scene::parse_obj_with(&bytes, beside, &options),
-    }?))
-}
-
-fn portals(source: &Source<'_>) -> Result<Input, ReadErrorKind> {
-    Ok(Input::Prt(prt::parse_prt(&source.bytes()?)?))
-}
-
-fn bsp(source: &Source<'_>) -> Result<Input, ReadErrorKind> {
-    Ok(Input::Bsp(Bsp::parse(source.bytes()?.into_owned())?))
-}
-
-fn levels(source: &Source<'_>) -> Result<Input, ReadErrorKind> {
-    Ok(Input::Levels(levels::parse_levels_index(&source.bytes()?)?))
-}
-
-fn view_cells(source: &Source<'_>) -> Result<Input, ReadErrorKind> {
-    Ok(Input::ViewCells(view_cells::parse_view_cells(&source.bytes()?)?))
-}
-
-fn dxf(source: &Source<'_>) -> Result<Input, ReadErrorKind> {
-    Ok(Input::Plan(dxf::parse_dxf(&source.bytes()?, &PlanReadOptions::default())?))
 }
 
 /// A plan in a file is read as it goes: a large file that is no plan costs no memory.

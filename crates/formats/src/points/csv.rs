@@ -1,7 +1,7 @@
 //! Lines of values.
 
 use super::NamedPoint;
-use super::error::{PointsError, PointsErrorKind};
+use crate::error::{Malformed, malformed};
 use sightlines_geometry::{Point2, check_coordinate};
 use std::borrow::Cow;
 
@@ -21,17 +21,17 @@ struct Columns {
 /// Without a header.
 const PLAIN: Columns = Columns { x: 0, y: 1, name: Some(2), only: true };
 
-pub(super) fn parse(text: &[u8]) -> Result<Vec<NamedPoint>, PointsError> {
+pub(super) fn parse(text: &[u8]) -> Result<Vec<NamedPoint>, Malformed> {
     let mut points = Vec::new();
     // Both are decided by the first line.
     let mut form: Option<(char, Columns)> = None;
     for (line, bytes) in (1..).zip(text.split(|&byte| byte == b'\n')) {
+        let at = |(column, what): (usize, Malformed)| what.within(format_args!("line {line} column {column}"));
         let row = std::str::from_utf8(bytes.strip_suffix(b"\r").unwrap_or(bytes))
-            .map_err(|error| PointsError::at(line, error.valid_up_to() + 1, PointsErrorKind::NotText))?;
+            .map_err(|error| at((error.valid_up_to() + 1, malformed!("this is not UTF-8"))))?;
         if row.trim().is_empty() || row.trim_start().starts_with('#') {
             continue;
         }
-        let at = |(column, kind)| PointsError::at(line, column, kind);
         let separator = form.map_or_else(|| separator_of(row), |(separator, _)| separator);
         let values = split(row, separator).map_err(at)?;
         let columns = match form {
@@ -55,7 +55,8 @@ fn separator_of(row: &str) -> char {
 }
 
 /// The values of a line, without blanks around them and without quotes.
-fn split(row: &str, separator: char) -> Result<Vec<Value<'_>>, (usize, PointsErrorKind)> {
+fn split(row: &str, separator: char) -> Result<Vec<Value<'_>>, (usize, Malformed)> {
+    let unclosed = || malformed!("the quotes are not closed at the end of the value");
     let mut values = Vec::new();
     let mut rest = row;
     loop {
@@ -64,11 +65,11 @@ fn split(row: &str, separator: char) -> Result<Vec<Value<'_>>, (usize, PointsErr
         let column = row.len() - trimmed.len() + 1;
         let behind = match trimmed.strip_prefix('"') {
             Some(quoted) => {
-                let (value, behind) = unquote(quoted).ok_or((column, PointsErrorKind::Quotes))?;
+                let (value, behind) = unquote(quoted).ok_or_else(|| (column, unclosed()))?;
                 values.push((column, Cow::Owned(value)));
                 let behind = behind.trim_start_matches(is_blank);
                 if !behind.is_empty() && !behind.starts_with(separator) {
-                    return Err((column, PointsErrorKind::Quotes));
+                    return Err((column, unclosed()));
                 }
                 behind
             }
@@ -103,38 +104,39 @@ fn unquote(text: &str) -> Option<(String, &str)> {
 }
 
 /// The columns that a line of names states; `None` if its first two values are not names but begin as numbers do.
-fn header(values: &[Value<'_>]) -> Result<Option<Columns>, (usize, PointsErrorKind)> {
+fn header(values: &[Value<'_>]) -> Result<Option<Columns>, (usize, Malformed)> {
     let is_name = |value: &Value<'_>| {
         value.1.starts_with(|c: char| c.is_alphabetic() || c == '_') && value.1.parse::<f64>().is_err()
     };
     if values.len() < 2 || !values.iter().take(2).all(is_name) {
         return Ok(None);
     }
-    let find = |name: &'static str| {
+    let find = |name: &str| {
         let mut found = values.iter().enumerate().filter(|(_, (_, value))| value.eq_ignore_ascii_case(name));
         match (found.next(), found.next()) {
-            (_, Some((_, (column, _)))) => Err((*column, PointsErrorKind::Twice(name))),
+            (_, Some((_, (column, _)))) => Err((*column, malformed!("the header names two columns {name}"))),
             (first, None) => Ok(first.map(|(k, _)| k)),
         }
     };
-    let needed = |name| find(name)?.ok_or((1, PointsErrorKind::Header(name)));
+    let needed = |name| find(name)?.ok_or_else(|| (1, malformed!("the header names no column {name}")));
     Ok(Some(Columns { x: needed("x")?, y: needed("y")?, name: find("name")?, only: false }))
 }
 
 /// * `end`: one past the last byte of the line, where a missing value is missing
-fn point(values: &[Value<'_>], columns: Columns, end: usize) -> Result<NamedPoint, (usize, PointsErrorKind)> {
-    let coordinate = |idx: usize, what| {
-        let (column, text) = values.get(idx).ok_or((end, PointsErrorKind::Missing(what)))?;
-        let wrong = |kind| (*column, kind);
+fn point(values: &[Value<'_>], columns: Columns, end: usize) -> Result<NamedPoint, (usize, Malformed)> {
+    let coordinate = |idx: usize, what: &str| {
+        let missing = |column| (column, malformed!("there is no {what}"));
+        let (column, text) = values.get(idx).ok_or_else(|| missing(end))?;
         if text.is_empty() {
-            return Err(wrong(PointsErrorKind::Missing(what)));
+            return Err(missing(*column));
         }
-        let x: f64 = text.parse().map_err(|_| wrong(PointsErrorKind::Number(text.to_string())))?;
-        check_coordinate(x).map_err(|error| wrong(error.into()))
+        let number = || malformed!("'{}' is not a number", text.escape_debug());
+        let x: f64 = text.parse().map_err(|_| (*column, number()))?;
+        check_coordinate(x).map_err(|error| (*column, error.into()))
     };
     let point = Point2::new(coordinate(columns.x, "x")?, coordinate(columns.y, "y")?);
     if let (true, Some((column, _))) = (columns.only, values.get(3)) {
-        return Err((*column, PointsErrorKind::TooMany));
+        return Err((*column, malformed!("there are more values than x, y and a name")));
     }
     let name = columns.name.and_then(|idx| values.get(idx)).map(|(_, name)| name.to_string());
     Ok(NamedPoint { point, name: name.filter(|name| !name.is_empty()) })

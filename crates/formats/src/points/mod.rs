@@ -14,13 +14,9 @@
 //! ```
 
 mod csv;
-mod error;
 
-#[cfg(test)]
-mod tests;
-
-pub use error::{PointsError, PointsErrorKind};
-
+use crate::bytes::without_mark;
+use crate::error::{Malformed, in_file, malformed};
 use crate::{ReadError, geojson};
 use sightlines_geometry::Point2;
 use std::path::Path;
@@ -38,12 +34,12 @@ pub struct NamedPoint {
 /// MultiPoints is one, with the name that a plan would give its object. O(length).
 ///
 /// # Errors
-/// [`PointsError`] with line and column; also if there is no point at all, and for GeoJSON with lines or boxes.
-pub fn parse_points(text: &[u8]) -> Result<Vec<NamedPoint>, PointsError> {
-    let text = text.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(text);
+/// [`Malformed`] with line and column; also if there is no point at all, and for GeoJSON with lines or boxes.
+pub fn parse_points(text: &[u8]) -> Result<Vec<NamedPoint>, Malformed> {
+    let text = without_mark(text);
     let points = if text.trim_ascii_start().starts_with(b"{") { of_geojson(text)? } else { csv::parse(text)? };
     if points.is_empty() {
-        return Err(PointsError::at(1, 1, PointsErrorKind::None));
+        return Err(whole("there are no points in the file"));
     }
     Ok(points)
 }
@@ -53,20 +49,26 @@ pub fn parse_points(text: &[u8]) -> Result<Vec<NamedPoint>, PointsError> {
 /// # Errors
 /// [`ReadError`] with the file and what is wrong.
 pub fn read_points(path: impl AsRef<Path>) -> Result<Vec<NamedPoint>, ReadError> {
-    let bytes = std::fs::read(path.as_ref()).map_err(|error| ReadError::new(&path, error))?;
-    parse_points(&bytes).map_err(|error| ReadError::new(&path, error))
+    let path = path.as_ref();
+    in_file(path, || Ok(parse_points(&std::fs::read(path)?)?))
 }
 
-fn of_geojson(text: &[u8]) -> Result<Vec<NamedPoint>, PointsError> {
+/// What is wrong with the file as a whole, where its text begins.
+fn whole(what: &str) -> Malformed {
+    malformed!("{what}").within("line 1 column 1")
+}
+
+fn of_geojson(text: &[u8]) -> Result<Vec<NamedPoint>, Malformed> {
     let file = geojson::parse_plan_file(text)?;
     if !file.plan.lines().is_empty() || file.dropped.n_without_length > 0 {
-        return Err(PointsError::at(1, 1, PointsErrorKind::Lines));
+        return Err(whole("there are lines in the file, which should hold points only"));
     }
     let point = |object: &sightlines_cells::PlanObject| {
-        let ([x, y], name) = (object.bounds.min, object.name.clone());
-        let is_point = object.bounds.min == object.bounds.max;
-        is_point.then(|| NamedPoint { point: Point2::new(x, y), name: Some(name.clone()) }).ok_or(name)
+        let ([x, y], name) = (object.bounds.min, &object.name);
+        if object.bounds.min != object.bounds.max {
+            return Err(whole(&format!("the object \"{}\" is a box, not a point", name.escape_debug())));
+        }
+        Ok(NamedPoint { point: Point2::new(x, y), name: Some(name.clone()) })
     };
-    let points: Result<_, _> = file.plan.objects().iter().map(point).collect();
-    points.map_err(|name| PointsError::at(1, 1, PointsErrorKind::Box(name)))
+    file.plan.objects().iter().map(point).collect()
 }

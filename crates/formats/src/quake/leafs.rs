@@ -1,6 +1,7 @@
 //! Which leafs make up which cluster.
 
 use super::MAX_CLUSTERS;
+use crate::error::{Malformed, malformed};
 
 /// The clusters of a map and their leafs. Every leaf is in exactly one cluster; a cluster may be empty.
 ///
@@ -13,49 +14,22 @@ pub struct LeafClusters {
     leafs: Vec<u32>,
 }
 
-/// Why leafs do not make clusters.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum LeafError {
-    /// No clusters, or more than can be held.
-    #[error("{n_clusters} clusters are not from 1 to {MAX_CLUSTERS}")]
-    Clusters {
-        /// How many.
-        n_clusters: u32,
-    },
-    /// A leaf names a cluster that does not exist.
-    #[error("leaf {leaf} is in cluster {cluster}, but there are {n_clusters}")]
-    Cluster {
-        /// The leaf, from 0.
-        leaf: usize,
-        /// The cluster that it names.
-        cluster: u32,
-        /// How many clusters there are.
-        n_clusters: u32,
-    },
-    /// More leafs than 32 bits count.
-    #[error("{n_leafs} leafs are too many")]
-    Leafs {
-        /// How many.
-        n_leafs: usize,
-    },
-}
-
 impl LeafClusters {
     /// Groups leafs by the cluster of each. O(leafs + clusters).
     ///
     /// # Errors
-    /// [`LeafError`].
-    pub fn new(n_clusters: u32, cluster_of_leaf: Vec<u32>) -> Result<Self, LeafError> {
+    /// [`Malformed`] for no clusters or more than [`MAX_CLUSTERS`], for more leafs than 32 bits count, and for a leaf of a cluster that does not exist.
+    pub fn new(n_clusters: u32, cluster_of_leaf: Vec<u32>) -> Result<Self, Malformed> {
         let n_leafs = cluster_of_leaf.len();
         if !(1..=MAX_CLUSTERS).contains(&n_clusters) {
-            return Err(LeafError::Clusters { n_clusters });
+            return Err(malformed!("{n_clusters} clusters are not from 1 to {MAX_CLUSTERS}"));
         }
         if u32::try_from(n_leafs).is_err() {
-            return Err(LeafError::Leafs { n_leafs });
+            return Err(malformed!("{n_leafs} leafs are too many"));
         }
         if let Some(leaf) = cluster_of_leaf.iter().position(|&c| c >= n_clusters) {
-            return Err(LeafError::Cluster { leaf, cluster: cluster_of_leaf[leaf], n_clusters });
+            let cluster = cluster_of_leaf[leaf];
+            return Err(malformed!("leaf {leaf} is in cluster {cluster}, but there are {n_clusters}"));
         }
         let mut starts = vec![0u32; n_clusters as usize + 1];
         cluster_of_leaf.iter().for_each(|&c| starts[c as usize + 1] += 1);
@@ -72,8 +46,8 @@ impl LeafClusters {
     /// Every leaf is a cluster of its own.
     ///
     /// # Errors
-    /// [`LeafError::Clusters`].
-    pub fn identity(n_clusters: u32) -> Result<Self, LeafError> {
+    /// [`Malformed`] for a number of clusters as in [`Self::new`].
+    pub fn identity(n_clusters: u32) -> Result<Self, Malformed> {
         // The count is checked before memory is taken for it.
         Self::new(n_clusters, if n_clusters <= MAX_CLUSTERS { (0..n_clusters).collect() } else { Vec::new() })
     }
@@ -99,28 +73,5 @@ impl LeafClusters {
     /// If there is no such cluster.
     pub fn leafs_of(&self, cluster: usize) -> &[u32] {
         &self.leafs[self.starts[cluster] as usize..self.starts[cluster + 1] as usize]
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn leafs_are_grouped() {
-        let leafs = LeafClusters::new(4, vec![2, 0, 2, 3, 0]).unwrap();
-        assert_eq!((leafs.n_leafs(), leafs.n_clusters()), (5, 4));
-        let groups: Vec<&[u32]> = (0..4).map(|c| leafs.leafs_of(c)).collect();
-        assert_eq!(groups, [&[1, 4][..], &[], &[0, 2], &[3]]);
-        assert_eq!(leafs.cluster_of_leaf(), [2, 0, 2, 3, 0]);
-        assert_eq!(LeafClusters::identity(3), LeafClusters::new(3, vec![0, 1, 2]));
-    }
-
-    #[test]
-    fn impossible_groups_are_refused() {
-        let text = |r: Result<LeafClusters, LeafError>| r.unwrap_err().to_string();
-        assert_eq!(text(LeafClusters::new(2, vec![0, 2])), "leaf 1 is in cluster 2, but there are 2");
-        assert_eq!(text(LeafClusters::identity(0)), "0 clusters are not from 1 to 65536");
-        assert_eq!(text(LeafClusters::identity(u32::MAX)), "4294967295 clusters are not from 1 to 65536");
     }
 }

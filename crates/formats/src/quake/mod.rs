@@ -16,13 +16,13 @@ pub mod prt;
 pub mod rle;
 pub mod visibility;
 
-pub use bsp::{Bsp, BspError, BspFormat};
-pub use leafs::{LeafClusters, LeafError};
-pub use prt::{Prt, PrtError, graph_of_prt};
+pub use bsp::{Bsp, BspFormat};
+pub use leafs::LeafClusters;
+pub use prt::{Prt, graph_of_prt};
 pub use visibility::{VisibilityError, VisibilityLump};
 
 use crate::ReadError;
-use crate::error::ReadErrorKind;
+use crate::error::in_file;
 use std::path::{Path, PathBuf};
 
 /// The most clusters that are read: their table takes 512 MiB. Engines hold as many leafs.
@@ -39,8 +39,7 @@ pub fn portals_beside(map: impl AsRef<Path>) -> PathBuf {
 /// [`ReadError`] with the file's name, and line and column in it.
 pub fn read_prt(path: impl AsRef<Path>) -> Result<Prt, ReadError> {
     let path = path.as_ref();
-    let read = || -> Result<_, ReadErrorKind> { Ok(prt::parse_prt(&std::fs::read(path)?)?) };
-    read().map_err(|kind| ReadError::new(path, kind))
+    in_file(path, || Ok(prt::parse_prt(&std::fs::read(path)?)?))
 }
 
 /// Reads a map.
@@ -49,6 +48,5 @@ pub fn read_prt(path: impl AsRef<Path>) -> Result<Prt, ReadError> {
 /// [`ReadError`] with the file's name, and the place in it.
 pub fn read_bsp(path: impl AsRef<Path>) -> Result<Bsp, ReadError> {
     let path = path.as_ref();
-    let read = || -> Result<_, ReadErrorKind> { Ok(Bsp::parse(std::fs::read(path)?)?) };
-    read().map_err(|kind| ReadError::new(path, kind))
+    in_file(path, || Ok(Bsp::parse(std::fs::read(path)?)?))
 }

@@ -1,9 +1,20 @@
 //! Accessors of a glTF: numbers in buffers, found only after their place has been checked.
 
-use super::buffers::Buffers;
-use super::error::{AccessorErrorKind, AccessorRole};
+use super::buffers::{Buffers, missing};
 use super::json::{Accessor, Document, Sparse};
+use crate::error::{Malformed, Within, malformed};
 use sightlines_cells::Point3;
+
+/// What an accessor is used for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum AccessorRole {
+    /// Corners of a primitive.
+    Positions,
+    /// Indices into the corners.
+    Indices,
+    /// Anything else that corners have, or that a document keeps.
+    Attribute,
+}
 
 /// A kind of number, as `componentType` states it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -133,20 +144,20 @@ impl<'a> Elements<'a> {
         buffers: &'a Buffers<'_>,
         accessor: usize,
         role: AccessorRole,
-    ) -> Result<Self, AccessorErrorKind> {
-        let a = document.accessors.get(accessor).ok_or(AccessorErrorKind::Missing)?;
-        let wrong = || AccessorErrorKind::Type { found: a.kind.clone(), component: a.component_type };
+    ) -> Result<Self, Malformed> {
+        let a = document.accessors.get(accessor).ok_or_else(missing)?;
+        let wrong = || wrong_type(&a.kind, a.component_type);
         let component = Component::of(a.component_type).filter(|&c| fits(a, c, role)).ok_or_else(wrong)?;
         let size = element_size(&a.kind, component).ok_or_else(wrong)?;
         if a.count == 0 {
-            return Err(AccessorErrorKind::Empty);
+            return Err(malformed!("it has no elements"));
         }
         let views = Views { document, buffers };
         let base = a.buffer_view.map(|view| views.strided(view, a.byte_offset, a.count, size, true)).transpose()?;
         let replaced = a.sparse.as_deref().map(|s| views.replaced(s, a.count, size)).transpose()?;
         // Zeros out of nothing must not take more memory than the file did.
         if base.is_none() && a.count > a.sparse.as_deref().map_or(0, |s| views.n_bytes_around(s)) {
-            return Err(AccessorErrorKind::Unbacked { count: a.count });
+            return Err(malformed!("{} elements that are in no buffer", a.count));
         }
         Ok(Self { count: a.count, size, component, normalized: a.normalized, base, replaced })
     }
@@ -188,6 +199,15 @@ impl<'a> Elements<'a> {
     }
 }
 
+/// The error of a buffer view that a document does not have.
+pub(super) fn no_view(view: usize) -> Malformed {
+    malformed!("there is no buffer view {view}")
+}
+
+fn wrong_type(kind: &str, component: u32) -> Malformed {
+    malformed!("elements of type {kind:?} with components {component} cannot be that")
+}
+
 /// Whether the components can be what `role` needs. Positions of small integers are those of quantised meshes.
 fn fits(a: &Accessor, component: Component, role: AccessorRole) -> bool {
     match role {
@@ -222,7 +242,7 @@ pub(super) fn view_bytes<'a>(
     document: &Document,
     buffers: &'a Buffers<'_>,
     view: usize,
-) -> Result<&'a [u8], AccessorErrorKind> {
+) -> Result<&'a [u8], Malformed> {
     Views { document, buffers }.bytes(view)
 }
 
@@ -233,13 +253,13 @@ struct Views<'a, 'b, 'd> {
 }
 
 impl<'a> Views<'a, '_, '_> {
-    fn bytes(&self, view: usize) -> Result<&'a [u8], AccessorErrorKind> {
-        let v = self.document.buffer_views.get(view).ok_or(AccessorErrorKind::NoView { view })?;
+    fn bytes(&self, view: usize) -> Result<&'a [u8], Malformed> {
+        let v = self.document.buffer_views.get(view).ok_or_else(|| no_view(view))?;
         let buffer = v.buffer;
-        let whole = self.buffers.get(buffer).map_err(|kind| AccessorErrorKind::Buffer { buffer, kind })?;
+        let whole = self.buffers.get(buffer).within(format_args!("buffer {buffer}"))?;
         let end = v.byte_offset.checked_add(v.byte_length);
         let bytes = end.and_then(|end| whole.get(v.byte_offset..end));
-        bytes.ok_or(AccessorErrorKind::ViewRange { view, buffer, len: whole.len() })
+        bytes.ok_or_else(|| malformed!("buffer view {view} is not inside the {} bytes of buffer {buffer}", whole.len()))
     }
 
     /// `count` elements of `size` bytes, from `offset` in a view; only vertices may be `spaced` by a stride.
@@ -250,24 +270,28 @@ impl<'a> Views<'a, '_, '_> {
         count: usize,
         size: usize,
         spaced: bool,
-    ) -> Result<Strided<'a>, AccessorErrorKind> {
+    ) -> Result<Strided<'a>, Malformed> {
         let bytes = self.bytes(view)?;
         let stride = self.document.buffer_views[view].byte_stride.filter(|_| spaced).unwrap_or(size);
         if stride < size {
-            return Err(AccessorErrorKind::Stride { view, stride, size });
+            let what = malformed!("stride {stride} is less than {size} bytes of an element");
+            return Err(what.within(format_args!("buffer view {view}")));
         }
         let end =
             count.saturating_sub(1).checked_mul(stride).and_then(|last| last.checked_add(size)?.checked_add(offset));
         match (end, bytes.get(offset..)) {
             (Some(end), Some(elements)) if end <= bytes.len() => Ok(Strided { bytes: elements, stride, size }),
-            _ => Err(AccessorErrorKind::Range { view, count, len: bytes.len() }),
+            _ => {
+                let len = bytes.len();
+                Err(malformed!("{count} elements are not inside the {len} bytes of buffer view {view}"))
+            }
         }
     }
 
-    fn replaced(&self, sparse: &Sparse, count: usize, size: usize) -> Result<Replaced<'a>, AccessorErrorKind> {
+    fn replaced(&self, sparse: &Sparse, count: usize, size: usize) -> Result<Replaced<'a>, Malformed> {
         let code = sparse.indices.component_type;
         let index = Component::of(code).filter(|&c| is_index(c));
-        let index = index.ok_or(AccessorErrorKind::Type { found: "SCALAR".to_owned(), component: code })?;
+        let index = index.ok_or_else(|| wrong_type("SCALAR", code))?;
         let (at, values) = (&sparse.indices, &sparse.values);
         let indices = self.strided(at.buffer_view, at.byte_offset, sparse.count, index.size(), false)?;
         let values = self.strided(values.buffer_view, values.byte_offset, sparse.count, size, false)?;
@@ -276,7 +300,7 @@ impl<'a> Views<'a, '_, '_> {
         for position in 0..sparse.count {
             let k = replaced.index_at(position);
             if k < next || k >= count {
-                return Err(AccessorErrorKind::Sparse { position, count });
+                return Err(malformed!("sparse index {position} does not ascend or is not below {count}"));
             }
             next = k + 1;
         }

@@ -1,8 +1,9 @@
 //! Bytes of a glTF: the GLB container, and the buffers of a document wherever they are.
 
-use super::error::{BufferErrorKind, GlbError};
 use super::json;
 use crate::beside::Neighbours;
+use crate::bytes::number_at;
+use crate::error::{Malformed, malformed};
 use std::borrow::Cow;
 use std::cell::OnceCell;
 use std::collections::BTreeMap;
@@ -14,37 +15,36 @@ pub(crate) const MAGIC: &[u8] = b"glTF";
 const HEADER: usize = 12;
 const CHUNK_HEADER: usize = 8;
 
-fn number_at(bytes: &[u8], at: usize) -> Option<u32> {
-    let field = bytes.get(at..at.checked_add(4)?)?;
-    Some(u32::from_le_bytes([field[0], field[1], field[2], field[3]]))
-}
-
 /// Splits a GLB into its text and its binary chunk; further chunks belong to extensions and are skipped.
 ///
 /// Bytes behind the length that the header states are not part of the GLB.
-pub(super) fn split_glb(file: &[u8]) -> Result<(&[u8], Option<&[u8]>), GlbError> {
+pub(super) fn split_glb(file: &[u8]) -> Result<(&[u8], Option<&[u8]>), Malformed> {
     let len = file.len();
     let (Some(version), Some(stated)) = (number_at(file, 4), number_at(file, 8)) else {
-        return Err(GlbError::NoHeader { len });
+        return Err(malformed!("not a GLB: {len} bytes are less than a header"));
     };
     if version != 2 {
-        return Err(GlbError::Version { found: version });
+        return Err(malformed!("GLB version {version} is not 2"));
     }
     let whole = usize::try_from(stated).ok().filter(|&stated| stated >= HEADER).and_then(|stated| file.get(..stated));
-    let glb = whole.ok_or(GlbError::Length { stated, len })?;
+    let glb = whole.ok_or_else(|| malformed!("the header states {stated} bytes, the file has {len}"))?;
+    let no_json = || malformed!("the first chunk is not JSON");
     let (mut json, mut binary) = (None, None);
     let mut offset = HEADER;
     while offset < glb.len() {
-        let (kind, content) = chunk(glb, offset).ok_or(GlbError::Chunk { offset, len: glb.len() })?;
+        let Some((kind, content)) = chunk(glb, offset) else {
+            let len = glb.len();
+            return Err(malformed!("the chunk at byte {offset} is not inside the {len} bytes of the file"));
+        };
         match kind {
             b"JSON" if offset == HEADER => json = Some(content),
-            _ if offset == HEADER => return Err(GlbError::NoJson),
+            _ if offset == HEADER => return Err(no_json()),
             b"BIN\0" if binary.is_none() => binary = Some(content),
             _ => {}
         }
         offset += CHUNK_HEADER + content.len();
     }
-    Ok((json.ok_or(GlbError::NoJson)?, binary))
+    Ok((json.ok_or_else(no_json)?, binary))
 }
 
 fn chunk(glb: &[u8], offset: usize) -> Option<(&[u8], &[u8])> {
@@ -100,8 +100,8 @@ impl<'a> Buffers<'a> {
     }
 
     /// The bytes of a buffer, as many as it states.
-    pub(super) fn get(&self, buffer: usize) -> Result<&[u8], BufferErrorKind> {
-        let Some(&first) = self.first.get(buffer) else { return Err(BufferErrorKind::Missing) };
+    pub(super) fn get(&self, buffer: usize) -> Result<&[u8], Malformed> {
+        let Some(&first) = self.first.get(buffer) else { return Err(missing()) };
         let cell = &self.loaded[first];
         let bytes = match cell.get() {
             Some(bytes) => bytes,
@@ -111,14 +111,15 @@ impl<'a> Buffers<'a> {
             }
         };
         let stated = self.buffers[buffer].byte_length;
-        bytes.get(..stated).ok_or(BufferErrorKind::Length { stated, len: bytes.len() })
+        bytes.get(..stated).ok_or_else(|| malformed!("it states {stated} bytes, there are {}", bytes.len()))
     }
 
-    fn load(&self, buffer: usize) -> Result<Cow<'a, [u8]>, BufferErrorKind> {
+    fn load(&self, buffer: usize) -> Result<Cow<'a, [u8]>, Malformed> {
         let Some(uri) = self.buffers[buffer].uri.as_deref() else {
             // Only the first buffer may be the binary chunk.
             let binary = self.binary.filter(|_| buffer == 0);
-            return binary.map(Cow::Borrowed).ok_or(BufferErrorKind::NoData);
+            let no_data = || malformed!("it has no URI and there is no binary chunk for it");
+            return binary.map(Cow::Borrowed).ok_or_else(no_data);
         };
         match uri.get(..5) {
             Some(scheme) if scheme.eq_ignore_ascii_case("data:") => data_uri(&uri[5..]).map(Cow::Owned),
@@ -127,11 +128,16 @@ impl<'a> Buffers<'a> {
     }
 }
 
+/// The error of a buffer, or an accessor, that a document does not have.
+pub(super) fn missing() -> Malformed {
+    malformed!("it does not exist")
+}
+
 /// The file beside the document that a URI names, in the same folder or below.
-pub(super) fn load_file(beside: Option<&dyn Neighbours>, uri: &str) -> Result<Vec<u8>, BufferErrorKind> {
-    let refused = || BufferErrorKind::Uri { uri: uri.to_owned() };
+pub(super) fn load_file(beside: Option<&dyn Neighbours>, uri: &str) -> Result<Vec<u8>, Malformed> {
+    let refused = || malformed!("{uri:?} is not a file in the scene's folder");
     let (beside, path) = beside.zip(relative_path(uri)).ok_or_else(refused)?;
-    let found = beside.read(&path).map_err(|source| BufferErrorKind::Io { uri: uri.to_owned(), source })?;
+    let found = beside.read(&path).map_err(|error| malformed!("{uri:?} cannot be read: {error}"))?;
     found.ok_or_else(refused)
 }
 
@@ -163,13 +169,10 @@ fn percent_decode(uri: &str) -> Option<String> {
 }
 
 /// The bytes of a data URI, of which `rest` is what follows `data:`.
-fn data_uri(rest: &str) -> Result<Vec<u8>, BufferErrorKind> {
-    let (head, body) = rest.split_once(',').ok_or(BufferErrorKind::DataUri)?;
-    let coding = head.rsplit(';').next().unwrap_or_default();
-    if !coding.eq_ignore_ascii_case("base64") {
-        return Err(BufferErrorKind::DataUri);
-    }
-    base64(body).ok_or(BufferErrorKind::DataUri)
+fn data_uri(rest: &str) -> Result<Vec<u8>, Malformed> {
+    let (head, body) = rest.split_once(',').unwrap_or_default();
+    let coding = head.rsplit(';').next().filter(|coding| coding.eq_ignore_ascii_case("base64"));
+    coding.and_then(|_| base64(body)).ok_or_else(|| malformed!("its data URI is not base64"))
 }
 
 /// Decodes base64 with the usual alphabet, with or without its padding (RFC 4648, section 4).
@@ -228,19 +231,8 @@ mod tests {
         let is = |uri, path: &str| assert_eq!(relative_path(uri), Some(PathBuf::from(path)), "{uri}");
         is("walls.bin", "walls.bin");
         is("./a%20b/%C3%A9.bin", "./a b/é.bin");
-        for refused in [
-            "",
-            "/etc/passwd",
-            "../x.bin",
-            "a/../../x.bin",
-            "%2e%2e/x",
-            "http://x/y",
-            "file:x",
-            "a%0",
-            "a%zz",
-            "a%00",
-            "%FF",
-        ] {
+        let refused = "|/etc/passwd|../x.bin|a/../../x.bin|%2e%2e/x|http://x/y|file:x|a%0|a%zz|a%00|%FF";
+        for refused in refused.split('|') {
             assert_eq!(relative_path(refused), None, "{refused}");
         }
     }

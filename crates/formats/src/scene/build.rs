@@ -1,10 +1,10 @@
 //! From corners and triangles to the objects of a scene, the same way for all formats.
 
 use super::closed::is_closed_outwards;
-use super::error::SceneReadError;
 use super::role::Role;
 use super::surface::{Classification, Classified, SceneReadOptions};
 use super::{Axis, LengthUnit, SceneFile, SceneFormat, SceneInfo, Simplified};
+use crate::error::{Malformed, malformed};
 use crate::point::are_collinear;
 use sightlines_cells::{MovingObject, Point3, Scene, SceneObject};
 use sightlines_geometry::Aabb;
@@ -170,11 +170,7 @@ impl Builder {
     }
 
     /// The scene, if there is anything to see in it.
-    pub(super) fn finish(
-        mut self,
-        format: SceneFormat,
-        read_with: &SceneReadOptions,
-    ) -> Result<SceneFile, SceneReadError> {
+    pub(super) fn finish(mut self, format: SceneFormat, read_with: &SceneReadOptions) -> Result<SceneFile, Malformed> {
         let ignored_view_volumes = self.ignored_view_volumes();
         if let Some(first) = ignored_view_volumes.first() {
             let n = ignored_view_volumes.len();
@@ -190,7 +186,8 @@ impl Builder {
         let scene = scene.with_doors(self.doors)?.with_sources(self.sources)?;
         let n_triangles = scene.n_triangles();
         if n_triangles == 0 {
-            return Err(SceneReadError::NoTriangles { n_objects, n_degenerate });
+            let what = format_args!("{n_objects} objects, {n_degenerate} triangles without area");
+            return Err(malformed!("no triangles ({what})"));
         }
         let says_more = format == SceneFormat::Gltf;
         let info = SceneInfo {

@@ -2,19 +2,20 @@
 
 use super::buffers::{Buffers, split_glb};
 use super::build::Builder;
-use super::error::{PrimitiveErrorKind, SceneReadError};
 use super::extras::{Stated, StatedMoves, StatedRole};
 use super::json::Document;
 use super::material::{self, shows_fronts_only};
 use super::motion::{Motions, Moved, Vertices};
 use super::movers::{self, INSTANCING};
-use super::nodes::{Nodes, Placed, place_nodes, scene_names};
+use super::nodes::{Nodes, Placed, place_nodes, scene_names, too_many};
 use super::primitive::{LocalMesh, n_triangles_of};
 use super::range::{Range, RangeBox, bounded, box_of, united};
 use super::role::Role;
 use super::surface::{Classification, Classifier, SceneReadOptions};
 use super::{MAX_ELEMENTS, MAX_OBJECTS, SceneFile, SceneFormat};
 use crate::beside::{Folder, Neighbours};
+use crate::bytes::without_mark;
+use crate::error::{Malformed, Within, malformed};
 use crate::point::check_point;
 use sightlines_cells::Point3;
 use sightlines_geometry::Aabb;
@@ -23,20 +24,11 @@ use std::path::Path;
 pub(crate) use super::buffers::MAGIC;
 
 /// Extensions that do not change where a triangle is, and quantised meshes, which are understood.
+#[rustfmt::skip]
 const HARMLESS: [&str; 13] = [
-    "EXT_lights_",
-    "EXT_texture_",
-    INSTANCING,
-    "KHR_animation_pointer",
-    "KHR_implicit_shapes",
-    "KHR_lights_",
-    "KHR_materials_",
-    "KHR_mesh_quantization",
-    "KHR_node_visibility",
-    "KHR_physics_rigid_bodies",
-    "KHR_texture_",
-    "KHR_xmp",
-    "MSFT_texture_",
+    "EXT_lights_", "EXT_texture_", INSTANCING, "KHR_animation_pointer", "KHR_implicit_shapes", "KHR_lights_",
+    "KHR_materials_", "KHR_mesh_quantization", "KHR_node_visibility", "KHR_physics_rigid_bodies", "KHR_texture_",
+    "KHR_xmp", "MSFT_texture_",
 ];
 
 /// Reads a GLB, or the text of a glTF if it does not begin like a GLB.
@@ -51,27 +43,20 @@ const HARMLESS: [&str; 13] = [
 /// [`MAX_ELEMENTS`] and [`MAX_OBJECTS`] bound.
 ///
 /// # Errors
-/// [`SceneReadError`] with node and primitive.
+/// [`Malformed`] with node and primitive.
 ///
 /// # Source
 /// Khronos Group, glTF 2.0 Specification (ISO/IEC 12113:2022), and KHR_mesh_quantization.
 /// Chosen here: extensions that code geometry in another way are refused. What hides and what is only seen: see [`Role`] and
 /// [`Classified`](super::Classified). What is animated, physics, skins and morph targets hide nothing, and are seen in a box that they
 /// never leave, or from everywhere if there is no telling.
-pub fn parse_glb(bytes: &[u8], folder: Option<&Path>) -> Result<SceneFile, SceneReadError> {
+pub fn parse_glb(bytes: &[u8], folder: Option<&Path>) -> Result<SceneFile, Malformed> {
     let folder = folder.map(|folder| Folder(folder.to_owned()));
-    parse_gltf(bytes, folder.as_ref().map(|folder| folder as &dyn Neighbours))
-}
-
-/// As [`parse_glb`], with buffers wherever `beside` has them; without it, those in files are refused.
-///
-/// # Errors
-/// As [`parse_glb`].
-pub fn parse_gltf(bytes: &[u8], beside: Option<&dyn Neighbours>) -> Result<SceneFile, SceneReadError> {
+    let beside = folder.as_ref().map(|folder| folder as &dyn Neighbours);
     parse_gltf_with(bytes, beside, &SceneReadOptions::default())
 }
 
-/// As [`parse_gltf`], with options.
+/// As [`parse_glb`], with options, and with buffers wherever `beside` has them; without it, those in files are refused.
 ///
 /// # Errors
 /// As [`parse_glb`].
@@ -79,7 +64,7 @@ pub fn parse_gltf_with(
     bytes: &[u8],
     beside: Option<&dyn Neighbours>,
     options: &SceneReadOptions,
-) -> Result<SceneFile, SceneReadError> {
+) -> Result<SceneFile, Malformed> {
     parse(bytes, beside, options, |_| {}).map(|(file, _)| file)
 }
 
@@ -104,9 +89,10 @@ pub(super) fn parse(
     beside: Option<&dyn Neighbours>,
     options: &SceneReadOptions,
     watch: impl FnMut(Origin<'_>),
-) -> Result<(SceneFile, Loaded), SceneReadError> {
+) -> Result<(SceneFile, Loaded), Malformed> {
     let (text, binary) = split(bytes)?;
-    let document: Document = serde_json::from_str(text).map_err(|source| SceneReadError::Json { source })?;
+    let document: Document =
+        serde_json::from_str(text).map_err(|error| malformed!("the glTF text cannot be read: {error}"))?;
     check_understood(&document)?;
     let buffers = Buffers::new(&document.buffers, binary, beside);
     let Nodes { placed, above, n_coarser } = place_nodes(&document, &buffers, options.scene.as_deref())?;
@@ -134,28 +120,38 @@ pub(super) fn parse(
 }
 
 /// The text of a GLB or a glTF, and the binary chunk.
-pub(super) fn split(bytes: &[u8]) -> Result<(&str, Option<&[u8]>), SceneReadError> {
+pub(super) fn split(bytes: &[u8]) -> Result<(&str, Option<&[u8]>), Malformed> {
     let (text, binary) = if bytes.starts_with(MAGIC) { split_glb(bytes)? } else { (bytes, None) };
-    // Some editors begin a text with a byte order mark.
-    let text = text.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(text);
-    let text = std::str::from_utf8(text).map_err(|e| SceneReadError::Utf8 { offset: e.valid_up_to() })?;
+    let text = std::str::from_utf8(without_mark(text));
+    let text = text.map_err(|e| malformed!("byte {} of the glTF text is not UTF-8", e.valid_up_to()))?;
     Ok((text, binary))
 }
 
-fn check_understood(document: &Document) -> Result<(), SceneReadError> {
+fn check_understood(document: &Document) -> Result<(), Malformed> {
     let version = &document.asset.version;
     if version != "2" && !version.starts_with("2.") {
-        return Err(SceneReadError::Version { found: version.clone() });
+        return Err(malformed!("glTF version {version:?} is not 2.x"));
     }
     let strange = |name: &&String| !HARMLESS.iter().any(|harmless| name.starts_with(harmless));
     match document.extensions_required.iter().find(strange) {
-        Some(name) => Err(SceneReadError::Extension { name: name.clone() }),
+        Some(name) => Err(malformed!("extension {name} is not understood{}", remedy(name))),
         None => Ok(()),
     }
 }
 
+/// The command that writes a file without an extension, if there is a usual one.
+fn remedy(extension: &str) -> &'static str {
+    match extension {
+        "KHR_draco_mesh_compression" | "EXT_meshopt_compression" => {
+            "; `npx @gltf-transform/cli cp IN.glb OUT.glb` unpacks the file"
+        }
+        "KHR_meshopt_compression" => "; `gltfpack -i IN.glb -o OUT.glb -noq -kn -km` unpacks the file",
+        _ => "",
+    }
+}
+
 /// Refuses scenes that are too large before any object is made: a small file can describe a large scene.
-fn check_size(document: &Document, placed: &[Placed<'_>]) -> Result<(), SceneReadError> {
+fn check_size(document: &Document, placed: &[Placed<'_>]) -> Result<(), Malformed> {
     let count = |accessor: usize| document.accessors.get(accessor).map_or(0, |a| a.count);
     let mut sum = [("triangles", 0_usize, MAX_ELEMENTS), ("corners", 0, MAX_ELEMENTS), ("objects", 0, MAX_OBJECTS)];
     for at in placed {
@@ -169,7 +165,7 @@ fn check_size(document: &Document, placed: &[Placed<'_>]) -> Result<(), SceneRea
             {
                 *sum = sum.saturating_add(more);
                 if *sum > *max {
-                    return Err(at.fail(k, PrimitiveErrorKind::TooMany { what, max: *max }));
+                    return Err(at.fail(k, too_many(what, *max)));
                 }
             }
         }
@@ -183,7 +179,7 @@ fn build(
     placed: &[Placed<'_>],
     classifier: &mut Classifier<'_>,
     mut watch: impl FnMut(Origin<'_>),
-) -> Result<Builder, SceneReadError> {
+) -> Result<Builder, Malformed> {
     let mut builder = Builder::saying(document.asset.simplified);
     // Meshes by their index, read when the first node has them.
     let mut meshes: Vec<Option<Vec<LocalMesh>>> = Vec::new();
@@ -192,7 +188,7 @@ fn build(
         let mesh = match &mut meshes[at.mesh_idx] {
             Some(mesh) => mesh,
             unread => {
-                let read = |(k, p)| LocalMesh::read(document, motions.buffers(), p).map_err(|kind| at.fail(k, kind));
+                let read = |(k, p)| LocalMesh::read(document, motions.buffers(), p).map_err(|what| at.fail(k, what));
                 unread.insert(at.mesh.primitives.iter().enumerate().map(read).collect::<Result<_, _>>()?)
             }
         };
@@ -209,7 +205,7 @@ fn build(
                 if at.instance.is_some() { Moved { at_rest: None, within: None } } else { moved }
             });
             let placed =
-                |(vertex, p)| check_point(p).map_err(|kind| at.fail(k, PrimitiveErrorKind::Vertex { vertex, kind }));
+                |(vertex, p)| check_point(p).within(format_args!("position {vertex}")).map_err(|what| at.fail(k, what));
             let corners = local.mesh.corners.iter().copied();
             let vertices: Vec<Point3> = match moved.as_ref().and_then(|moved| moved.at_rest.as_ref()) {
                 Some(at_rest) => corners.zip(at_rest.iter().copied()).map(placed).collect::<Result<_, _>>()?,

@@ -60,19 +60,19 @@ pub(super) struct Asset {
     pub(super) simplified: Option<Simplified>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
 pub(super) struct SceneRoots {
     pub(super) name: Option<Box<str>>,
-    #[serde(default)]
     pub(super) nodes: Vec<usize>,
 }
 
 /// Rare members are boxed: a document may be little else than a million empty nodes.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
 pub(super) struct Node {
     pub(super) name: Option<Box<str>>,
     pub(super) mesh: Option<usize>,
-    #[serde(default)]
     pub(super) children: Vec<usize>,
     pub(super) matrix: Option<Box<[f64; 16]>>,
     pub(super) translation: Option<Box<[f64; 3]>>,
@@ -81,9 +81,8 @@ pub(super) struct Node {
     pub(super) skin: Option<usize>,
     pub(super) weights: Option<Box<[f64]>>,
     /// What its extras state: `{"sightlines": {"role": "mirror", "moves": true}}`.
-    #[serde(default, rename = "extras", deserialize_with = "super::extras::stated")]
+    #[serde(rename = "extras", deserialize_with = "super::extras::stated")]
     pub(super) stated: Stated,
-    #[serde(default)]
     pub(super) extensions: Option<Box<NodeExtensions>>,
 }
 
@@ -108,14 +107,14 @@ impl Node {
     }
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
 pub(super) struct Mesh {
     pub(super) name: Option<Box<str>>,
-    #[serde(default)]
     pub(super) primitives: Vec<Primitive>,
     pub(super) weights: Option<Box<[f64]>>,
     /// As that of a node, for all nodes with this mesh.
-    #[serde(default, rename = "extras", deserialize_with = "super::extras::stated")]
+    #[serde(rename = "extras", deserialize_with = "super::extras::stated")]
     pub(super) stated: Stated,
 }
 
@@ -165,16 +164,14 @@ pub(super) struct Attributes {
 
 /// What of a material says whether it lets light through.
 #[derive(Debug, Default, Deserialize)]
-#[serde(rename_all = "camelCase")]
+#[serde(default, rename_all = "camelCase")]
 pub(super) struct Material {
     pub(super) name: Option<Box<str>>,
     pub(super) alpha_mode: Option<Box<str>>,
-    #[serde(default)]
     pub(super) double_sided: bool,
-    #[serde(default)]
     pub(super) extensions: BTreeMap<Box<str>, IgnoredAny>,
     /// As that of a node, for all primitives with this material.
-    #[serde(default, rename = "extras", deserialize_with = "super::extras::stated")]
+    #[serde(rename = "extras", deserialize_with = "super::extras::stated")]
     pub(super) stated: Stated,
 }
 
@@ -186,10 +183,9 @@ pub(super) struct Skin {
 }
 
 #[derive(Debug, Default, Deserialize)]
+#[serde(default)]
 pub(super) struct Animation {
-    #[serde(default)]
     pub(super) channels: Vec<Channel>,
-    #[serde(default)]
     pub(super) samplers: Vec<Sampler>,
 }
 

@@ -9,26 +9,13 @@ use std::collections::BTreeMap;
 /// # Source
 /// The specifications of the extensions. Dispersion is seen only where there is transmission. The alpha of
 /// `KHR_materials_pbrSpecularGlossiness` is weighed by `alphaMode`, as that of others.
+#[rustfmt::skip]
 const OPAQUE: [&str; 20] = [
-    "ADOBE_materials_clearcoat_",
-    "EXT_materials_clearcoat_",
-    "EXT_materials_diffuse_roughness",
-    "EXT_materials_specular_edge_color",
-    "FB_materials_modmap",
-    "KHR_materials_anisotropy",
-    "KHR_materials_clearcoat",
-    "KHR_materials_diffuse_roughness",
-    "KHR_materials_dispersion",
-    "KHR_materials_emissive_strength",
-    "KHR_materials_ior",
-    "KHR_materials_iridescence",
-    "KHR_materials_pbrSpecularGlossiness",
-    "KHR_materials_sheen",
-    "KHR_materials_specular",
-    "KHR_materials_unlit",
-    "KHR_texture_transform",
-    "KHR_xmp",
-    "MOZ_lightmap",
+    "ADOBE_materials_clearcoat_", "EXT_materials_clearcoat_", "EXT_materials_diffuse_roughness",
+    "EXT_materials_specular_edge_color", "FB_materials_modmap", "KHR_materials_anisotropy", "KHR_materials_clearcoat",
+    "KHR_materials_diffuse_roughness", "KHR_materials_dispersion", "KHR_materials_emissive_strength",
+    "KHR_materials_ior", "KHR_materials_iridescence", "KHR_materials_pbrSpecularGlossiness", "KHR_materials_sheen",
+    "KHR_materials_specular", "KHR_materials_unlit", "KHR_texture_transform", "KHR_xmp", "MOZ_lightmap",
     "MSFT_packing_",
 ];
 

@@ -21,7 +21,6 @@ mod accessor;
 mod buffers;
 mod build;
 mod closed;
-mod error;
 mod extras;
 mod gltf;
 mod instances;
@@ -45,12 +44,8 @@ mod write;
 mod write_error;
 mod write_obj;
 
-pub use error::{
-    AccessorErrorKind, AccessorRole, BufferErrorKind, GlbError, NodeErrorKind, NodeId, ObjErrorKind,
-    PrimitiveErrorKind, SceneReadError,
-};
 pub(crate) use gltf::MAGIC as GLB_MAGIC;
-pub use gltf::{parse_glb, parse_gltf, parse_gltf_with};
+pub use gltf::{parse_glb, parse_gltf_with};
 pub use obj::{parse_obj, parse_obj_with};
 pub use pattern::{EmptyPattern, NamePattern};
 pub use rewrite::RewriteError;
@@ -58,11 +53,12 @@ pub use role::Role;
 pub use source::{GltfSource, ObjectOrigin, parse_glb_with_source};
 pub use surface::{Classified, SceneReadOptions};
 pub use write::{Rounding, write_glb, write_rounded_glb, write_simplified_glb};
-pub use write_error::{ObjLimit, SceneWriteError};
+pub use write_error::SceneWriteError;
 pub use write_obj::{write_obj, write_simplified_obj};
 
 use crate::ReadError;
 use crate::beside::{Folder, Neighbours};
+use crate::error::malformed;
 use sightlines_cells::Scene;
 use sightlines_geometry::Aabb;
 pub use sightlines_pvs::Axis;
@@ -224,7 +220,7 @@ fn read_bytes(path: &Path) -> Result<(Vec<u8>, SceneFormat), ReadError> {
     } else if named("glb") || named("gltf") || bytes.trim_ascii_start().starts_with(b"{") {
         SceneFormat::Gltf
     } else {
-        return Err(ReadError::new(path, SceneReadError::UnknownFormat));
+        return Err(ReadError::new(path, malformed!("neither GLB nor glTF nor OBJ")));
     };
     Ok((bytes, format))
 }

@@ -12,41 +12,14 @@ use std::fmt;
 /// Extensions of nodes and documents that leave nodes where they are, by how their names begin.
 ///
 /// `MSFT_lod` shows other meshes in the same place: the finest one stands for all, and levels that reach beyond it are not looked at.
+#[rustfmt::skip]
 const STILL: [&str; 34] = [
-    "AGI_stk_metadata",
-    "CESIUM_",
-    "EXT_feature_metadata",
-    "EXT_instance_features",
-    "EXT_lights_",
-    "EXT_mesh_features",
-    "EXT_mesh_gpu_instancing",
-    "EXT_mesh_manifold",
-    "EXT_meshopt_compression",
-    "EXT_structural_metadata",
-    "EXT_texture_",
-    "GODOT_single_root",
-    "KHR_audio",
-    "KHR_implicit_shapes",
-    "KHR_lights_",
-    "KHR_materials_",
-    "KHR_meshopt_compression",
-    "KHR_node_hoverability",
-    "KHR_node_selectability",
-    "KHR_node_visibility",
-    "KHR_texture_",
-    "KHR_xmp",
-    "MSFT_audio_emitter",
-    "MSFT_lod",
-    "OMI_audio_emitter",
-    "OMI_collider",
-    "OMI_environment_sky",
-    "OMI_link",
-    "OMI_personality",
-    "OMI_physics_gravity",
-    "OMI_physics_joint",
-    "OMI_physics_shape",
-    "OMI_seat",
-    "OMI_spawn_point",
+    "AGI_stk_metadata", "CESIUM_", "EXT_feature_metadata", "EXT_instance_features", "EXT_lights_", "EXT_mesh_features",
+    "EXT_mesh_gpu_instancing", "EXT_mesh_manifold", "EXT_meshopt_compression", "EXT_structural_metadata",
+    "EXT_texture_", "GODOT_single_root", "KHR_audio", "KHR_implicit_shapes", "KHR_lights_", "KHR_materials_",
+    "KHR_meshopt_compression", "KHR_node_hoverability", "KHR_node_selectability", "KHR_node_visibility", "KHR_texture_",
+    "KHR_xmp", "MSFT_audio_emitter", "MSFT_lod", "OMI_audio_emitter", "OMI_collider", "OMI_environment_sky", "OMI_link",
+    "OMI_personality", "OMI_physics_gravity", "OMI_physics_joint", "OMI_physics_shape", "OMI_seat", "OMI_spawn_point",
 ];
 
 /// Draws a mesh many times.
@@ -56,28 +29,18 @@ pub(super) const INSTANCING: &str = "EXT_mesh_gpu_instancing";
 const LEVELS: &str = "MSFT_lod";
 
 /// Extensions of nodes that move them, or have a part that does: see [`moves`].
+#[rustfmt::skip]
 const MOVING: [&str; 7] = [
-    "AGI_articulations",
-    "KHR_physics_rigid_bodies",
-    "OMI_physics_body",
-    "OMI_vehicle_",
-    "VRMC_node_constraint",
-    "VRMC_springBone",
-    "VRMC_vrm",
+    "AGI_articulations", "KHR_physics_rigid_bodies", "OMI_physics_body", "OMI_vehicle_", "VRMC_node_constraint",
+    "VRMC_springBone", "VRMC_vrm",
 ];
 
 /// Extensions of a document by which programs may move any of its nodes: behaviour, and figures that are animated by whoever
 /// shows them. Whole names.
+#[rustfmt::skip]
 const MOVING_EVERYTHING: [&str; 9] = [
-    "KHR_interactivity",
-    "MPEG_scene_dynamic",
-    "MPEG_scene_interactivity",
-    "VRM",
-    "VRMC_springBone",
-    "VRMC_springBone_extended_collider",
-    "VRMC_springBone_limit",
-    "VRMC_vrm",
-    "VRMC_vrm_animation",
+    "KHR_interactivity", "MPEG_scene_dynamic", "MPEG_scene_interactivity", "VRM", "VRMC_springBone",
+    "VRMC_springBone_extended_collider", "VRMC_springBone_limit", "VRMC_vrm", "VRMC_vrm_animation",
 ];
 
 fn begins_like(name: &str, list: &[&str]) -> bool {
@@ -238,47 +201,4 @@ pub(super) fn warnings<'a>(
         ));
     }
     all
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use serde_json::json;
-
-    #[test]
-    fn what_an_extension_contains_tells_whether_it_moves() {
-        let reason = |extensions: Value| serde_json::from_value::<NodeExtensions>(extensions).unwrap().reason();
-        let moving = |name: &str, value: Value| reason(json!({name: value})) == Some(name.to_owned());
-        let physics = "KHR_physics_rigid_bodies";
-        assert!(moving(physics, json!({"motion": {"isKinematic": true}})) && moving(physics, json!(3)));
-        assert!(!moving(physics, json!({"collider": {}})));
-        let body = "OMI_physics_body";
-        for value in
-            [json!({"motion": {"type": "kinematic"}}), json!({"motion": {}}), json!({"type": "rigid"}), json!([])]
-        {
-            assert!(moving(body, value.clone()), "{value}");
-        }
-        for value in
-            [json!({"motion": {"type": "static"}}), json!({"type": "trigger"}), json!({"collider": {"shape": 0}})]
-        {
-            assert!(!moving(body, value.clone()), "{value}");
-        }
-        assert!(moving("AGI_articulations", json!({"articulationName": "arm"})));
-        assert!(!moving("AGI_articulations", json!({"isAttachPoint": true})));
-        for name in ["OMI_vehicle_body", "OMI_vehicle_wheel", "VRMC_node_constraint", "VRMC_springBone"] {
-            assert!(moving(name, json!({})), "{name}");
-        }
-        assert_eq!(reason(json!({"ACME_orbit": {}})).unwrap(), "the unknown extension ACME_orbit");
-        for name in
-            ["KHR_lights_punctual", "MSFT_lod", "EXT_mesh_gpu_instancing", "KHR_audio_emitter", "KHR_node_visibility"]
-        {
-            assert_eq!(reason(json!({name: {}})), None, "{name}");
-        }
-        assert!(
-            serde_json::from_value::<NodeExtensions>(json!({"KHR_node_visibility": {"visible": false}}))
-                .unwrap()
-                .is_invisible
-        );
-        assert!(serde_json::from_value::<NodeExtensions>(json!([])).is_err());
-    }
 }

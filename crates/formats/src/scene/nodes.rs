@@ -2,14 +2,14 @@
 
 use super::MAX_OBJECTS;
 use super::buffers::Buffers;
-use super::error::{NodeErrorKind, NodeId, PrimitiveErrorKind, SceneReadError};
-use super::instances::transforms;
+use super::instances::{no_instances, transforms};
 use super::json::{Document, Mesh, Node, Primitive, SceneRoots};
 use super::material::see_through;
 use super::motion::Motions;
 use super::role::{MeshNames, Role, role_of_name};
 use super::surface::Evidence;
 use super::transform::Transform;
+use crate::error::{Malformed, malformed};
 use std::collections::BTreeSet;
 
 /// A node that has a mesh, and where it is in the world.
@@ -59,10 +59,6 @@ impl Inherited {
 }
 
 impl<'a> Placed<'a> {
-    fn id(&self) -> NodeId {
-        id_of(self.index, self.node)
-    }
-
     pub(super) fn given_name(&self) -> Option<&'a str> {
         self.node.name.as_deref().or(self.mesh.name.as_deref())
     }
@@ -117,22 +113,33 @@ impl<'a> Placed<'a> {
         }
     }
 
-    pub(super) fn fail(&self, primitive: usize, kind: PrimitiveErrorKind) -> SceneReadError {
-        SceneReadError::Primitive { node: self.id(), primitive, kind: Box::new(kind) }
+    pub(super) fn fail(&self, primitive: usize, what: Malformed) -> Malformed {
+        what.within(format_args!("{}, primitive {primitive}", label(self.index, self.node)))
     }
 }
 
-fn id_of(index: usize, node: &Node) -> NodeId {
-    NodeId { index, name: node.name.as_deref().map(str::to_owned) }
+/// A node as errors name it.
+fn label(index: usize, node: &Node) -> String {
+    match &node.name {
+        // As a Rust string: a name may hold anything, and a message should stay one line.
+        Some(name) => format!("node {index} ({name:?})"),
+        None => format!("node {index}"),
+    }
+}
+
+/// The error of what has more than a scene may have.
+pub(super) fn too_many(what: &str, max: usize) -> Malformed {
+    malformed!("with it the scene has more than {max} {what}")
 }
 
 /// The scene of a document that has this name, or else this index.
-fn scene_called(document: &Document, name: &str) -> Result<usize, SceneReadError> {
+fn scene_called(document: &Document, name: &str) -> Result<usize, Malformed> {
     let of_name = document.scenes.iter().position(|scene| scene.name.as_deref() == Some(name));
     let of_index = || name.parse().ok().filter(|&index: &usize| index < document.scenes.len());
-    of_name
-        .or_else(of_index)
-        .ok_or_else(|| SceneReadError::NoSuchScene { name: name.to_owned(), names: scene_names(document) })
+    of_name.or_else(of_index).ok_or_else(|| {
+        let names = scene_names(document).join(", ");
+        malformed!("there is no scene {name:?}, but {}", if names.is_empty() { "none" } else { &names })
+    })
 }
 
 /// The names of all scenes; the index of one without.
@@ -142,15 +149,15 @@ pub(super) fn scene_names(document: &Document) -> Vec<String> {
 }
 
 /// The nodes where a scene begins: the one that is asked for, or the default.
-fn roots(document: &Document, asked: Option<&str>) -> Result<Vec<usize>, SceneReadError> {
+fn roots(document: &Document, asked: Option<&str>) -> Result<Vec<usize>, Malformed> {
     let asked = asked.map(|name| scene_called(document, name)).transpose()?;
     let scene = asked.or(document.scene).unwrap_or(0);
     match document.scenes.get(scene) {
         Some(roots) => match roots.nodes.iter().find(|&&node| node >= document.nodes.len()) {
-            Some(&node) => Err(SceneReadError::NoRoot { scene, node }),
+            Some(node) => Err(malformed!("there is no node {node}").within(format_args!("scene {scene}"))),
             None => Ok(roots.nodes.clone()),
         },
-        None if document.scene.is_some() => Err(SceneReadError::NoScene { scene }),
+        None if document.scene.is_some() => Err(malformed!("there is no scene {scene}, which should be the default")),
         None => {
             let mut is_child = vec![false; document.nodes.len()];
             for &child in document.nodes.iter().flat_map(|n| &n.children) {
@@ -179,7 +186,7 @@ pub(super) fn place_nodes<'a>(
     document: &'a Document,
     buffers: &Buffers<'_>,
     scene: Option<&str>,
-) -> Result<Nodes<'a>, SceneReadError> {
+) -> Result<Nodes<'a>, Malformed> {
     let mut above: Vec<Option<Option<usize>>> = vec![None; document.nodes.len()];
     let start = |node| (node, None, Transform::IDENTITY, Inherited::default());
     let roots = roots(document, scene)?;
@@ -189,9 +196,9 @@ pub(super) fn place_nodes<'a>(
     let (mut placed, mut n_coarser) = (Vec::new(), 0);
     while let Some((index, parent_idx, parent, inherited)) = stack.pop() {
         let node = &document.nodes[index];
-        let fail = |kind| SceneReadError::Node { node: id_of(index, node), kind };
+        let fail = |what: Malformed| what.within(label(index, node));
         if above[index].replace(parent_idx).is_some() {
-            return Err(fail(NodeErrorKind::ReachedTwice));
+            return Err(fail(malformed!("reached twice, though nodes form trees")));
         }
         if coarser.contains(&index) {
             n_coarser += 1;
@@ -200,23 +207,22 @@ pub(super) fn place_nodes<'a>(
         let world = parent.after(&Transform::of_node(node).map_err(fail)?);
         let inherited = inherited.by(node, &document.meshes, &names);
         if let Some(mesh_idx) = node.mesh {
-            let mesh = document.meshes.get(mesh_idx).ok_or_else(|| fail(NodeErrorKind::NoMesh { mesh: mesh_idx }))?;
+            let mesh = document.meshes.get(mesh_idx).ok_or_else(|| fail(malformed!("there is no mesh {mesh_idx}")))?;
             let at = |world: Transform, instance| Placed { index, node, mesh_idx, mesh, world, inherited, instance };
             match node.extensions.as_ref().and_then(|extensions| extensions.instances.as_ref()) {
                 None => placed.push(at(world, None)),
                 Some(instances) => {
-                    let instances = instances.as_ref().map_err(|_| fail(NodeErrorKind::NoInstances))?;
+                    let instances = instances.as_ref().map_err(|_| fail(no_instances()))?;
                     let all = transforms(instances, document, buffers).map_err(fail)?;
                     if placed.len() + all.len() > MAX_OBJECTS {
-                        let kind = PrimitiveErrorKind::TooMany { what: "objects", max: MAX_OBJECTS };
-                        return Err(at(world, None).fail(0, kind));
+                        return Err(at(world, None).fail(0, too_many("objects", MAX_OBJECTS)));
                     }
                     placed.extend(all.iter().enumerate().map(|(k, own)| at(world.after(own), Some(k))));
                 }
             }
         }
         if let Some(&child) = node.children.iter().find(|&&child| child >= document.nodes.len()) {
-            return Err(fail(NodeErrorKind::NoChild { child }));
+            return Err(fail(malformed!("there is no node {child}, which it has as a child")));
         }
         stack.extend(node.children.iter().rev().map(|&child| (child, Some(index), world, inherited.for_children())));
     }

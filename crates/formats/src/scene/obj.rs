@@ -2,7 +2,6 @@
 
 use super::buffers::load_file;
 use super::build::{Builder, Compact};
-use super::error::{ObjErrorKind, SceneReadError};
 use super::mtl::{before_comment, parse_mtl};
 use super::polygon::{MAX_WINDING_CORNERS, PolygonError, triangulate};
 use super::role::{MeshNames, Role, role_of_name};
@@ -10,6 +9,8 @@ use super::surface::{Classification, Classifier, Evidence, SceneReadOptions};
 use super::write_obj::{OCCLUDER, SEE_THROUGH, SIMPLIFIED, STATEMENT};
 use super::{MAX_ELEMENTS, SceneFile, SceneFormat, Simplified};
 use crate::beside::Neighbours;
+use crate::bytes::without_mark;
+use crate::error::{Malformed, malformed};
 use crate::point::check_point;
 use sightlines_cells::Point3;
 use std::borrow::Cow;
@@ -30,13 +31,13 @@ use std::collections::BTreeMap;
 /// Costs time and memory in proportion to the text, but for winding faces of many corners.
 ///
 /// # Errors
-/// [`SceneReadError::Obj`] with the line, or [`SceneReadError::NoTriangles`].
+/// [`Malformed`] with the line, or if there are no triangles.
 ///
 /// # Source
 /// Wavefront Technologies, Advanced Visualizer manual, appendix B1 (the format of `.obj`). Chosen here: materials do
 /// not split objects, but for the faces of an object that are see-through while others are not; self-intersecting outlines
 /// are refused, because the extent of such a face is undefined.
-pub fn parse_obj(bytes: &[u8]) -> Result<SceneFile, SceneReadError> {
+pub fn parse_obj(bytes: &[u8]) -> Result<SceneFile, Malformed> {
     parse_obj_with(bytes, None, &SceneReadOptions::default())
 }
 
@@ -53,7 +54,7 @@ pub fn parse_obj_with(
     bytes: &[u8],
     beside: Option<&dyn Neighbours>,
     options: &SceneReadOptions,
-) -> Result<SceneFile, SceneReadError> {
+) -> Result<SceneFile, Malformed> {
     let obj = Obj::read(bytes)?;
     let mut builder = Builder::default();
     let mut classifier = Classifier::new(options);
@@ -212,15 +213,14 @@ struct Group {
 }
 
 impl Obj {
-    fn read(bytes: &[u8]) -> Result<Self, SceneReadError> {
-        // A byte order mark.
-        let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    fn read(bytes: &[u8]) -> Result<Self, Malformed> {
+        let bytes = without_mark(bytes);
         let divider = if lines(bytes).any(|(_, line)| keyword(&line) == b"o") { b"o" } else { b"g" };
         let mut obj = Self::default();
         obj.groups.push(Group { name: "object 0".to_owned(), first_face: 0, is_see_through: false });
         let (mut by_name, mut material) = (BTreeMap::new(), None);
         for (number, line) in lines(bytes) {
-            let fail = |kind| SceneReadError::Obj { line: number, kind };
+            let fail = |what: Malformed| what.on_line(number);
             match keyword(&line) {
                 b"v" => obj.vertex(words(&line).map_err(fail)?).map_err(fail)?,
                 b"f" => obj.face(number, material, words(&line).map_err(fail)?).map_err(fail)?,
@@ -257,14 +257,15 @@ impl Obj {
         }
     }
 
-    fn vertex<'a>(&mut self, mut words: impl Iterator<Item = &'a str>) -> Result<(), ObjErrorKind> {
-        let mut number = || words.next().and_then(|word| word.parse().ok()).ok_or(ObjErrorKind::Vertex);
+    fn vertex<'a>(&mut self, mut words: impl Iterator<Item = &'a str>) -> Result<(), Malformed> {
+        let missing = || malformed!("a corner needs three numbers");
+        let mut number = || words.next().and_then(|word| word.parse().ok()).ok_or_else(missing);
         let point = [number()?, number()?, number()?];
         // One number more is a weight, three or four more are a colour.
         if let (Some(weight), None) = (words.next(), words.next())
             && weight.parse() != Ok(1.0)
         {
-            return Err(ObjErrorKind::Weight);
+            return Err(malformed!("a corner with a weight other than 1"));
         }
         self.positions.push(check_point(point)?);
         Ok(())
@@ -275,26 +276,26 @@ impl Obj {
         line: usize,
         material: Option<usize>,
         words: impl Iterator<Item = &'a str>,
-    ) -> Result<(), ObjErrorKind> {
+    ) -> Result<(), Malformed> {
         let first_corner = self.corners.len();
         for word in words {
             // Behind slashes are texture coordinates and normals.
             let index = word.split('/').next().and_then(|index| index.parse::<i64>().ok());
-            let index = index.ok_or(ObjErrorKind::FaceIndex)?;
+            let index = index.ok_or_else(|| malformed!("a face needs indices of corners"))?;
             // Negative indices count back from the last corner so far. A length fits into an i64.
             let absolute = if index < 0 { self.positions.len() as i64 + 1 + index } else { index };
             if absolute < 1 {
-                return Err(ObjErrorKind::Index { index });
+                return Err(no_corner(index));
             }
             self.corners.push(absolute);
         }
         let n_corners = self.corners.len() - first_corner;
         if n_corners < 3 {
-            return Err(ObjErrorKind::FaceCorners);
+            return Err(malformed!("a face needs three corners or more"));
         }
         self.n_triangles += n_corners - 2;
         if self.n_triangles > MAX_ELEMENTS {
-            return Err(ObjErrorKind::TooMany { max: MAX_ELEMENTS });
+            return Err(malformed!("with it the scene has more than {MAX_ELEMENTS} triangles"));
         }
         self.faces.push(Face { line, first_corner, n_corners, material });
         Ok(())
@@ -309,16 +310,17 @@ impl Obj {
     }
 
     /// The triangles of `faces`. Indices are looked up only here, since a face may stand before its corners.
-    fn mesh(&self, faces: &[&Face]) -> Result<Compact, SceneReadError> {
+    fn mesh(&self, faces: &[&Face]) -> Result<Compact, Malformed> {
         let (mut used, mut triangles) = (Vec::new(), Vec::new());
         for face in faces {
-            let fail = |kind| SceneReadError::Obj { line: face.line, kind };
+            let fail = |what: Malformed| what.on_line(face.line);
             let corners = self.look_up(face).map_err(fail)?;
             let polygon: Vec<Point3> = corners.iter().map(|&v| self.positions[v]).collect();
             let cut = triangulate(&polygon).map_err(|error| match error {
-                PolygonError::Crossing => fail(ObjErrorKind::Crossing),
+                PolygonError::Crossing => fail(malformed!("the outline of the face crosses itself")),
                 PolygonError::TooLarge => {
-                    fail(ObjErrorKind::LargeFace { n_corners: face.n_corners, max: MAX_WINDING_CORNERS })
+                    let n = face.n_corners;
+                    fail(malformed!("a winding face of {n} corners, more than {MAX_WINDING_CORNERS}"))
                 }
             })?;
             triangles.extend(cut.into_iter().map(|t| t.map(|k| corners[k])));
@@ -327,14 +329,18 @@ impl Obj {
         Ok(Compact::new(used, triangles.into_iter()))
     }
 
-    fn look_up(&self, face: &Face) -> Result<Vec<usize>, ObjErrorKind> {
+    fn look_up(&self, face: &Face) -> Result<Vec<usize>, Malformed> {
         let corners = &self.corners[face.first_corner..][..face.n_corners];
         let find = |&index: &i64| {
             let place = usize::try_from(index - 1).ok().filter(|&v| v < self.positions.len());
-            place.ok_or(ObjErrorKind::Index { index })
+            place.ok_or_else(|| no_corner(index))
         };
         corners.iter().map(find).collect()
     }
+}
+
+fn no_corner(index: i64) -> Malformed {
+    malformed!("there is no corner {index}")
 }
 
 /// Lines with their numbers from 1. Comments are gone, but for those behind names, which may have a `#`, and lines that end in a backslash have the next one
@@ -368,9 +374,9 @@ fn keyword(line: &[u8]) -> &[u8] {
 }
 
 /// What follows the keyword.
-fn text(line: &[u8]) -> Result<&str, ObjErrorKind> {
+fn text(line: &[u8]) -> Result<&str, Malformed> {
     let behind = &line.trim_ascii_start()[keyword(line).len()..];
-    std::str::from_utf8(behind.trim_ascii()).map_err(|_| ObjErrorKind::Utf8)
+    std::str::from_utf8(behind.trim_ascii()).map_err(|_| malformed!("not UTF-8"))
 }
 
 /// What follows the keyword, whatever it is: names of materials and files are compared and never shown as they are.
@@ -379,6 +385,6 @@ fn lossy_text(line: &[u8]) -> String {
     String::from_utf8_lossy(behind.trim_ascii()).into_owned()
 }
 
-fn words(line: &[u8]) -> Result<impl Iterator<Item = &str>, ObjErrorKind> {
+fn words(line: &[u8]) -> Result<impl Iterator<Item = &str>, Malformed> {
     Ok(text(line)?.split_ascii_whitespace())
 }

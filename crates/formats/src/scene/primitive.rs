@@ -1,10 +1,10 @@
 //! Primitives of a glTF: from accessors to corners and triangles.
 
-use super::accessor::Elements;
+use super::accessor::{AccessorRole, Elements};
 use super::buffers::Buffers;
 use super::build::Compact;
-use super::error::{AccessorErrorKind, AccessorRole, PrimitiveErrorKind};
 use super::json::{Document, Primitive, TRIANGLES};
+use crate::error::{Malformed, Within, malformed};
 
 /// Modes from here on make triangles; those before are points and lines.
 pub(super) const FIRST_OF_TRIANGLES: u32 = TRIANGLES;
@@ -20,19 +20,14 @@ pub(super) struct LocalMesh {
 }
 
 impl LocalMesh {
-    pub(super) fn read(
-        document: &Document,
-        buffers: &Buffers<'_>,
-        primitive: &Primitive,
-    ) -> Result<Self, PrimitiveErrorKind> {
-        let positions = primitive.attributes.position.ok_or(PrimitiveErrorKind::NoPositions)?;
-        let elements = |accessor, role| {
-            let fail = |kind: AccessorErrorKind| PrimitiveErrorKind::Accessor { role, accessor, kind };
-            Elements::new(document, buffers, accessor, role).map_err(fail)
+    pub(super) fn read(document: &Document, buffers: &Buffers<'_>, primitive: &Primitive) -> Result<Self, Malformed> {
+        let positions = primitive.attributes.position.ok_or_else(|| malformed!("no positions"))?;
+        let read = |what: &str, accessor, role| {
+            Elements::new(document, buffers, accessor, role).within(format_args!("{what} (accessor {accessor})"))
         };
-        let positions = elements(positions, AccessorRole::Positions)?;
+        let positions = read("positions", positions, AccessorRole::Positions)?;
         let corners = match primitive.indices {
-            Some(indices) => read_indices(&elements(indices, AccessorRole::Indices)?, positions.count)?,
+            Some(accessor) => read_indices(&read("indices", accessor, AccessorRole::Indices)?, positions.count)?,
             None => (0..positions.count).collect(),
         };
         check_mode(primitive.mode, corners.len())?;
@@ -44,21 +39,21 @@ impl LocalMesh {
     }
 }
 
-pub(super) fn read_indices(indices: &Elements<'_>, n_positions: usize) -> Result<Vec<usize>, PrimitiveErrorKind> {
+pub(super) fn read_indices(indices: &Elements<'_>, n_positions: usize) -> Result<Vec<usize>, Malformed> {
     let check = |position| {
         let index = indices.index(position);
-        let fail = PrimitiveErrorKind::Index { position, index, n_positions };
-        usize::try_from(index).ok().filter(|&i| i < n_positions).ok_or(fail)
+        let found = usize::try_from(index).ok().filter(|&i| i < n_positions);
+        found.ok_or_else(|| malformed!("index {position} is {index}, but there are {n_positions} positions"))
     };
     (0..indices.count).map(check).collect()
 }
 
 /// Refuses modes that do not exist, and lists of triangles that end in a part of one.
-fn check_mode(mode: u32, n_corners: usize) -> Result<(), PrimitiveErrorKind> {
+fn check_mode(mode: u32, n_corners: usize) -> Result<(), Malformed> {
     match mode {
-        TRIANGLES if !n_corners.is_multiple_of(3) => Err(PrimitiveErrorKind::Corners { n_corners }),
+        TRIANGLES if !n_corners.is_multiple_of(3) => Err(malformed!("{n_corners} corners are no list of triangles")),
         0..=TRIANGLE_FAN => Ok(()),
-        _ => Err(PrimitiveErrorKind::Mode { mode }),
+        _ => Err(malformed!("mode {mode} does not exist")),
     }
 }
 

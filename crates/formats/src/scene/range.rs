@@ -52,12 +52,16 @@ impl Range {
     }
 
     pub(super) fn times(self, other: Self) -> Self {
-        let products = [self.low * other.low, self.low * other.high, self.high * other.low, self.high * other.high];
-        if products.iter().any(|x| x.is_nan()) {
+        Self::around([self.low * other.low, self.low * other.high, self.high * other.low, self.high * other.high])
+    }
+
+    /// Around results of one operation each.
+    fn around(results: [f64; 4]) -> Self {
+        if results.iter().any(|x| x.is_nan()) {
             return Self::ALL;
         }
-        let low = products.into_iter().fold(f64::INFINITY, f64::min);
-        Self::outwards(low, products.into_iter().fold(f64::NEG_INFINITY, f64::max))
+        let low = results.into_iter().fold(f64::INFINITY, f64::min);
+        Self::outwards(low, results.into_iter().fold(f64::NEG_INFINITY, f64::max))
     }
 
     pub(super) fn square(self) -> Self {
@@ -69,13 +73,8 @@ impl Range {
 
     /// The quotient by numbers above 0.
     pub(super) fn over(self, divisor: Self) -> Self {
-        let quotients =
-            [self.low / divisor.low, self.low / divisor.high, self.high / divisor.low, self.high / divisor.high];
-        if quotients.iter().any(|x| x.is_nan()) {
-            return Self::ALL;
-        }
-        let low = quotients.into_iter().fold(f64::INFINITY, f64::min);
-        Self::outwards(low, quotients.into_iter().fold(f64::NEG_INFINITY, f64::max))
+        let Self { low, high } = divisor;
+        Self::around([self.low / low, self.low / high, self.high / low, self.high / high])
     }
 
     pub(super) fn is_finite(self) -> bool {

@@ -1,10 +1,10 @@
 //! Where the objects of a glTF scene come from, so that their document can be written again with fewer triangles.
 
 use super::SceneFile;
-use super::error::SceneReadError;
 use super::gltf::{Loaded, parse};
 use super::surface::SceneReadOptions;
 use crate::beside::{Folder, Neighbours};
+use crate::error::Malformed;
 use std::path::Path;
 
 /// A glTF document with its buffers, and what the objects of its scene come from.
@@ -53,7 +53,7 @@ pub struct ObjectOrigin<'a> {
 ///
 /// # Errors
 /// As [`parse_glb`](super::parse_glb).
-pub fn parse_glb_with_source(bytes: Vec<u8>, folder: Option<&Path>) -> Result<(SceneFile, GltfSource), SceneReadError> {
+pub fn parse_glb_with_source(bytes: Vec<u8>, folder: Option<&Path>) -> Result<(SceneFile, GltfSource), Malformed> {
     parse_with_source(bytes, folder, &SceneReadOptions::default())
 }
 
@@ -62,7 +62,7 @@ pub(super) fn parse_with_source(
     bytes: Vec<u8>,
     folder: Option<&Path>,
     options: &SceneReadOptions,
-) -> Result<(SceneFile, GltfSource), SceneReadError> {
+) -> Result<(SceneFile, GltfSource), Malformed> {
     let (mut origins, mut objects, mut corners) = (Vec::new(), Vec::new(), Vec::<Vec<Vec<usize>>>::new());
     let folder = folder.map(|folder| Folder(folder.to_owned()));
     let beside = folder.as_ref().map(|folder| folder as &dyn Neighbours);

@@ -3,9 +3,9 @@
 //! Nothing here depends on a machine's mathematical library: sums and products in a fixed order, and one
 //! quotient per entry of a rotation.
 
-use super::error::NodeErrorKind;
 use super::json::Node;
 use super::range::Range;
+use crate::error::{Malformed, malformed};
 use sightlines_cells::Point3;
 
 /// An affine map of space.
@@ -21,10 +21,10 @@ impl Transform {
     pub(super) const IDENTITY: Self = Self { rows: [[1., 0., 0., 0.], [0., 1., 0., 0.], [0., 0., 1., 0.]], hand: 1 };
 
     /// What `node` does to its mesh and its children.
-    pub(super) fn of_node(node: &Node) -> Result<Self, NodeErrorKind> {
+    pub(super) fn of_node(node: &Node) -> Result<Self, Malformed> {
         let decomposed = node.translation.is_some() || node.rotation.is_some() || node.scale.is_some();
         match &node.matrix {
-            Some(_) if decomposed => Err(NodeErrorKind::TwoTransforms),
+            Some(_) if decomposed => Err(malformed!("both a matrix and a translation, rotation or scale")),
             Some(matrix) => Self::from_columns(matrix),
             None => {
                 let translation = node.translation.as_deref().copied().unwrap_or_default();
@@ -35,19 +35,15 @@ impl Transform {
         }
     }
 
-    /// The map with these columns, if it is affine.
-    pub(super) fn of_columns(m: &[f64; 16]) -> Option<Self> {
-        Self::from_columns(m).ok()
-    }
-
     /// The rows, as ranges that hold nothing else.
     pub(super) fn ranges(&self) -> [[Range; 4]; 3] {
         self.rows.map(|row| row.map(Range::of))
     }
 
-    fn from_columns(m: &[f64; 16]) -> Result<Self, NodeErrorKind> {
+    /// The map with these columns, if it is affine.
+    pub(super) fn from_columns(m: &[f64; 16]) -> Result<Self, Malformed> {
         if [m[3], m[7], m[11], m[15]] != [0., 0., 0., 1.] {
-            return Err(NodeErrorKind::NotAffine);
+            return Err(malformed!("its matrix is not affine"));
         }
         let rows = [0, 1, 2].map(|r| [m[r], m[4 + r], m[8 + r], m[12 + r]]);
         // Rounding can mistake the sign only of a map that flattens space by fifteen digits, where fronts
@@ -56,8 +52,8 @@ impl Transform {
     }
 
     /// First the scale, then the rotation, then the translation.
-    pub(super) fn from_parts(translation: Point3, rotation: [f64; 4], scale: Point3) -> Result<Self, NodeErrorKind> {
-        let rotation = rotation_rows(rotation).ok_or(NodeErrorKind::ZeroRotation)?;
+    pub(super) fn from_parts(translation: Point3, rotation: [f64; 4], scale: Point3) -> Result<Self, Malformed> {
+        let rotation = rotation_rows(rotation).ok_or_else(|| malformed!("its rotation is the zero quaternion"))?;
         let row = |r: usize| {
             let [x, y, z]: Point3 = rotation[r];
             [x * scale[0], y * scale[1], z * scale[2], translation[r]]

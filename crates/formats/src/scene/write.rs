@@ -2,10 +2,9 @@
 
 use super::Simplified;
 use super::write_error::SceneWriteError;
-use serde::Serialize;
-use serde_json::{Value, json};
 use sightlines_cells::{Point3, Scene, SceneObject};
 use sightlines_geometry::Aabb;
+use std::fmt::{Arguments, Write};
 
 /// Writes a scene as GLB: a node, a mesh and a primitive per object, without transforms.
 ///
@@ -87,13 +86,7 @@ fn write(
 ) -> Result<(Vec<u8>, Rounding), SceneWriteError> {
     let mut parts = Parts { numbers, ..Parts::default() };
     for (k, object) in scene.objects().iter().enumerate() {
-        let id = u32::try_from(k);
-        let is_mirror = id.is_ok_and(|k| scene.mirrors().binary_search(&k).is_ok());
-        let alpha_mode = if id.is_ok_and(|k| scene.is_opaque(k)) { None } else { Some("BLEND") };
-        let double_sided = !id.is_ok_and(|k| scene.is_single_sided(k));
-        let material = Material { alpha_mode, double_sided };
-        let moves = id.is_ok_and(|k| scene.moving().binary_search_by_key(&k, |moving| moving.object).is_ok());
-        parts.add(k, object, Marks { is_mirror, moves, material })?;
+        parts.add(scene, k, object)?;
     }
     let rounding = parts.rounding;
     let is_rounded = rounding.n_coordinates > 0;
@@ -101,170 +94,88 @@ fn write(
     Ok((parts.into_glb(simplified)?, rounding))
 }
 
-#[derive(Debug, Serialize)]
-struct Asset {
-    version: &'static str,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    extras: Option<Value>,
-}
-
-#[derive(Debug, Serialize)]
-struct Roots {
-    nodes: Vec<usize>,
-}
-
-#[derive(Debug, Serialize)]
-struct Node<'a> {
-    name: &'a str,
-    mesh: usize,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    translation: Option<Point3>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    extras: Option<Extras>,
-}
-
-/// What a reader of ours finds about a node.
-#[derive(Debug, Serialize)]
-struct Extras {
-    sightlines: Stated,
-}
-
-#[derive(Debug, Serialize)]
-struct Stated {
-    #[serde(skip_serializing_if = "Option::is_none")]
-    role: Option<&'static str>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    moves: Option<bool>,
-}
-
-/// What an object is in its scene.
-#[derive(Debug)]
-struct Marks {
-    is_mirror: bool,
-    moves: bool,
-    material: Material,
-}
-
-#[derive(Debug, Serialize)]
-struct Mesh {
-    primitives: [Primitive; 1],
-}
-
-#[derive(Debug, Serialize)]
-struct Primitive {
-    attributes: Attributes,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    indices: Option<usize>,
-    mode: u32,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    material: Option<usize>,
-}
-
-/// The material of objects that are seen alike.
-#[derive(Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "camelCase")]
-struct Material {
-    #[serde(skip_serializing_if = "Option::is_none")]
-    alpha_mode: Option<&'static str>,
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    double_sided: bool,
-}
-
-#[derive(Debug, Serialize)]
-struct Attributes {
-    #[serde(rename = "POSITION")]
-    position: usize,
-}
-
-#[derive(Debug, Serialize)]
-#[serde(rename_all = "camelCase")]
-struct Accessor {
-    buffer_view: usize,
-    component_type: u32,
-    count: usize,
-    #[serde(rename = "type")]
-    kind: &'static str,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    min: Option<[f32; 3]>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    max: Option<[f32; 3]>,
-}
-
-#[derive(Debug, Serialize)]
-#[serde(rename_all = "camelCase")]
-struct BufferView {
-    buffer: usize,
-    byte_offset: usize,
-    byte_length: usize,
-    target: u32,
-}
-
-#[derive(Debug, Serialize)]
-#[serde(rename_all = "camelCase")]
-struct Buffer {
-    byte_length: usize,
-}
-
-/// The document; glTF has no empty lists, so what is empty is left out.
-#[derive(Debug, Serialize)]
-#[serde(rename_all = "camelCase")]
-struct Document<'a> {
-    asset: Asset,
-    scene: usize,
-    scenes: [Roots; 1],
-    #[serde(skip_serializing_if = "<[_]>::is_empty")]
-    nodes: &'a [Node<'a>],
-    #[serde(skip_serializing_if = "<[_]>::is_empty")]
-    meshes: &'a [Mesh],
-    #[serde(skip_serializing_if = "<[_]>::is_empty")]
-    materials: &'a [Material],
-    #[serde(skip_serializing_if = "<[_]>::is_empty")]
-    accessors: &'a [Accessor],
-    #[serde(skip_serializing_if = "<[_]>::is_empty")]
-    buffer_views: &'a [BufferView],
-    #[serde(skip_serializing_if = "<[_]>::is_empty")]
-    buffers: &'a [Buffer],
-}
-
+/// A list of the document: elements as JSON texts, with commas between.
 #[derive(Debug, Default)]
-struct Parts<'a> {
+struct List {
+    text: String,
+    n: usize,
+}
+
+impl List {
+    /// Appends an element; returns its index.
+    fn push(&mut self, element: Arguments<'_>) -> usize {
+        let comma = if self.n == 0 { "" } else { "," };
+        write!(self.text, "{comma}{element}").expect("a string takes any text");
+        self.n += 1;
+        self.n - 1
+    }
+}
+
+/// A text or a finite number as JSON.
+fn json(value: &impl serde::Serialize) -> String {
+    serde_json::to_string(value).expect("texts and finite numbers are JSON")
+}
+
+/// A member behind others, if there is a value.
+fn member(name: &str, value: Option<String>) -> String {
+    value.map_or_else(String::new, |value| format!(",\"{name}\":{value}"))
+}
+
+/// The document and its bytes.
+#[derive(Debug, Default)]
+struct Parts {
     numbers: Numbers,
     rounding: Rounding,
-    nodes: Vec<Node<'a>>,
-    meshes: Vec<Mesh>,
+    nodes: List,
+    meshes: List,
     /// All different.
-    materials: Vec<Material>,
-    accessors: Vec<Accessor>,
-    views: Vec<BufferView>,
+    materials: Vec<&'static str>,
+    accessors: List,
+    views: List,
     binary: Vec<u8>,
 }
 
-impl<'a> Parts<'a> {
-    fn add(&mut self, k: usize, object: &'a SceneObject, marks: Marks) -> Result<(), SceneWriteError> {
+impl Parts {
+    fn add(&mut self, scene: &Scene, k: usize, object: &SceneObject) -> Result<(), SceneWriteError> {
+        let id = u32::try_from(k);
         let position = self.positions(k, object)?;
-        let Marks { is_mirror, moves, material } = marks;
-        let material = self.material(material);
+        let material = match (id.is_ok_and(|k| scene.is_opaque(k)), id.is_ok_and(|k| scene.is_single_sided(k))) {
+            // What holds where no material is stated.
+            (true, true) => None,
+            (true, false) => Some(r#"{"doubleSided":true}"#),
+            (false, true) => Some(r#"{"alphaMode":"BLEND"}"#),
+            (false, false) => Some(r#"{"alphaMode":"BLEND","doubleSided":true}"#),
+        };
+        let material = material.map(|material| self.material(material));
         let indices = (!object.triangles.is_empty()).then(|| self.indices(object));
         let mode = if indices.is_some() { 4 } else { 0 };
-        let primitive = Primitive { attributes: Attributes { position }, indices, mode, material };
-        self.meshes.push(Mesh { primitives: [primitive] });
-        let stated = Stated { role: is_mirror.then_some("mirror"), moves: moves.then_some(true) };
-        let extras = (is_mirror || moves).then_some(Extras { sightlines: stated });
-        let translation = Some(self.numbers.offset()).filter(|offset| *offset != [0.0; 3]);
-        self.nodes.push(Node { name: &object.name, mesh: self.meshes.len() - 1, translation, extras });
+        let [indices, material] = [("indices", indices), ("material", material)]
+            .map(|(name, index)| member(name, index.map(|k| k.to_string())));
+        let attributes = format_args!(r#""attributes":{{"POSITION":{position}}}"#);
+        let mesh =
+            self.meshes.push(format_args!(r#"{{"primitives":[{{{attributes}{indices},"mode":{mode}{material}}}]}}"#));
+        let offset = self.numbers.offset();
+        let translation = member("translation", (offset != [0.0; 3]).then(|| json(&offset)));
+        let is_mirror = id.is_ok_and(|k| scene.mirrors().binary_search(&k).is_ok());
+        let moves = id.is_ok_and(|k| scene.moving().binary_search_by_key(&k, |moving| moving.object).is_ok());
+        let stated = match (is_mirror, moves) {
+            (false, false) => None,
+            (true, false) => Some(r#""role":"mirror""#),
+            (false, true) => Some(r#""moves":true"#),
+            (true, true) => Some(r#""role":"mirror","moves":true"#),
+        };
+        let extras = member("extras", stated.map(|stated| format!(r#"{{"sightlines":{{{stated}}}}}"#)));
+        self.nodes.push(format_args!(r#"{{"name":{},"mesh":{mesh}{translation}{extras}}}"#, json(&object.name)));
         Ok(())
     }
 
-    /// The index of a material; none for the one that holds where none is stated.
-    fn material(&mut self, material: Material) -> Option<usize> {
-        if material == (Material { alpha_mode: None, double_sided: false }) {
-            return None;
-        }
-        let known = self.materials.iter().position(|m| *m == material);
-        Some(known.unwrap_or_else(|| {
+    /// The index of a material.
+    fn material(&mut self, material: &'static str) -> usize {
+        let known = self.materials.iter().position(|&m| m == material);
+        known.unwrap_or_else(|| {
             self.materials.push(material);
             self.materials.len() - 1
-        }))
+        })
     }
 
     fn positions(&mut self, object: usize, o: &SceneObject) -> Result<usize, SceneWriteError> {
@@ -291,17 +202,12 @@ impl<'a> Parts<'a> {
                 self.binary.extend_from_slice(&single.to_le_bytes());
             }
         }
-        // 5126 is single precision, 34962 an array of vertices.
-        let view = self.view(start, 34962);
-        let accessor = Accessor {
-            buffer_view: view,
-            component_type: 5126,
-            count: o.vertices.len(),
-            kind: "VEC3",
-            min: Some(min),
-            max: Some(max),
-        };
-        Ok(self.accessor(accessor))
+        let bounds = format_args!(r#""min":{},"max":{}"#, json(&min), json(&max));
+        // 34962 is an array of vertices, 5126 single precision.
+        let (view, n) = (self.view(start, 34962), o.vertices.len());
+        Ok(self
+            .accessors
+            .push(format_args!(r#"{{"bufferView":{view},"componentType":5126,"count":{n},"type":"VEC3",{bounds}}}"#)))
     }
 
     fn indices(&mut self, o: &SceneObject) -> usize {
@@ -312,44 +218,42 @@ impl<'a> Parts<'a> {
             let bytes = index.to_le_bytes();
             self.binary.extend_from_slice(if short { &bytes[..2] } else { &bytes });
         }
-        // 5123 and 5125 are integers of 16 and 32 bits, 34963 an array of indices.
-        let view = self.view(start, 34963);
-        let component_type = if short { 5123 } else { 5125 };
-        let count = 3 * o.triangles.len();
-        self.accessor(Accessor { buffer_view: view, component_type, count, kind: "SCALAR", min: None, max: None })
+        // 34963 is an array of indices, 5123 and 5125 are integers of 16 and 32 bits.
+        let (view, n) = (self.view(start, 34963), 3 * o.triangles.len());
+        let component = if short { 5123 } else { 5125 };
+        self.accessors
+            .push(format_args!(r#"{{"bufferView":{view},"componentType":{component},"count":{n},"type":"SCALAR"}}"#))
     }
 
-    fn view(&mut self, byte_offset: usize, target: u32) -> usize {
-        let byte_length = self.binary.len() - byte_offset;
-        self.views.push(BufferView { buffer: 0, byte_offset, byte_length, target });
+    fn view(&mut self, offset: usize, target: u32) -> usize {
+        let len = self.binary.len() - offset;
         // The next view has to begin at a multiple of four.
         self.binary.resize(self.binary.len().next_multiple_of(4), 0);
-        self.views.len() - 1
-    }
-
-    fn accessor(&mut self, accessor: Accessor) -> usize {
-        self.accessors.push(accessor);
-        self.accessors.len() - 1
+        let bytes = format_args!(r#""byteOffset":{offset},"byteLength":{len}"#);
+        self.views.push(format_args!(r#"{{"buffer":0,{bytes},"target":{target}}}"#))
     }
 
     fn into_glb(self, simplified: Option<Simplified>) -> Result<Vec<u8>, SceneWriteError> {
-        let buffer = Buffer { byte_length: self.binary.len() };
-        let document = Document {
-            asset: Asset {
-                version: "2.0",
-                extras: simplified.map(|s| json!({"sightlines": {"simplified": {"occluder": s.occluder}}})),
-            },
-            scene: 0,
-            scenes: [Roots { nodes: (0..self.nodes.len()).collect() }],
-            nodes: &self.nodes,
-            meshes: &self.meshes,
-            materials: &self.materials,
-            accessors: &self.accessors,
-            buffer_views: &self.views,
-            buffers: if self.binary.is_empty() { &[] } else { std::slice::from_ref(&buffer) },
-        };
-        let text = serde_json::to_vec(&document).expect("names and finite numbers are JSON");
-        container(text, &self.binary).map_err(|len| SceneWriteError::TooLarge { len })
+        let stated = |s: Simplified| format!(r#"{{"sightlines":{{"simplified":{{"occluder":{}}}}}}}"#, s.occluder);
+        let extras = member("extras", simplified.map(stated));
+        let roots: Vec<String> = (0..self.nodes.n).map(|node| node.to_string()).collect();
+        let asset = format_args!(r#"{{"version":"2.0"{extras}}}"#);
+        let mut text = format!(r#"{{"asset":{asset},"scene":0,"scenes":[{{"nodes":[{}]}}]"#, roots.join(","));
+        let buffers = (!self.binary.is_empty()).then(|| format!(r#"{{"byteLength":{}}}"#, self.binary.len()));
+        let lists = [
+            ("nodes", self.nodes.text),
+            ("meshes", self.meshes.text),
+            ("materials", self.materials.join(",")),
+            ("accessors", self.accessors.text),
+            ("bufferViews", self.views.text),
+            ("buffers", buffers.unwrap_or_default()),
+        ];
+        // glTF has no empty lists.
+        for (name, list) in lists.iter().filter(|(_, list)| !list.is_empty()) {
+            text.extend([",\"", *name, "\":[", list, "]"]);
+        }
+        text.push('}');
+        container(text.into_bytes(), &self.binary).map_err(|len| SceneWriteError::TooLarge { len })
     }
 }
 

@@ -1,35 +1,5 @@
 //! Why a scene cannot be written.
 
-use std::fmt;
-
-/// What an OBJ cannot hold of an object.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum ObjLimit {
-    /// A name that a line cannot end with: empty, with spaces at an end, with a line break, or with a backslash at its end.
-    Name,
-    /// A mirror whose name does not state it, or a name that states it of something else.
-    Mirror,
-    /// Something that moves.
-    Moves,
-    /// Something of which only the fronts are drawn.
-    SingleSided,
-    /// An object without triangles.
-    Empty,
-}
-
-impl fmt::Display for ObjLimit {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Name => "its name",
-            Self::Mirror => "a mirror whose name does not end in -mirror, nor such a name of anything else",
-            Self::Moves => "what moves",
-            Self::SingleSided => "what has one side",
-            Self::Empty => "what has no triangles",
-        })
-    }
-}
-
 /// Why a scene cannot be written as GLB or OBJ.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -56,7 +26,7 @@ pub enum SceneWriteError {
         /// Index of the object.
         object: usize,
         /// What of it.
-        what: ObjLimit,
+        what: &'static str,
     },
     /// A GLB has at most 4 GiB.
     #[error("{len} bytes are too many for a GLB")]

@@ -1,6 +1,6 @@
 //! Scenes in space as OBJ.
 
-use super::write_error::{ObjLimit, SceneWriteError};
+use super::write_error::SceneWriteError;
 use super::{MIRROR_SUFFIX, Simplified};
 use sightlines_cells::{Scene, SceneObject};
 use std::fmt::Write;
@@ -59,20 +59,21 @@ fn write(scene: &Scene, simplified: Option<Simplified>) -> Result<Vec<u8>, Scene
 }
 
 /// What an OBJ cannot hold of an object.
-fn check(scene: &Scene, k: u32, object: &SceneObject) -> Option<ObjLimit> {
+fn check(scene: &Scene, k: u32, object: &SceneObject) -> Option<&'static str> {
     let name = &object.name;
     let is_trimmed = name.trim_ascii().len() == name.len();
     let is_mirror = scene.mirrors().binary_search(&k).is_ok();
     if name.is_empty() || !is_trimmed || name.contains('\n') || name.ends_with('\\') {
-        Some(ObjLimit::Name)
+        // The line would end elsewhere.
+        Some("its name")
     } else if is_mirror != name.ends_with(MIRROR_SUFFIX) {
-        Some(ObjLimit::Mirror)
+        Some("a mirror whose name does not end in -mirror, nor such a name of anything else")
     } else if scene.moving().iter().any(|moving| moving.object == k) {
-        Some(ObjLimit::Moves)
+        Some("what moves")
     } else if scene.is_single_sided(k) {
-        Some(ObjLimit::SingleSided)
+        Some("what has one side")
     } else if object.triangles.is_empty() {
-        Some(ObjLimit::Empty)
+        Some("what has no triangles")
     } else {
         None
     }

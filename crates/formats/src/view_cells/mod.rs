@@ -11,10 +11,8 @@
 //! own, at least one character long. Boxes may touch, overlap, leave gaps and be flat. Members that are not shown
 //! here mean nothing, in the whole as in a cell. There is at least one cell.
 
-mod error;
 mod read;
 
-pub use error::{ViewCellPlace, ViewCellsError, ViewCellsErrorKind};
 pub use read::{parse_view_cells, read_view_cells};
 
 use sightlines_geometry::Aabb;
@@ -37,6 +35,3 @@ pub struct ViewCell {
     /// Where it is, in scene units, along the axes of the cells.
     pub bounds: Aabb<3>,
 }
-
-#[cfg(test)]
-mod tests;

@@ -1,19 +1,15 @@
 //! Reading: one pass over the text, cell by cell.
 
-use super::error::{ViewCellPlace, ViewCellsError, ViewCellsErrorKind as Kind};
 use super::{ViewCell, ViewCells};
 use crate::ReadError;
-use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
-use serde_json::error::Category;
+use crate::bytes::without_mark;
+use crate::error::{Malformed, in_file, malformed};
+use crate::json::{Context, NOT_AN_OBJECT, Seed, Shape};
+use serde::de::{DeserializeSeed, IgnoredAny, MapAccess, SeqAccess};
 use sightlines_geometry::{Aabb, check_coordinate};
 use std::collections::BTreeMap;
-use std::collections::btree_map::Entry;
 use std::fmt;
-use std::fs;
 use std::path::Path;
-
-/// The three bytes that some editors put before a text.
-const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
 
 /// Reads view cells from a JSON text; see the module for what means what.
 ///
@@ -21,15 +17,13 @@ const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
 /// order mark is skipped. O(length * log(cells)).
 ///
 /// # Errors
-/// [`ViewCellsError`] with line and column, and where known the cell and its id.
-pub fn parse_view_cells(text: &[u8]) -> Result<ViewCells, ViewCellsError> {
-    let text = text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text);
+/// [`Malformed`] with line and column where reading stopped, and where known the cell and its id.
+pub fn parse_view_cells(text: &[u8]) -> Result<ViewCells, Malformed> {
     let mut reader = Reader::default();
-    let mut json = serde_json::Deserializer::from_slice(text);
-    match reader.whole(&mut json) {
-        Ok(()) => Ok(ViewCells { cells: reader.cells, axes: reader.axes }),
-        Err(error) => Err(reader.explain(&error)),
-    }
+    let mut json = serde_json::Deserializer::from_slice(without_mark(text));
+    let read = Seed(Top(&mut reader)).deserialize(&mut json).and_then(|()| json.end());
+    read.map_err(|error| reader.context.explain(&error))?;
+    Ok(ViewCells { cells: reader.cells, axes: reader.axes })
 }
 
 /// Reads view cells from a JSON file, as [`parse_view_cells`].
@@ -37,8 +31,23 @@ pub fn parse_view_cells(text: &[u8]) -> Result<ViewCells, ViewCellsError> {
 /// # Errors
 /// [`ReadError`] with the file and what is wrong.
 pub fn read_view_cells(path: impl AsRef<Path>) -> Result<ViewCells, ReadError> {
-    let text = fs::read(&path).map_err(|error| ReadError::new(&path, error))?;
-    parse_view_cells(&text).map_err(|error| ReadError::new(&path, error))
+    let path = path.as_ref();
+    in_file(path, || Ok(parse_view_cells(&std::fs::read(path)?)?))
+}
+
+/// A cell of the list, and its id once that was read.
+#[derive(Debug, Default)]
+struct Place(Option<usize>, Option<String>);
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (self.0, &self.1) {
+            (None, _) => Ok(()),
+            (Some(cell), None) => write!(f, "cell {cell}"),
+            // As a Rust string: an id may hold anything, and a message should stay one line.
+            (Some(cell), Some(id)) => write!(f, "cell {cell} ({id:?})"),
+        }
+    }
 }
 
 /// The cells so far, and where in the list the reader is.
@@ -48,49 +57,24 @@ struct Reader {
     axes: Option<[[f64; 3]; 3]>,
     /// The cell that has an id.
     of_id: BTreeMap<String, usize>,
-    place: ViewCellPlace,
-    failure: Option<Kind>,
-    /// The error if the next value is of another JSON type than it should be.
-    mismatch: Option<Kind>,
+    context: Context<Place>,
 }
 
 impl Reader {
-    fn whole<'de, R: serde_json::de::Read<'de>>(
-        &mut self,
-        json: &mut serde_json::Deserializer<R>,
-    ) -> Result<(), serde_json::Error> {
-        Top(self).deserialize(&mut *json)?;
-        json.end()
-    }
-
-    /// Keeps the reason and makes the error that carries the position in the text.
-    fn fail<E: Error>(&mut self, kind: Kind) -> E {
-        self.failure = Some(kind);
-        E::custom("no view cells")
-    }
-
-    fn explain(mut self, error: &serde_json::Error) -> ViewCellsError {
-        let found = match error.classify() {
-            Category::Eof => Kind::Truncated,
-            Category::Data => self.mismatch.take().unwrap_or(Kind::Syntax),
-            Category::Syntax | Category::Io => Kind::Syntax,
-        };
-        let kind = self.failure.take().unwrap_or(found);
-        ViewCellsError { line: error.line(), column: error.column(), place: self.place, kind }
-    }
-
     /// Takes a cell whose members were all read.
-    fn add(&mut self, members: Members) -> Result<(), Kind> {
-        let id = members.id.ok_or(Kind::Missing("id"))?;
-        let min = members.min.ok_or(Kind::Missing("min"))?;
-        let max = members.max.ok_or(Kind::Missing("max"))?;
-        if let Some(axis) = (0..3).find(|&k| min[k] > max[k]) {
-            return Err(Kind::Inverted { axis, min: min[axis], max: max[axis] });
+    fn add(&mut self, members: Members) -> Result<(), Malformed> {
+        let missing = |member: &str| malformed!("there is no \"{member}\"");
+        let id = members.id.ok_or_else(|| missing("id"))?;
+        let min = members.min.ok_or_else(|| missing("min"))?;
+        let max = members.max.ok_or_else(|| missing("max"))?;
+        for (axis, (min, max)) in ["x", "y", "z"].into_iter().zip(min.into_iter().zip(max)) {
+            if min > max {
+                return Err(malformed!("\"min\" is above \"max\" in {axis}: {min} and {max}"));
+            }
         }
-        match self.of_id.entry(id.clone()) {
-            Entry::Occupied(first) => return Err(Kind::SameId { first: *first.get() }),
-            Entry::Vacant(place) => place.insert(self.cells.len()),
-        };
+        if let Some(first) = self.of_id.insert(id.clone(), self.cells.len()) {
+            return Err(malformed!("cell {first} has the same id"));
+        }
         self.cells.push(ViewCell { id, bounds: Aabb { min, max } });
         Ok(())
     }
@@ -104,220 +88,175 @@ struct Members {
     max: Option<[f64; 3]>,
 }
 
-/// Reads the whole.
-struct Top<'r>(&'r mut Reader);
-
-impl<'de> DeserializeSeed<'de> for Top<'_> {
-    type Value = ();
-
-    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
-        self.0.mismatch = Some(Kind::NotAnObject);
-        deserializer.deserialize_any(self)
-    }
+fn repeated(member: &str) -> Malformed {
+    malformed!("there are two members \"{member}\"")
 }
 
-impl<'de> Visitor<'de> for Top<'_> {
+/// The whole.
+struct Top<'r>(&'r mut Reader);
+
+impl<'de> Shape<'de> for Top<'_> {
     type Value = ();
 
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("an object with view cells")
+    fn begin(&mut self) {
+        self.0.context.expect(NOT_AN_OBJECT);
     }
 
-    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
+    fn object<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
         let reader = self.0;
         let mut found = false;
         while let Some(key) = map.next_key::<String>()? {
             match key.as_str() {
-                "cells" if found => return Err(reader.fail(Kind::Repeated("cells"))),
+                "cells" if found => return Err(reader.context.fail(repeated("cells"))),
                 "cells" => {
-                    map.next_value_seed(List(reader))?;
+                    map.next_value_seed(Seed(List(reader)))?;
                     found = true;
                 }
                 "axes" => {
-                    let axes = map.next_value_seed(Axes(reader))?;
+                    let axes = map.next_value_seed(Seed(Axes(&mut reader.context)))?;
                     if reader.axes.replace(axes).is_some() {
-                        return Err(reader.fail(Kind::Repeated("axes")));
+                        return Err(reader.context.fail(repeated("axes")));
                     }
                 }
                 _ => drop(map.next_value::<IgnoredAny>()?),
             }
         }
         match (found, reader.cells.is_empty()) {
-            (false, _) => Err(reader.fail(Kind::Missing("cells"))),
-            (true, true) => Err(reader.fail(Kind::NoCells)),
+            (false, _) => Err(reader.context.fail("there is no \"cells\"")),
+            (true, true) => Err(reader.context.fail("there are no cells in the list")),
             (true, false) => Ok(()),
         }
     }
 }
 
-/// Reads the axes of the cells.
-struct Axes<'r>(&'r mut Reader);
+/// The axes of the cells.
+struct Axes<'r>(&'r mut Context<Place>);
 
 impl Axes<'_> {
     /// How far products of the axes may be from those of unit vectors at right angles, as files round them. A box is the hull of its
     /// corners in any case.
     const OFF: f64 = 1e-3;
-
-    fn mismatch() -> Kind {
-        Kind::Member { member: "axes", expected: "a list of three unit vectors at right angles" }
-    }
+    const OTHERWISE: &'static str = "\"axes\" is not a list of three unit vectors at right angles";
 }
 
-impl<'de> DeserializeSeed<'de> for Axes<'_> {
+impl<'de> Shape<'de> for Axes<'_> {
     type Value = [[f64; 3]; 3];
 
-    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Self::Value, D::Error> {
-        self.0.mismatch = Some(Self::mismatch());
-        deserializer.deserialize_any(self)
-    }
-}
-
-impl<'de> Visitor<'de> for Axes<'_> {
-    type Value = [[f64; 3]; 3];
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("three vectors")
+    fn begin(&mut self) {
+        self.0.expect(Self::OTHERWISE);
     }
 
-    fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Self::Value, A::Error> {
-        let reader = self.0;
+    fn list<A: SeqAccess<'de>>(self, mut list: A) -> Result<Self::Value, A::Error> {
         let mut axes = [[0.0; 3]; 3];
         for slot in &mut axes {
-            let axis = seq.next_element_seed(Corner { reader: &mut *reader, member: "axes" })?;
-            let Some(axis) = axis else { return Err(reader.fail(Self::mismatch())) };
+            let axis = Corner { context: &mut *self.0, member: "axes", otherwise: NO_AXIS };
+            let Some(axis) = list.next_element_seed(Seed(axis))? else { return Err(self.0.fail(Self::OTHERWISE)) };
             *slot = axis;
         }
         let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
         let are_right = (0..3).all(|i| (0..3).all(|j| (dot(axes[i], axes[j]) - f64::from(i == j)).abs() <= Self::OFF));
-        if seq.next_element::<IgnoredAny>()?.is_some() || !are_right {
-            return Err(reader.fail(Self::mismatch()));
+        if list.next_element::<IgnoredAny>()?.is_some() || !are_right {
+            return Err(self.0.fail(Self::OTHERWISE));
         }
         Ok(axes)
     }
 }
 
-/// Reads the list of cells into the reader.
+/// The list of cells.
 struct List<'r>(&'r mut Reader);
 
-impl<'de> DeserializeSeed<'de> for List<'_> {
+impl<'de> Shape<'de> for List<'_> {
     type Value = ();
 
-    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
-        self.0.mismatch = Some(Kind::Member { member: "cells", expected: "a list" });
-        deserializer.deserialize_any(self)
-    }
-}
-
-impl<'de> Visitor<'de> for List<'_> {
-    type Value = ();
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a list of cells")
+    fn begin(&mut self) {
+        self.0.context.expect("\"cells\" is not a list");
     }
 
-    fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<(), A::Error> {
+    fn list<A: SeqAccess<'de>>(self, mut list: A) -> Result<(), A::Error> {
         loop {
-            self.0.place = ViewCellPlace { cell: Some(self.0.cells.len()), id: None };
-            if seq.next_element_seed(Cell(self.0))?.is_none() {
+            self.0.context.place = Place(Some(self.0.cells.len()), None);
+            if list.next_element_seed(Seed(Cell(self.0)))?.is_none() {
                 break;
             }
         }
-        self.0.place = ViewCellPlace::default();
+        self.0.context.place = Place::default();
         Ok(())
     }
 }
 
-/// Reads one cell into the reader.
+/// One cell.
 struct Cell<'r>(&'r mut Reader);
 
-impl<'de> DeserializeSeed<'de> for Cell<'_> {
+impl<'de> Shape<'de> for Cell<'_> {
     type Value = ();
 
-    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
-        self.0.mismatch = Some(Kind::NotAnObject);
-        deserializer.deserialize_any(self)
-    }
-}
-
-impl<'de> Visitor<'de> for Cell<'_> {
-    type Value = ();
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a cell")
+    fn begin(&mut self) {
+        self.0.context.expect(NOT_AN_OBJECT);
     }
 
-    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
+    fn object<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
         let reader = self.0;
         let mut members = Members::default();
         while let Some(key) = map.next_key::<String>()? {
-            let repeated = match key.as_str() {
+            let context = &mut reader.context;
+            let is_repeated = match key.as_str() {
                 "id" => {
-                    reader.mismatch = Some(Kind::Member { member: "id", expected: "text" });
+                    context.expect("\"id\" is not text");
                     let id = map.next_value::<String>()?;
                     if id.is_empty() {
-                        return Err(reader.fail(Kind::EmptyId));
+                        return Err(context.fail("the id is empty"));
                     }
-                    reader.place.id = Some(id.clone());
-                    members.id.replace(id).map(|_| "id")
+                    context.place.1 = Some(id.clone());
+                    members.id.replace(id).is_some()
                 }
                 "min" => {
-                    let corner = map.next_value_seed(Corner { reader, member: "min" })?;
-                    members.min.replace(corner).map(|_| "min")
+                    let corner = Corner { context, member: "min", otherwise: NO_MIN };
+                    members.min.replace(map.next_value_seed(Seed(corner))?).is_some()
                 }
                 "max" => {
-                    let corner = map.next_value_seed(Corner { reader, member: "max" })?;
-                    members.max.replace(corner).map(|_| "max")
+                    let corner = Corner { context, member: "max", otherwise: NO_MAX };
+                    members.max.replace(map.next_value_seed(Seed(corner))?).is_some()
                 }
                 _ => {
                     map.next_value::<IgnoredAny>()?;
-                    None
+                    false
                 }
             };
-            if let Some(member) = repeated {
-                return Err(reader.fail(Kind::Repeated(member)));
+            if is_repeated {
+                return Err(reader.context.fail(repeated(&key)));
             }
         }
-        reader.add(members).map_err(|kind| reader.fail(kind))
+        reader.add(members).map_err(|what| reader.context.fail(what))
     }
 }
 
-/// Reads a corner of a cell: three coordinates.
+const NO_AXIS: &str = "\"axes\" is not a list of three numbers";
+const NO_MIN: &str = "\"min\" is not a list of three numbers";
+const NO_MAX: &str = "\"max\" is not a list of three numbers";
+
+/// Three coordinates, and what is wrong with anything else.
 struct Corner<'r> {
-    reader: &'r mut Reader,
+    context: &'r mut Context<Place>,
     member: &'static str,
+    otherwise: &'static str,
 }
 
-impl<'de> DeserializeSeed<'de> for Corner<'_> {
+impl<'de> Shape<'de> for Corner<'_> {
     type Value = [f64; 3];
 
-    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<[f64; 3], D::Error> {
-        self.reader.mismatch = Some(self.mismatch());
-        deserializer.deserialize_any(self)
-    }
-}
-
-impl Corner<'_> {
-    fn mismatch(&self) -> Kind {
-        Kind::Member { member: self.member, expected: "a list of three numbers" }
-    }
-}
-
-impl<'de> Visitor<'de> for Corner<'_> {
-    type Value = [f64; 3];
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("three numbers")
+    fn begin(&mut self) {
+        self.context.expect(self.otherwise);
     }
 
-    fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<[f64; 3], A::Error> {
+    fn list<A: SeqAccess<'de>>(self, mut list: A) -> Result<[f64; 3], A::Error> {
         let mut corner = [0.0; 3];
         for slot in &mut corner {
-            let Some(x) = seq.next_element::<f64>()? else { return Err(self.reader.fail(self.mismatch())) };
-            *slot = check_coordinate(x)
-                .map_err(|source| self.reader.fail(Kind::Coordinate { member: self.member, source }))?;
+            let Some(x) = list.next_element::<f64>()? else { return Err(self.context.fail(self.otherwise)) };
+            let wrong = |error| self.context.fail(format_args!("\"{}\": {error}", self.member));
+            *slot = check_coordinate(x).map_err(wrong)?;
         }
-        if seq.next_element::<IgnoredAny>()?.is_some() {
-            return Err(self.reader.fail(self.mismatch()));
+        if list.next_element::<IgnoredAny>()?.is_some() {
+            return Err(self.context.fail(self.otherwise));
         }
         Ok(corner)
     }

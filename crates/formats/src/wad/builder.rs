@@ -10,7 +10,7 @@ use super::{ENTRY_LEN, HEADER_LEN, LumpName, WadError, WadKind};
 /// builder.lump("README", b"hello")?;
 /// let wad = Wad::parse(builder.finish()?)?;
 /// assert_eq!(wad.lump_bytes(0), b"hello");
-/// # Ok::<(), sightlines_formats::WadError>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct WadBuilder {

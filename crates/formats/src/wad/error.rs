@@ -1,81 +1,11 @@
-//! What can be wrong with a WAD.
+//! Why a WAD cannot be written.
 
 use super::LumpName;
-use std::fmt;
 
-/// A lump in an error message, shown as `lump 3 (LINEDEFS)`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct LumpId {
-    /// Its index in the directory.
-    pub index: usize,
-    /// Its name.
-    pub name: LumpName,
-}
-
-impl fmt::Display for LumpId {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "lump {} ({})", self.index, self.name)
-    }
-}
-
-/// Why bytes are not a WAD, or a WAD cannot be written.
+/// Why a WAD cannot be written.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum WadError {
-    /// Fewer bytes than a header has.
-    #[error("not a WAD: {len} bytes are less than a header")]
-    NoHeader {
-        /// Bytes there are.
-        len: usize,
-    },
-    /// The first four bytes are neither `IWAD` nor `PWAD`.
-    #[error("not a WAD: it begins with \"{}\", not IWAD or PWAD", found.escape_ascii())]
-    Magic {
-        /// The bytes there.
-        found: [u8; 4],
-    },
-    /// The directory is not inside the file.
-    #[error("the directory ({count} lumps at byte {offset}) is not inside the file of {file_len} bytes")]
-    Directory {
-        /// Where it is according to the header.
-        offset: i32,
-        /// How many entries it has according to the header.
-        count: i32,
-        /// Length of the file.
-        file_len: u64,
-    },
-    /// A lump is not inside the file.
-    #[error("{lump}: {size} bytes at byte {offset} are not inside the file of {file_len} bytes")]
-    LumpRange {
-        /// The lump.
-        lump: LumpId,
-        /// Its place, as the directory has it.
-        offset: i32,
-        /// Its size, as the directory has it.
-        size: i32,
-        /// Length of the file.
-        file_len: u64,
-    },
-    /// A lump lies over the header.
-    #[error("{lump} overlaps the header")]
-    OverlapsHeader {
-        /// The lump.
-        lump: LumpId,
-    },
-    /// A lump lies over the directory.
-    #[error("{lump} overlaps the directory")]
-    OverlapsDirectory {
-        /// The lump.
-        lump: LumpId,
-    },
-    /// Two lumps share some bytes, but not all.
-    #[error("{first} and {second} overlap")]
-    Overlap {
-        /// The one that comes first in the directory.
-        first: LumpId,
-        /// The other.
-        second: LumpId,
-    },
     /// A name that is empty, longer than eight characters, or not ASCII.
     #[error("\"{}\" cannot be the name of a lump: it takes 1 to 8 ASCII characters", name.escape_debug())]
     Name {
@@ -104,10 +34,12 @@ pub enum WadError {
         /// The map's marker.
         map: LumpName,
     },
-}
-
-impl From<WadError> for crate::ReadErrorKind {
-    fn from(error: WadError) -> Self {
-        Self::content(error)
-    }
+    /// A map has more sides than lines can name.
+    #[error("map {map}: SIDEDEFS: {n_sides} sides are more than lines can name")]
+    TooManySides {
+        /// The map's marker.
+        map: LumpName,
+        /// How many it has.
+        n_sides: usize,
+    },
 }

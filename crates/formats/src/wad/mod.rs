@@ -10,11 +10,13 @@ mod name;
 mod rewrite;
 
 pub use builder::WadBuilder;
-pub use error::{LumpId, WadError};
+pub use error::WadError;
 pub use name::LumpName;
 pub use rewrite::Edit;
 
-use crate::{ReadError, ReadErrorKind};
+use crate::ReadError;
+use crate::bytes::{bytes_at, i32_at};
+use crate::error::{Malformed, in_file, malformed};
 use std::fs::File;
 use std::io::Read;
 use std::ops::Range;
@@ -78,8 +80,8 @@ impl Wad {
     /// Checks a whole WAD. O(n log n) for n lumps; memory for what is really there.
     ///
     /// # Errors
-    /// [`WadError`] with the lumps concerned.
-    pub fn parse(bytes: Vec<u8>) -> Result<Self, WadError> {
+    /// [`Malformed`] with the lumps concerned.
+    pub fn parse(bytes: Vec<u8>) -> Result<Self, Malformed> {
         let header = Header::parse(&bytes, bytes.len() as u64)?;
         let directory = header.directory();
         let lumps = bytes[directory.clone()]
@@ -96,16 +98,16 @@ impl Wad {
     /// # Errors
     /// [`ReadError`] with the file and what is wrong.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, ReadError> {
-        let read = || -> Result<Self, ReadErrorKind> {
-            let mut file = File::open(path.as_ref())?;
+        let path = path.as_ref();
+        in_file(path, || {
+            let mut file = File::open(path)?;
             let mut bytes = Vec::new();
             file.by_ref().take(HEADER_LEN as u64).read_to_end(&mut bytes)?;
             let about = file.metadata()?;
             Header::parse(&bytes, if about.is_file() { about.len() } else { u64::MAX })?;
             file.read_to_end(&mut bytes)?;
             Ok(Self::parse(bytes)?)
-        };
-        read().map_err(|kind| ReadError::new(&path, kind))
+        })
     }
 
     /// `IWAD` or `PWAD`.
@@ -140,19 +142,23 @@ struct Header {
 }
 
 impl Header {
-    fn parse(bytes: &[u8], file_len: u64) -> Result<Self, WadError> {
+    fn parse(bytes: &[u8], file_len: u64) -> Result<Self, Malformed> {
         let Some((header, _)) = bytes.split_at_checked(HEADER_LEN) else {
-            return Err(WadError::NoHeader { len: bytes.len() });
+            return Err(malformed!("not a WAD: {} bytes are less than a header", bytes.len()));
         };
-        let magic = [header[0], header[1], header[2], header[3]];
-        let kind = [WadKind::Game, WadKind::Patch].into_iter().find(|k| k.magic() == magic);
-        let kind = kind.ok_or(WadError::Magic { found: magic })?;
+        let kind = [WadKind::Game, WadKind::Patch].into_iter().find(|k| header.starts_with(&k.magic()));
+        let other = || malformed!("not a WAD: it begins with \"{}\", not IWAD or PWAD", header[..4].escape_ascii());
+        let kind = kind.ok_or_else(other)?;
         let (count, offset) = (i32_at(header, 4), i32_at(header, 8));
-        let error = WadError::Directory { offset, count, file_len };
-        let (Ok(count), Ok(offset)) = (u32::try_from(count), u32::try_from(offset)) else { return Err(error) };
-        let end = u64::from(offset) + u64::from(count) * ENTRY_LEN as u64;
-        let outside = end > file_len || (count > 0 && (offset as usize) < HEADER_LEN);
-        if outside { Err(error) } else { Ok(Self { kind, count, offset }) }
+        let checked = u32::try_from(count).ok().zip(u32::try_from(offset).ok()).filter(|&(count, offset)| {
+            let end = u64::from(offset) + u64::from(count) * ENTRY_LEN as u64;
+            end <= file_len && (count == 0 || offset as usize >= HEADER_LEN)
+        });
+        let Some((count, offset)) = checked else {
+            let what = format_args!("the directory ({count} lumps at byte {offset})");
+            return Err(malformed!("{what} is not inside the file of {file_len} bytes"));
+        };
+        Ok(Self { kind, count, offset })
     }
 
     fn directory(&self) -> Range<usize> {
@@ -160,42 +166,39 @@ impl Header {
     }
 }
 
-/// The little-endian i32 at `at`, which the caller knows to be inside.
-fn i32_at(bytes: &[u8], at: usize) -> i32 {
-    i32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]])
-}
-
-fn parse_entry(index: usize, entry: &[u8], file_len: usize, directory: &Range<usize>) -> Result<Lump, WadError> {
-    let mut name = [0; 8];
-    name.copy_from_slice(&entry[8..ENTRY_LEN]);
-    let name = LumpName::from_raw(name);
-    let lump = LumpId { index, name };
+fn parse_entry(index: usize, entry: &[u8], file_len: usize, directory: &Range<usize>) -> Result<Lump, Malformed> {
+    let name = LumpName::from_raw(bytes_at(entry, 8));
     let (offset, size) = (i32_at(entry, 0), i32_at(entry, 4));
     if size == 0 {
         return Ok(Lump { name, range: (0, 0) });
     }
-    let error = WadError::LumpRange { lump, offset, size, file_len: file_len as u64 };
-    let (Ok(start), Ok(size)) = (u32::try_from(offset), u32::try_from(size)) else { return Err(error) };
-    // Two numbers below 2^31: the sum fits.
-    let range = (start, start + size);
-    if range.1 as usize > file_len {
-        return Err(error);
+    // The sum of two numbers below 2^31 fits.
+    let range = u32::try_from(offset).ok().zip(u32::try_from(size).ok()).map(|(start, size)| (start, start + size));
+    let Some(range) = range.filter(|&(_, end)| end as usize <= file_len) else {
+        let what = malformed!("{size} bytes at byte {offset} are not inside the file of {file_len} bytes");
+        return Err(what.within(label(index, name)));
+    };
+    let lump = Lump { name, range };
+    if lump.range().start < HEADER_LEN {
+        return Err(malformed!("{} overlaps the header", label(index, name)));
     }
-    if (start as usize) < HEADER_LEN {
-        return Err(WadError::OverlapsHeader { lump });
+    if lump.range().start < directory.end && directory.start < lump.range().end {
+        return Err(malformed!("{} overlaps the directory", label(index, name)));
     }
-    if (start as usize) < directory.end && directory.start < range.1 as usize {
-        return Err(WadError::OverlapsDirectory { lump });
-    }
-    Ok(Lump { name, range })
+    Ok(lump)
+}
+
+/// A lump as errors name it.
+fn label(index: usize, name: LumpName) -> String {
+    format!("lump {index} ({name})")
 }
 
 /// Refuses lumps that share some bytes but not all.
-fn check_overlaps(lumps: &[Lump]) -> Result<(), WadError> {
+fn check_overlaps(lumps: &[Lump]) -> Result<(), Malformed> {
     let mut by_place: Vec<usize> = (0..lumps.len()).filter(|&k| lumps[k].size() > 0).collect();
     by_place.sort_by_key(|&k| lumps[k].range);
-    let id = |k: usize| LumpId { index: k, name: lumps[k].name };
-    let overlap = |a: usize, b: usize| WadError::Overlap { first: id(a.min(b)), second: id(a.max(b)) };
+    let label = |k: usize| label(k, lumps[k].name);
+    let overlap = |a: usize, b: usize| malformed!("{} and {} overlap", label(a.min(b)), label(a.max(b)));
     let mut before: Option<usize> = None;
     for group in by_place.chunk_by(|&a, &b| lumps[a].range.0 == lumps[b].range.0) {
         let (shortest, longest) = (group[0], group[group.len() - 1]);
@@ -227,6 +230,3 @@ impl LumpName {
         Ok(Self::from_raw(raw))
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -43,26 +43,3 @@ impl fmt::Debug for LumpName {
         write!(f, "LumpName(\"{}\")", self.0.escape_ascii())
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_end_at_the_first_zero() {
-        let junk = LumpName::from_raw(*b"MAP01\0XY");
-        assert!(junk.is("MAP01") && junk.is("map01") && !junk.is("MAP0") && !junk.is("MAP01\0"));
-        assert_eq!((junk.to_string(), junk.raw()), ("MAP01".to_owned(), *b"MAP01\0XY"));
-        assert_ne!(junk, LumpName::new("MAP01").unwrap());
-        let full = LumpName::new("LINEDEFS").unwrap();
-        assert!(full.is("LINEDEFS") && !full.is("LINEDEF"));
-    }
-
-    #[test]
-    fn odd_names_are_refused_or_shown_escaped() {
-        for bad in ["", "NINECHARS", "ä", "A\0B"] {
-            assert!(LumpName::new(bad).is_err(), "{bad:?}");
-        }
-        assert_eq!(LumpName::from_raw([7, 0xFF, b'A', 0, 0, 0, 0, 0]).to_string(), r"\x07\xffA");
-    }
-}

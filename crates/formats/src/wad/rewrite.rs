@@ -1,7 +1,7 @@
 //! Writing a WAD again with some lumps changed.
 
 use super::builder::Entry;
-use super::{LumpId, LumpName, Wad, WadBuilder, WadError};
+use super::{LumpName, Wad, WadBuilder, WadError};
 use std::collections::BTreeMap;
 
 /// A change to one lump.
@@ -107,13 +107,5 @@ impl Wad {
             }
         }
         out.finish()
-    }
-
-    /// A lump as errors name it.
-    ///
-    /// # Panics
-    /// If there is no lump of that index.
-    pub fn lump_id(&self, lump: usize) -> LumpId {
-        LumpId { index: lump, name: self.lumps()[lump].name }
     }
 }

@@ -7,7 +7,7 @@ use sightlines_formats::input::Neighbours;
 use sightlines_formats::scene::{
     Role, SceneReadOptions, parse_glb, parse_gltf_with, parse_obj, parse_obj_with, write_glb,
 };
-use sightlines_formats::{SceneFile, SceneReadError};
+use sightlines_formats::{Malformed, SceneFile};
 use sightlines_geometry::Aabb;
 use std::io;
 use std::path::Path;
@@ -331,7 +331,7 @@ impl Neighbours for Files<'_> {
 
 const FACES: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
 
-fn obj(text: &str, files: &[(&str, &str)], options: &SceneReadOptions) -> Result<SceneFile, SceneReadError> {
+fn obj(text: &str, files: &[(&str, &str)], options: &SceneReadOptions) -> Result<SceneFile, Malformed> {
     parse_obj_with(format!("{FACES}{text}").as_bytes(), Some(&Files(files)), options)
 }
 

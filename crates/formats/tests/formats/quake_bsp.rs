@@ -2,7 +2,7 @@
 
 use crate::common::quake::{SmallBsp, check_bsp, difference_besides_visibility, small_bsps};
 use proptest::prelude::*;
-use sightlines_formats::quake::bsp::{AmbientTexture, AmbientTextures, BspError, BspLumpId, LeafRow};
+use sightlines_formats::quake::bsp::{AmbientKind, AmbientTexture, AmbientTextures, LeafRow};
 use sightlines_formats::quake::visibility::{
     self, VisibilityLump, ambient, check_match, check_portals, lump_with_new_hearing, lump_with_sounds, read_hearing,
     read_visibility,
@@ -81,13 +81,15 @@ fn sounds_are_looked_up() {
         changed[4 + 8 * lump..][..4].copy_from_slice(&at.to_le_bytes());
         changed[8 + 8 * lump..][..4].copy_from_slice(&(bytes.len() as u32).to_le_bytes());
         changed.extend(bytes);
-        Bsp::parse(changed).unwrap().leaf_sounds()
+        Bsp::parse(changed).unwrap().leaf_sounds().map_err(|error| error.to_string())
     };
+    let no_texture = Err("leaf 1: face 0 has a texture that is not in the file".to_owned());
     assert_eq!(with(2, &[]), Ok(vec![0; 4]));
-    assert_eq!(with(2, &[1, 0, 0, 0, 9, 0, 0, 0]), Err(BspError::Texture { leaf: 1, face: 0 }));
-    assert_eq!(with(7, &[]), Err(BspError::Face { leaf: 1, face: 0, n_faces: 0 }));
-    assert_eq!(with(6, &[]), Err(BspError::Texture { leaf: 1, face: 0 }));
-    assert_eq!(with(11, &[0, 0, 1, 0]), Err(BspError::LeafFaces { leaf: 2, first: 1, count: 2, n_listed: 2 }));
+    assert_eq!(with(2, &[1, 0, 0, 0, 9, 0, 0, 0]), no_texture.clone());
+    assert_eq!(with(7, &[]), Err("leaf 1: there is no face 0 among 0".to_owned()));
+    assert_eq!(with(6, &[]), no_texture);
+    let beyond = "leaf 2: faces 1 to 1 + 2 of the list are not among its 2";
+    assert_eq!(with(11, &[0, 0, 1, 0]), Err(beyond.to_owned()));
 }
 
 #[test]
@@ -292,14 +294,14 @@ fn lumps_that_share_bytes_are_not_torn() {
     let mut bytes = file.clone();
     let start = bsp.lumps()[10].start as u32 + 28;
     bytes[4..8].copy_from_slice(&start.to_le_bytes());
-    let id = |index, name| BspLumpId { index, name };
-    let shared = BspError::Shared { lump: id(10, "leafs"), other: id(0, "entities") };
+    let shared = "lump 10 (leafs) has to change, but lump 0 (entities) lies over it";
     let under = Bsp::parse(bytes).unwrap();
-    assert_eq!(under.with_visibility(&lump), Err(shared.clone()));
-    assert_eq!(under.check_leafs(), Err(shared), "known before there is a lump");
+    assert_eq!(under.with_visibility(&lump).unwrap_err().to_string(), shared);
+    assert_eq!(under.check_leafs().unwrap_err().to_string(), shared, "known before there is a lump");
     assert_eq!(bsp.check_leafs(), Ok(()));
     let few = VisibilityLump { leaf_rows: vec![0; 3], ..lump };
-    assert_eq!(bsp.with_visibility(&few), Err(BspError::RowCount { found: 3, n_leafs: 4 }));
+    let few = bsp.with_visibility(&few).unwrap_err().to_string();
+    assert_eq!(few, "the rows are for 3 leafs, the map has 4 that can be seen");
 }
 
 #[test]
@@ -488,5 +490,28 @@ proptest! {
         prop_assert_eq!(read_visibility(&after, &leafs), Ok(Some(seen)));
         // Leafs do not change at all.
         prop_assert_eq!(after.lump_bytes(8), bsp.lump_bytes(8));
+    }
+}
+
+#[test]
+fn textures_sound_by_their_names() {
+    let kind = |name: &str| AmbientTexture::of_name(name.as_bytes()).map(AmbientTexture::sound);
+    for name in ["*water1", "*WATER", "*04water2", "*slime0", "*Slime"] {
+        assert_eq!(kind(name), Some(AmbientKind::Water), "{name}");
+    }
+    assert_eq!(AmbientTexture::of_name(b"*slime0"), Some(AmbientTexture::Slime));
+    assert_eq!((kind("sky4"), kind("SKY")), (Some(AmbientKind::Sky), Some(AmbientKind::Sky)));
+    assert_eq!((kind("*lava"), kind("*lava1")), (Some(AmbientKind::Lava), Some(AmbientKind::Lava)));
+    for name in ["", "sk", "water", "*teleport", "*04mwat1", "brick\0*water", "*wate\0"] {
+        assert_eq!(kind(name), None, "{name:?}");
+    }
+}
+
+#[test]
+fn textures_are_turned_off_one_by_one() {
+    let mut loud = AmbientTextures::ALL;
+    for (k, texture) in AmbientTexture::ALL.into_iter().enumerate() {
+        loud = loud.without(texture).without(texture);
+        assert_eq!(AmbientTexture::ALL.map(|t| loud.has(t)), std::array::from_fn(|other| other > k));
     }
 }

@@ -1,9 +1,12 @@
 //! Portal files: what is read, what is refused and where, and that hostile ones are refused at once.
 
+use crate::common::line_of;
 use crate::common::quake::{SMALL_PRTS, check_prt};
 use proptest::prelude::*;
-use sightlines_formats::quake::prt::{LeafList, Prt, PrtDialect, PrtErrorKind, SolidFace, parse_prt, write_prt};
-use sightlines_formats::quake::{LeafError, MAX_CLUSTERS, read_prt};
+use sightlines_cells::CellId;
+use sightlines_formats::Malformed;
+use sightlines_formats::quake::prt::{LeafList, Prt, PrtDialect, SolidFace, parse_prt, write_prt};
+use sightlines_formats::quake::{LeafClusters, MAX_CLUSTERS, graph_of_prt, read_prt};
 use sightlines_testkit::mutate::{SplitMix, flipped_bits, mutate};
 use std::time::{Duration, Instant};
 
@@ -288,7 +291,9 @@ fn hostile_portals_that_are_not_flat() {
         Prt::new(2).unwrap().push_portal([0, 1], &points)
     };
     assert_eq!(far(1024.0), Ok(()));
-    assert!(matches!(far(2f64.powi(30)), Err(PrtErrorKind::NotFlat { portal: 0, by }) if by > 1e6));
+    let error = far(2f64.powi(30)).unwrap_err().to_string();
+    let by = error.strip_prefix("portal 0 is not flat: a point is ").and_then(|rest| rest.split(' ').next());
+    assert!(by.is_some_and(|by| by.parse::<f64>().unwrap() > 1e6), "{error}");
 }
 
 #[test]
@@ -297,7 +302,7 @@ fn portals_are_built_with_the_same_checks() {
     let mut prt = Prt::new(3).unwrap();
     prt.push_portal([2, 0], &square).unwrap();
     let before = prt.clone();
-    let text = |r: Result<(), PrtErrorKind>| r.unwrap_err().to_string();
+    let text = |r: Result<(), Malformed>| r.unwrap_err().to_string();
     assert_eq!(text(prt.push_portal([0, 1], &square[..2])), "the number of points of portal 1: 2 is not from 3 to 64");
     assert_eq!(text(prt.push_portal([0, 3], &square)), "a cluster of portal 1: 3 is not from 0 to 2");
     assert_eq!(text(prt.push_portal([1, 1], &square)), "portal 1 joins cluster 1 with itself");
@@ -305,8 +310,8 @@ fn portals_are_built_with_the_same_checks() {
     assert_eq!(text(prt.push_portal([0, 1], &nan)), "portal 1, point 2: coordinate NaN is not a finite number");
     assert_eq!(prt, before);
     assert!(Prt::new(0).is_err() && Prt::new(MAX_CLUSTERS + 1).is_err() && Prt::new(MAX_CLUSTERS).is_ok());
-    let error = LeafError::Cluster { leaf: 1, cluster: 3, n_clusters: 3 };
-    assert_eq!(prt.with_leafs(LeafList::PerLeaf, vec![0, 3]), Err(PrtErrorKind::Leafs(error)));
+    let error = prt.with_leafs(LeafList::PerLeaf, vec![0, 3]).unwrap_err().to_string();
+    assert_eq!(error, "leaf 1 is in cluster 3, but there are 3");
 }
 
 #[test]
@@ -366,14 +371,15 @@ fn portals() -> impl Strategy<Value = Prt> {
         for (a, step, points) in portals {
             // Points that go round nothing or are on no plane are refused; of them a triangle is left, or nothing.
             let pair = [a, (a + step) % 20];
-            let refused = |added: &Result<(), PrtErrorKind>| match added {
+            let is_not_flat = |error: &Malformed| error.what.contains(" is not flat: ");
+            let refused = |added: &Result<(), Malformed>| match added {
                 Ok(()) => false,
-                Err(PrtErrorKind::NotConvex { .. } | PrtErrorKind::NotFlat { .. }) => true,
+                Err(error) if is_not_flat(error) || error.what.contains(" is not a convex polygon: ") => true,
                 Err(error) => panic!("{error}"),
             };
             if refused(&prt.push_portal(pair, &points)) {
                 let again = prt.push_portal(pair, &points[..3]);
-                assert!(!matches!(again, Err(PrtErrorKind::NotFlat { .. })), "a triangle is flat: {again:?}");
+                assert!(!again.as_ref().is_err_and(is_not_flat), "a triangle is flat: {again:?}");
             }
         }
         match leafs {
@@ -435,6 +441,99 @@ proptest! {
         let last = text.trim_end().rfind(char::is_whitespace).unwrap();
         let cut = at.index(last);
         let error = parse_prt(&text.as_bytes()[..cut]).unwrap_err();
-        prop_assert!(error.line <= text[..cut].matches('\n').count() + 1, "{}", error);
+        prop_assert!(line_of(&error) <= text[..cut].matches('\n').count() + 1, "{}", error);
     }
+}
+
+#[test]
+fn a_portal_leads_from_the_first_cluster_into_the_second() {
+    let text = "PRT1\n3\n2\n4 1 0 (0 0 0 ) (0 1 0 ) (0 1 1 ) (0 0 1 )\n3 1 2 (-9 0 0 ) (-9 1 0 ) (-9 2 0 )\n";
+    let graph = graph_of_prt(&parse_prt(text.as_bytes()).unwrap());
+    assert_eq!((graph.n_cells(), graph.portals().len()), (3, 1), "a portal without area is none");
+    assert_eq!(graph.portals()[0].cells, [CellId(1), CellId(0)]);
+    assert_eq!(graph.portals()[0].shape.normal(), [2.0, 0.0, 0.0]);
+}
+
+#[test]
+fn repeats_are_found_whatever_their_order() {
+    let square = [[8.0, 0.0, 0.0], [8.0, 4.0, 0.0], [8.0, 4.0, 4.0], [8.0, 0.0, 4.0]];
+    let turned = [square[2], square[3], square[0], square[1]];
+    let mut reversed = turned;
+    reversed.reverse();
+    let mut moved = square;
+    moved[0][1] = -1.0;
+    let mut prt = Prt::new(3).unwrap();
+    let all: [([u32; 2], &[[f64; 3]]); 7] = [
+        ([0, 1], &square),
+        ([0, 1], &turned),
+        ([1, 0], &reversed),
+        ([0, 1], &moved),
+        ([0, 2], &square),
+        ([0, 1], &square),
+        ([0, 1], &square[..3]),
+    ];
+    all.iter().for_each(|(clusters, points)| prt.push_portal(*clusters, points).unwrap());
+    assert_eq!(prt.repeats(), [false, true, true, false, false, true, false]);
+    assert_eq!(prt.n_repeats(), 3);
+    assert_eq!(graph_of_prt(&prt).portals().len(), 4);
+}
+
+#[test]
+fn leafs_are_grouped() {
+    let leafs = LeafClusters::new(4, vec![2, 0, 2, 3, 0]).unwrap();
+    assert_eq!((leafs.n_leafs(), leafs.n_clusters()), (5, 4));
+    let groups: Vec<&[u32]> = (0..4).map(|c| leafs.leafs_of(c)).collect();
+    assert_eq!(groups, [&[1, 4][..], &[], &[0, 2], &[3]]);
+    assert_eq!(leafs.cluster_of_leaf(), [2, 0, 2, 3, 0]);
+    assert_eq!(LeafClusters::identity(3), LeafClusters::new(3, vec![0, 1, 2]));
+}
+
+#[test]
+fn impossible_groups_are_refused() {
+    let text = |r: Result<LeafClusters, Malformed>| r.unwrap_err().to_string();
+    assert_eq!(text(LeafClusters::new(2, vec![0, 2])), "leaf 1 is in cluster 2, but there are 2");
+    assert_eq!(text(LeafClusters::identity(0)), "0 clusters are not from 1 to 65536");
+    assert_eq!(text(LeafClusters::identity(u32::MAX)), "4294967295 clusters are not from 1 to 65536");
+}
+
+/// A row of cubes of 64 units, with a portal between each two; those in the list go round the wrong way.
+fn row(n: u32, reversed: &[u32]) -> Prt {
+    let mut prt = Prt::new(n).unwrap();
+    for k in 0..n - 1 {
+        let x = 64.0 * f64::from(k + 1);
+        // Counter-clockwise as seen from inside of the second cluster, at larger x.
+        let mut points = [[x, 0.0, 0.0], [x, 64.0, 0.0], [x, 64.0, 64.0], [x, 0.0, 64.0]];
+        if reversed.contains(&k) {
+            points.reverse();
+        }
+        prt.push_portal([k, k + 1], &points).unwrap();
+    }
+    prt
+}
+
+#[test]
+fn portals_that_go_round_the_wrong_way_are_found() {
+    assert_eq!(row(6, &[]).inside_out(), None);
+    // At the ends of the row only one cluster tells.
+    for (k, found) in [(0, None), (1, Some(1)), (2, Some(2)), (3, Some(3)), (4, None)] {
+        assert_eq!(row(6, &[k]).inside_out(), found, "portal {k}");
+    }
+    assert_eq!(row(6, &[0, 1, 2, 3, 4]).inside_out(), Some(0));
+    assert_eq!(row(3, &[0, 1]).inside_out(), Some(0));
+    assert_eq!(row(2, &[0]).inside_out(), None, "nothing tells");
+}
+
+/// A dead end, and a cluster that winds from it round a bend and back behind it.
+#[test]
+fn a_cluster_that_winds_back_is_no_mistake() {
+    let mut prt = Prt::new(4).unwrap();
+    let square = |x: f64, y: f64| [[x, y, 0.0], [x, y + 64.0, 0.0], [x, y + 64.0, 64.0], [x, y, 64.0]];
+    prt.push_portal([0, 1], &square(0.0, 0.0)).unwrap();
+    let mut back = square(-64.0, 128.0);
+    back.reverse();
+    prt.push_portal([1, 2], &back).unwrap();
+    let mut further = square(-128.0, 128.0);
+    further.reverse();
+    prt.push_portal([2, 3], &further).unwrap();
+    assert_eq!(prt.inside_out(), None);
 }

@@ -4,7 +4,7 @@ use crate::common::glb::Doc;
 use crate::materials::{classified, doc, options, read, read_with};
 use serde_json::{Value, json};
 use sightlines_cells::MovingObject;
-use sightlines_formats::scene::{Role, SceneReadOptions, parse_obj};
+use sightlines_formats::scene::{EmptyPattern, NamePattern, Role, SceneReadOptions, parse_obj};
 use sightlines_geometry::Aabb;
 
 /// A door that stands still in its file is seen wherever it opens to: boxes of turned and slid doors lie in its own.
@@ -193,4 +193,25 @@ fn doors_of_a_scene_are_those_with_that_role() {
     doc.json["meshes"][0]["primitives"][0]["extensions"] =
         json!({"KHR_materials_variants": {"mappings": [{"material": 1, "variants": [0]}]}});
     assert!(read(&doc).scene.doors().is_empty());
+}
+
+#[test]
+fn patterns_match_whole_names() {
+    let matches = |pattern: &str, name: &str| pattern.parse::<NamePattern>().unwrap().matches(name);
+    for (pattern, name) in [
+        ("glass", "Glass"),
+        ("*glass*", "old GLASS 2"),
+        ("*", ""),
+        ("a?c", "aéc"),
+        ("*.0?1", "Wall.001"),
+        ("a*b*c", "a-b-b-c"),
+        ("**", "x"),
+    ] {
+        assert!(matches(pattern, name), "{pattern} {name}");
+    }
+    for (pattern, name) in [("glass", "glass2"), ("?", ""), ("a*b", "a-b-c"), ("*glass", "glass pane"), ("a?c", "ac")] {
+        assert!(!matches(pattern, name), "{pattern} {name}");
+    }
+    assert_eq!("".parse::<NamePattern>(), Err(EmptyPattern));
+    assert_eq!("*gl?ss".parse::<NamePattern>().unwrap().to_string(), "*gl?ss");
 }

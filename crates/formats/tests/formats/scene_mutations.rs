@@ -3,12 +3,13 @@
 
 use crate::common::glb::{SMALL_OBJ, rich_doc, small_doc};
 use crate::common::setting;
+use sightlines_formats::Malformed;
 use sightlines_formats::SceneFile;
-use sightlines_formats::scene::{SceneReadError, parse_glb, parse_glb_with_source, parse_obj, write_glb};
+use sightlines_formats::scene::{parse_glb, parse_glb_with_source, parse_obj, write_glb};
 use sightlines_testkit::mutate::{SplitMix, flipped_bits, mutate};
 
 /// Uses everything in a scene; returns its number of triangles.
-fn check(read: Result<SceneFile, SceneReadError>) -> Option<usize> {
+fn check(read: Result<SceneFile, Malformed>) -> Option<usize> {
     let file = match read {
         Ok(file) => file,
         Err(error) => {

@@ -2,7 +2,7 @@
 
 use sightlines_cells::{MovingObject, Scene, SceneObject};
 use sightlines_formats::scene::{
-    ObjLimit, Rounding, SceneWriteError, Simplified, parse_glb, parse_obj, write_glb, write_obj, write_rounded_glb,
+    Rounding, SceneWriteError, Simplified, parse_glb, parse_obj, write_glb, write_obj, write_rounded_glb,
     write_simplified_glb, write_simplified_obj,
 };
 use sightlines_geometry::{Aabb, Random};
@@ -51,24 +51,27 @@ fn an_obj_is_read_again_bit_by_bit() {
 
 #[test]
 fn what_an_obj_cannot_hold_is_refused() {
-    let refused = |scene: &Scene, wanted: ObjLimit| {
+    let refused = |scene: &Scene, wanted: &'static str| {
         assert_eq!(write_obj(scene), Err(SceneWriteError::Obj { object: 1, what: wanted }));
     };
     let named = |name: &str| scene(vec![decimals("a", 0.0), decimals(name, 0.0)]);
     for name in ["", " ", " a", "a ", "a\r", "a\nf 1 2 3", "a\\", "a\tb\t"] {
-        refused(&named(name), ObjLimit::Name);
+        refused(&named(name), "its name");
     }
     for name in ["b", "a\tb", "\\ a", "#", "#sightlines see-through", "o", "\u{feff}a"] {
         let scene = named(name);
         assert_eq!(parse_obj(&write_obj(&scene).unwrap()).unwrap().scene, scene, "{name:?}");
     }
-    refused(&named("b-mirror"), ObjLimit::Mirror);
-    refused(&named("b").with_mirrors(vec![1]).unwrap(), ObjLimit::Mirror);
-    refused(&named("b").with_single_sided(vec![1]).unwrap(), ObjLimit::SingleSided);
+    refused(&named("b-mirror"), "a mirror whose name does not end in -mirror, nor such a name of anything else");
+    refused(
+        &named("b").with_mirrors(vec![1]).unwrap(),
+        "a mirror whose name does not end in -mirror, nor such a name of anything else",
+    );
+    refused(&named("b").with_single_sided(vec![1]).unwrap(), "what has one side");
     let bounds = Aabb { min: [-1e22; 3], max: [1e22; 3] };
-    refused(&named("b").with_moving(vec![MovingObject { object: 1, within: Some(bounds) }]).unwrap(), ObjLimit::Moves);
+    refused(&named("b").with_moving(vec![MovingObject { object: 1, within: Some(bounds) }]).unwrap(), "what moves");
     let empty = SceneObject { triangles: vec![], ..decimals("b", 0.0) };
-    refused(&scene(vec![decimals("a", 0.0), empty]), ObjLimit::Empty);
+    refused(&scene(vec![decimals("a", 0.0), empty]), "what has no triangles");
     let error = write_obj(&named("")).unwrap_err().to_string();
     assert_eq!(error, "object 1: an OBJ cannot hold its name");
 }

@@ -66,7 +66,12 @@ fn map(wad: &Wad, lumps: &MapLumps) -> MapInfo {
         error: None,
     };
     match DoomMap::parse(wad, lumps) {
-        Err(error) => info.error = Some(error.kind.to_string()),
+        Err(error) => {
+            // Without the name of the map, which stands beside it.
+            let text = error.to_string();
+            let name = format!("map {}: ", lumps.name());
+            info.error = Some(text.strip_prefix(&name).unwrap_or(&text).to_owned());
+        }
         Ok(map) => {
             info.n_sectors = Some(map.n_sectors());
             info.n_lines = Some(map.lines().len());

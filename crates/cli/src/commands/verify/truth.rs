@@ -1,11 +1,10 @@
 //! The scene that a table is checked against.
 
-use crate::error::{Result, anyhow};
+use crate::error::{ErrorAbout, Result};
 use crate::input::{self, refuse};
 use crate::map_portals::{do_not_fit, portals_for};
-use sightlines::bake::{Bakeable, Gap, PrtBakeError};
+use sightlines::bake::{Bakeable, Gap};
 use sightlines::cells::{CellGraph, Convex, Plan, Scene};
-use sightlines::formats::quake::bsp::BspError;
 use sightlines::formats::quake::graph_of_prt;
 use sightlines::formats::quake::visibility::check_portals;
 use sightlines::formats::scene::SceneReadOptions;
@@ -46,9 +45,7 @@ impl Real {
             Bakeable::Map(bsp, portals) => {
                 let file = file.unwrap_or_default();
                 check_portals(&bsp, &portals).map_err(|source| do_not_fit(&file, path, &source))?;
-                let broken =
-                    |error: BspError| anyhow!("{}: {source}", path.display(), source = PrtBakeError::Bsp(error));
-                Self::Map(graph_of_prt(&portals), WorldTree::of_map(&bsp, &portals).map_err(broken)?)
+                Self::Map(graph_of_prt(&portals), WorldTree::of_map(&bsp, &portals).in_file(path)?)
             }
         })
     }

@@ -4,22 +4,20 @@
 //! Blocks of one kind are numbered in their order. Letters of names count the same in both cases; of two assignments
 //! to one name in a block the later counts. Blocks and names that are not needed are skipped, whatever the namespace.
 
-mod error;
 mod lexer;
 mod values;
 
-pub use error::{TextError, TextErrorKind};
-
 use super::ML_TWOSIDED;
 use super::content::{Content, LineDef, Thing};
+use crate::error::{Malformed, malformed};
 use lexer::{Lexer, Piece, Place};
 use values::Value;
 
 /// Reads a text. Memory within a small multiple of its length; each byte is looked at once or twice.
 ///
 /// # Errors
-/// [`TextError`] with the line and column of the first thing that is wrong.
-pub(super) fn parse(text: &[u8]) -> Result<Content, TextError> {
+/// [`Malformed`] with the line and column of the first thing that is wrong.
+pub(super) fn parse(text: &[u8]) -> Result<Content, Malformed> {
     let mut reader = Reader { lexer: Lexer::new(text), content: Content::default(), lines: vec![], sides: vec![] };
     while reader.global()? {}
     reader.check()?;
@@ -46,7 +44,7 @@ struct Reader<'t> {
 
 impl<'t> Reader<'t> {
     /// Reads one assignment or block of the outermost level; `false` at the end of the text.
-    fn global(&mut self) -> Result<bool, TextError> {
+    fn global(&mut self) -> Result<bool, Malformed> {
         let (name, place) = match self.lexer.next()? {
             (Piece::End, _) => return Ok(false),
             (Piece::Mark(b';'), _) => return Ok(true),
@@ -61,7 +59,7 @@ impl<'t> Reader<'t> {
     }
 
     /// Reads a block behind its brace.
-    fn block_of(&mut self, name: &[u8], place: Place) -> Result<(), TextError> {
+    fn block_of(&mut self, name: &[u8], place: Place) -> Result<(), Malformed> {
         let content = &self.content;
         match name.to_ascii_lowercase().as_slice() {
             b"vertex" => {
@@ -105,7 +103,7 @@ impl<'t> Reader<'t> {
         &mut self,
         (name, index, place): (&'static str, usize, Place),
         keys: [&'static str; N],
-    ) -> Result<Block<'t, N>, TextError> {
+    ) -> Result<Block<'t, N>, Malformed> {
         let mut values = [None; N];
         loop {
             let key = match self.lexer.next()? {
@@ -125,7 +123,7 @@ impl<'t> Reader<'t> {
     }
 
     /// Reads a value and the semicolon behind it.
-    fn value(&mut self) -> Result<Value<'t>, TextError> {
+    fn value(&mut self) -> Result<Value<'t>, Malformed> {
         let (piece, place) = self.lexer.next()?;
         if !matches!(piece, Piece::Word(_) | Piece::Quoted) {
             return Err(expected("a value", piece, place));
@@ -137,30 +135,19 @@ impl<'t> Reader<'t> {
     }
 
     /// Refuses numbers of blocks that are not there.
-    fn check(&self) -> Result<(), TextError> {
-        let content = &self.content;
-        let refuse = |place: &Place, block, index, target, number, n| {
-            place.error(TextErrorKind::Reference { block, index, target, number, n })
-        };
-        let (n_vertices, n_sides) = (content.vertices.len(), content.side_sectors.len());
-        for (index, (line, place)) in content.lines.iter().zip(&self.lines).enumerate() {
-            if let Some(v) = [line.v1, line.v2].into_iter().find(|&v| v as usize >= n_vertices) {
-                return Err(refuse(place, "linedef", index, "vertex", v, n_vertices));
-            }
-            if let Some(s) = [line.right, line.left].into_iter().flatten().find(|&s| s as usize >= n_sides) {
-                return Err(refuse(place, "linedef", index, "sidedef", s, n_sides));
-            }
+    fn check(&self) -> Result<(), Malformed> {
+        if let Some((index, wrong)) = self.content.wrong_line("vertex", "sidedef") {
+            return Err(self.lines[index].error(wrong.within(format_args!("linedef {index}"))));
         }
-        let beyond = |&(_, &s): &(usize, &u32)| s as usize >= content.n_sectors;
-        match content.side_sectors.iter().enumerate().find(beyond) {
-            Some((k, &s)) => Err(refuse(&self.sides[k], "sidedef", k, "sector", s, content.n_sectors)),
+        match self.content.wrong_side() {
+            Some((index, wrong)) => Err(self.sides[index].error(wrong.within(format_args!("sidedef {index}")))),
             None => Ok(()),
         }
     }
 }
 
 /// A name: letters, digits and underscores, no digit first.
-fn identifier<'t>(piece: Piece<'t>, place: Place, what: &'static str) -> Result<&'t [u8], TextError> {
+fn identifier<'t>(piece: Piece<'t>, place: Place, what: &str) -> Result<&'t [u8], Malformed> {
     let plain = |&b: &u8| b.is_ascii_alphanumeric() || b == b'_';
     match piece {
         Piece::Word(word) if !word[0].is_ascii_digit() && word.iter().all(plain) => Ok(word),
@@ -168,6 +155,6 @@ fn identifier<'t>(piece: Piece<'t>, place: Place, what: &'static str) -> Result<
     }
 }
 
-fn expected(what: &'static str, found: Piece<'_>, place: Place) -> TextError {
-    place.error(TextErrorKind::Expected { expected: what, found: found.shown() })
+fn expected(what: &str, found: Piece<'_>, place: Place) -> Malformed {
+    place.error(malformed!("{what} is expected, not {}", found.shown()))
 }

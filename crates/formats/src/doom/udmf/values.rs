@@ -1,8 +1,8 @@
 //! Values of assignments: coordinates, numbers of blocks, flags.
 
 use super::Block;
-use super::error::{TextError, TextErrorKind};
 use super::lexer::{Piece, Place};
+use crate::error::{Malformed, malformed};
 use sightlines_geometry::check_coordinate;
 
 /// What stands behind `=`.
@@ -13,8 +13,8 @@ pub(super) struct Value<'t> {
 }
 
 impl Value<'_> {
-    fn refuse(&self, key: &'static str, wanted: &'static str) -> TextError {
-        self.place.error(TextErrorKind::Value { key, wanted, found: self.piece.shown() })
+    fn refuse(&self, key: &str, wanted: &str) -> Malformed {
+        self.place.error(malformed!("{key} is {}, but it takes {wanted}", self.piece.shown()))
     }
 
     /// The double nearest to a number in decimal digits.
@@ -46,34 +46,34 @@ impl Value<'_> {
 }
 
 impl<const N: usize> Block<'_, N> {
-    fn require(&self, k: usize) -> Result<&Value<'_>, TextError> {
-        let missing = || TextErrorKind::Missing { block: self.name, index: self.index, key: self.keys[k] };
+    fn require(&self, k: usize) -> Result<&Value<'_>, Malformed> {
+        let missing = || malformed!("{} {} has no {}", self.name, self.index, self.keys[k]);
         self.values[k].as_ref().ok_or_else(|| self.place.error(missing()))
     }
 
     /// A coordinate for which predicates are exact.
-    pub(super) fn coordinate(&self, k: usize) -> Result<f64, TextError> {
+    pub(super) fn coordinate(&self, k: usize) -> Result<f64, Malformed> {
         let (key, value) = (self.keys[k], self.require(k)?);
         let number = value.number().ok_or_else(|| value.refuse(key, "a number"))?;
-        check_coordinate(number).map_err(|source| value.place.error(TextErrorKind::Coordinate { key, source }))
+        check_coordinate(number).map_err(|error| value.place.error(Malformed::from(error).within(key)))
     }
 
     /// A whole number of 32 bits.
-    pub(super) fn integer(&self, k: usize) -> Result<i32, TextError> {
+    pub(super) fn integer(&self, k: usize) -> Result<i32, Malformed> {
         let value = self.require(k)?;
         let number = value.integer().and_then(|n| i32::try_from(n).ok());
         number.ok_or_else(|| value.refuse(self.keys[k], "a whole number"))
     }
 
     /// The number of a block.
-    pub(super) fn index(&self, k: usize) -> Result<u32, TextError> {
+    pub(super) fn index(&self, k: usize) -> Result<u32, Malformed> {
         let value = self.require(k)?;
         let number = value.integer().and_then(|n| u32::try_from(n).ok());
         number.ok_or_else(|| value.refuse(self.keys[k], "the number of a block"))
     }
 
     /// The number of a block; `None` for -1 and where nothing is said.
-    pub(super) fn optional_index(&self, k: usize) -> Result<Option<u32>, TextError> {
+    pub(super) fn optional_index(&self, k: usize) -> Result<Option<u32>, Malformed> {
         match &self.values[k] {
             None => Ok(None),
             Some(value) if value.integer() == Some(-1) => Ok(None),
@@ -82,7 +82,7 @@ impl<const N: usize> Block<'_, N> {
     }
 
     /// A flag, which is off where nothing is said.
-    pub(super) fn flag(&self, k: usize) -> Result<bool, TextError> {
+    pub(super) fn flag(&self, k: usize) -> Result<bool, Malformed> {
         let Some(value) = &self.values[k] else { return Ok(false) };
         match value.piece {
             Piece::Word(word) if word.eq_ignore_ascii_case(b"true") => Ok(true),

@@ -1,31 +1,18 @@
 //! Which faces of a map's world hide what is behind them.
 
+use super::Bsp;
+use super::faces::{TEXTURES, texture_name};
 use super::layout::FaceForm;
-use super::{Bsp, BspError, i32_at, u16_at, u32_at};
+use crate::bytes::{i32_at, u16_at, u32_at};
+use crate::error::Malformed;
 use sightlines_geometry::Point3;
 
-/// What tells whether a face is opaque: the records of textures, and what they say.
-struct Textures {
-    lump: usize,
-    len: usize,
-    says: Says,
-}
-
-#[derive(Clone, Copy)]
-enum Says {
-    /// The index of a texture, whose name tells (Quake, Half-Life, Hexen II).
-    Name,
-    /// Flags (Quake II).
-    Flags,
-}
-
-/// Where both are in a record: behind 8 floats.
+/// Where a record of a texture has what tells whether faces are opaque, behind 8 floats: flags (Quake II), or the index of a texture, whose
+/// name tells (Quake, Half-Life, Hexen II).
 const SAID: usize = 32;
 /// How the names of textures of Quake and Half-Life begin that are seen through, or not drawn.
 const NOT_OPAQUE: [&str; 11] =
     ["{", "*", "!", "skip", "hint", "null", "clip", "nodraw", "trigger", "aaatrigger", "origin"];
-/// Bytes of a texture's name.
-const NAME_LEN: usize = 16;
 
 /// Flags of Quake II's surfaces that light passes, or that are not drawn: two kinds of translucence, undrawn, hint, skip, and
 /// the holes of textures that some engines know.
@@ -50,58 +37,52 @@ impl Bsp {
     /// leafs are opaque or not as a whole. O(file).
     ///
     /// # Errors
-    /// [`BspError`] for lumps that are not a whole number of records, and for a face, plane or texture record that is not there.
+    /// [`Malformed`] for lumps that are not a whole number of records, and for a face, plane or texture record that is not there.
     ///
     /// # Source
     /// As [`Bsp::parse`]; that engines draw textures whose names begin with `{` with holes, and those with `*` or `!` as liquids, is a convention of
     /// theirs.
-    pub fn face_covers(&self) -> Result<Option<Vec<FaceCover>>, BspError> {
+    pub fn face_covers(&self) -> Result<Option<Vec<FaceCover>>, Malformed> {
         let layout = self.format().layout();
         if matches!(layout.face_form, FaceForm::Vertices { .. }) {
             return Ok(None);
         }
-        let textures = match self.format().has_clusters() {
-            true => Textures { lump: 5, len: 76, says: Says::Flags },
-            false => Textures { lump: 6, len: 40, says: Says::Name },
-        };
+        let has_flags = self.format().has_clusters();
+        let (info_lump, info_len) = if has_flags { (5, 76) } else { (6, 40) };
         let (own, len) = (layout.faces.lump, layout.faces.len);
         let is_wide = len == 28;
         let faces = self.records(own, len)?;
-        let infos = self.records(textures.lump, textures.len)?;
+        let infos = self.records(info_lump, info_len)?;
         let planes = self.records(layout.planes.lump, layout.planes.len)?;
-        let (n_planes, n_infos) = (planes.len() / layout.planes.len, infos.len() / textures.len);
-        let cover = |k: usize| -> Result<FaceCover, BspError> {
+        let (n_planes, n_infos) = (planes.len() / layout.planes.len, infos.len() / info_len);
+        let cover = |k: usize| -> Result<FaceCover, Malformed> {
             let face = &faces[k * len..][..len];
             let (plane, side, info) = match is_wide {
                 true => (i64::from(i32_at(face, 0)), i32_at(face, 4), i64::from(i32_at(face, 16))),
                 false => (i64::from(u16_at(face, 0)), i32::from(u16_at(face, 2)), i64::from(u16_at(face, 10))),
             };
             let plane = self.named((own, k), plane, layout.planes.lump, n_planes)?;
-            let info = self.named((own, k), info, textures.lump, n_infos)?;
-            let record = &infos[info * textures.len..][..textures.len];
-            let is_opaque = match textures.says {
-                Says::Flags => u32_at(record, SAID) & SEE_THROUGH == 0,
-                Says::Name => self.is_opaque_texture(i32_at(record, SAID)),
+            let info = self.named((own, k), info, info_lump, n_infos)?;
+            let record = &infos[info * info_len..][..info_len];
+            let is_opaque = match has_flags {
+                true => u32_at(record, SAID) & SEE_THROUGH == 0,
+                false => self.is_opaque_texture(i32_at(record, SAID)),
             };
             let number = |k: usize| f64::from(f32::from_bits(u32_at(planes, layout.planes.len * plane + 4 * k)));
             let normal = [number(0), number(1), number(2)];
             Ok(FaceCover { normal, distance: number(3), side: u8::from(side != 0), is_opaque })
         };
-        let (model, at) = (self.world_model()?, layout.model_faces);
-        let run = [i32_at(model, at), i32_at(model, at + 4)].map(i64::from);
-        let world = self.run((layout.models.lump, 0), run, own, faces.len() / len)?;
+        let world = self.world_face_run(faces.len() / len)?;
         world.map(cover).collect::<Result<_, _>>().map(Some)
     }
 
     /// Whether a texture of Quake hides what is behind it, by its name.
     fn is_opaque_texture(&self, index: i32) -> bool {
-        let lump = self.lump_bytes(2);
+        let lump = self.lump_bytes(TEXTURES);
         let name = || {
             let n = usize::try_from(i32::from_le_bytes(*lump.first_chunk::<4>()?)).ok()?;
             let index = usize::try_from(index).ok().filter(|&index| index < n)?;
-            let place = lump[4..].chunks_exact(4).nth(index)?;
-            let start = usize::try_from(i32_at(place, 0)).ok()?;
-            lump.get(start..start.checked_add(NAME_LEN)?)
+            texture_name(lump, i32_at(lump[4..].chunks_exact(4).nth(index)?, 0))
         };
         let begins =
             |name: &[u8], with: &str| name.get(..with.len()).is_some_and(|n| n.eq_ignore_ascii_case(with.as_bytes()));

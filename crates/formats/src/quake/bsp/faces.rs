@@ -1,8 +1,11 @@
 //! What can be heard in a leaf: its faces of water, sky and lava.
 
-use super::{Bsp, BspError, i32_at, u16_at, u32_at};
+use super::Bsp;
+use crate::bytes::{i32_at, u16_at, u32_at};
+use crate::error::{Malformed, malformed};
 
-const TEXTURES: usize = 2;
+/// The lump of textures.
+pub(super) const TEXTURES: usize = 2;
 const TEXINFO: usize = 6;
 /// Bytes of a texinfo; the texture's index is behind 8 floats.
 const TEXINFO_LEN: usize = 40;
@@ -23,11 +26,6 @@ pub enum AmbientKind {
 
 impl AmbientKind {
     const ALL: [Self; 3] = [Self::Water, Self::Sky, Self::Lava];
-
-    /// The sound of a texture; see [`AmbientTexture::of_name`].
-    pub fn of_texture(name: &[u8]) -> Option<Self> {
-        AmbientTexture::of_name(name).map(AmbientTexture::sound)
-    }
 
     const fn bit(self) -> u8 {
         1 << self as u8
@@ -120,8 +118,8 @@ impl Bsp {
     /// A map whose lump of textures is empty makes no sounds.
     ///
     /// # Errors
-    /// [`BspError`] for a list of faces, a face or a texture of a visible leaf that is not there.
-    pub fn leaf_sounds(&self) -> Result<Vec<u8>, BspError> {
+    /// [`Malformed`] for a list of faces, a face or a texture of a visible leaf that is not there.
+    pub fn leaf_sounds(&self) -> Result<Vec<u8>, Malformed> {
         self.leaf_sounds_of(AmbientTextures::ALL)
     }
 
@@ -129,7 +127,7 @@ impl Bsp {
     ///
     /// # Errors
     /// As there.
-    pub fn leaf_sounds_of(&self, textures: AmbientTextures) -> Result<Vec<u8>, BspError> {
+    pub fn leaf_sounds_of(&self, textures: AmbientTextures) -> Result<Vec<u8>, Malformed> {
         if !self.format().has_sounds() {
             return Ok(vec![0; self.n_visible_leafs()]);
         }
@@ -142,13 +140,13 @@ impl Bsp {
         leafs
             .map(|(leaf, index)| {
                 let (first, count, n_listed) = (leaf.first_face, leaf.n_faces, marks.len());
-                let error = BspError::LeafFaces { leaf: index, first, count, n_listed };
                 let end = u64::from(first) + u64::from(count);
                 if count == 0 {
                     return Ok(0);
                 }
                 if end > n_listed as u64 {
-                    return Err(error);
+                    let what = format_args!("faces {first} to {first} + {count} of the list");
+                    return Err(malformed!("leaf {index}: {what} are not among its {n_listed}"));
                 }
                 let range = first as usize..end as usize;
                 if runs.has_errors(range.clone()) {
@@ -160,12 +158,13 @@ impl Bsp {
     }
 
     /// The first face of a leaf that cannot be used, where there is one.
-    fn first_error(&self, leaf: usize, marks: &[u32], marked: &[Face]) -> BspError {
+    fn first_error(&self, leaf: usize, marks: &[u32], marked: &[Face]) -> Malformed {
         let bad = marked.iter().position(|face| !matches!(face, Face::Sounds(_)));
         let k = bad.expect("the caller counted faces with errors");
+        let face = marks[k];
         match marked[k] {
-            Face::Missing => BspError::Face { leaf, face: marks[k], n_faces: self.n_faces() },
-            _ => BspError::Texture { leaf, face: marks[k] },
+            Face::Missing => malformed!("leaf {leaf}: there is no face {face} among {}", self.n_faces()),
+            _ => malformed!("leaf {leaf}: face {face} has a texture that is not in the file"),
         }
     }
 
@@ -210,14 +209,19 @@ impl Bsp {
             // A texture that was not found when the map was made.
             -1 => Face::Sounds(0),
             start => {
-                let start = usize::try_from(start).ok();
-                let name = start.and_then(|start| lump.get(start..start.checked_add(NAME_LEN)?));
                 let loud = |name| AmbientTexture::of_name(name).filter(|&texture| textures.has(texture));
-                name.map_or(Face::NoTexture, |name| Face::Sounds(loud(name).map_or(0, |texture| texture.sound().bit())))
+                texture_name(lump, start)
+                    .map_or(Face::NoTexture, |name| Face::Sounds(loud(name).map_or(0, |texture| texture.sound().bit())))
             }
         };
         Some(places.map(sound).collect())
     }
+}
+
+/// The name of a texture that begins at a place of its lump, if it is inside.
+pub(super) fn texture_name(lump: &[u8], start: i32) -> Option<&[u8]> {
+    let start = usize::try_from(start).ok()?;
+    lump.get(start..start.checked_add(NAME_LEN)?)
 }
 
 /// For each sound, and for errors, how many there are before each place of a list: leafs may share their
@@ -255,33 +259,5 @@ impl Runs {
     fn sounds(&self, range: std::ops::Range<usize>) -> u8 {
         let heard = AmbientKind::ALL.iter().enumerate().filter(|(k, _)| self.any(*k, range.clone()));
         heard.fold(0, |bits, (_, kind)| bits | kind.bit())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn textures_sound_by_their_names() {
-        let kind = |name: &str| AmbientKind::of_texture(name.as_bytes());
-        for name in ["*water1", "*WATER", "*04water2", "*slime0", "*Slime"] {
-            assert_eq!(kind(name), Some(AmbientKind::Water), "{name}");
-        }
-        assert_eq!(AmbientTexture::of_name(b"*slime0"), Some(AmbientTexture::Slime));
-        assert_eq!((kind("sky4"), kind("SKY")), (Some(AmbientKind::Sky), Some(AmbientKind::Sky)));
-        assert_eq!((kind("*lava"), kind("*lava1")), (Some(AmbientKind::Lava), Some(AmbientKind::Lava)));
-        for name in ["", "sk", "water", "*teleport", "*04mwat1", "brick\0*water", "*wate\0"] {
-            assert_eq!(kind(name), None, "{name:?}");
-        }
-    }
-
-    #[test]
-    fn textures_are_turned_off_one_by_one() {
-        let mut loud = AmbientTextures::ALL;
-        for (k, texture) in AmbientTexture::ALL.into_iter().enumerate() {
-            loud = loud.without(texture).without(texture);
-            assert_eq!(AmbientTexture::ALL.map(|t| loud.has(t)), std::array::from_fn(|other| other > k));
-        }
     }
 }

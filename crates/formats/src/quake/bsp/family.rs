@@ -1,7 +1,13 @@
 //! Formats that begin alike, told apart by what follows.
 
 use super::tree::plane_of;
-use super::{BspError, BspFormat, i32_at, lump_range};
+use super::{BspFormat, lump_range};
+use crate::bytes::i32_at;
+use crate::error::{Malformed, malformed};
+
+/// What is wrong with a map of Half-Life: Blue Shift.
+const BLUE_SHIFT: &str = "lump 0 has planes and lump 1 has none, as in maps of Half-Life: Blue Shift, which are not read; with the first \
+                          two entries of the directory exchanged this is a map of Half-Life";
 
 /// Bytes of an entry of the directory.
 const ENTRY: usize = 8;
@@ -9,11 +15,11 @@ const ENTRY: usize = 8;
 /// The format of a file whose first bytes are those of `begins`, and which has all of its header.
 ///
 /// # Errors
-/// [`BspError::BlueShift`], [`BspError::MoreLumps`] for relatives that are not read; [`BspError`] for lumps outside the file.
-pub(super) fn told_apart(begins: BspFormat, bytes: &[u8]) -> Result<BspFormat, BspError> {
+/// [`Malformed`] for relatives that are not read, and for lumps outside the file.
+pub(super) fn told_apart(begins: BspFormat, bytes: &[u8]) -> Result<BspFormat, Malformed> {
     match begins {
         BspFormat::Bsp29 if is_hexen2(bytes) => Ok(BspFormat::Hexen2),
-        BspFormat::HalfLife if is_blue_shift(bytes)? => Err(BspError::BlueShift),
+        BspFormat::HalfLife if is_blue_shift(bytes)? => Err(malformed!("{BLUE_SHIFT}")),
         BspFormat::Wolfenstein => refuse_more_lumps(begins, bytes).map(|()| begins),
         _ => Ok(begins),
     }
@@ -50,8 +56,8 @@ fn is_hexen2(bytes: &[u8]) -> bool {
 }
 
 /// Whether a map of version 30 has planes where entities should be. A text is no plane: its bytes as floats are of no unit length.
-fn is_blue_shift(bytes: &[u8]) -> Result<bool, BspError> {
-    let is_plane = |lump: usize| -> Result<bool, BspError> {
+fn is_blue_shift(bytes: &[u8]) -> Result<bool, Malformed> {
+    let is_plane = |lump: usize| -> Result<bool, Malformed> {
         let lump = &bytes[lump_range(BspFormat::HalfLife, bytes, lump)?];
         Ok(lump.len() >= 20 && plane_of(lump).is_some())
     };
@@ -60,7 +66,7 @@ fn is_blue_shift(bytes: &[u8]) -> Result<bool, BspError> {
 
 /// Refuses an entry behind the directory that names bytes of the file: with it unknown, another lump would move its bytes away.
 /// The compilers of version 47 put a text there, whose letters are no place in any file.
-fn refuse_more_lumps(format: BspFormat, bytes: &[u8]) -> Result<(), BspError> {
+fn refuse_more_lumps(format: BspFormat, bytes: &[u8]) -> Result<(), Malformed> {
     let (at, n) = (format.header_len(), format.lump_names().len());
     let starts = (0..n).map(|lump| lump_range(format, bytes, lump));
     let starts = starts.collect::<Result<Vec<_>, _>>()?;
@@ -71,7 +77,11 @@ fn refuse_more_lumps(format: BspFormat, bytes: &[u8]) -> Result<(), BspError> {
     let (offset, len) = (i32_at(bytes, at), i32_at(bytes, at + 4));
     let is_inside = i64::from(offset) >= (at + ENTRY) as i64 && len > 0;
     if is_inside && i64::from(offset) + i64::from(len) <= bytes.len() as i64 {
-        return Err(BspError::MoreLumps { version: i32_at(bytes, 4), index: n, offset, len });
+        let version = i32_at(bytes, 4);
+        return Err(malformed!(
+            "the directory has an entry for lump {n}, which version {version} does not have: {len} bytes at byte {offset}; \
+             such maps (of Quake Live) are not read"
+        ));
     }
     Ok(())
 }

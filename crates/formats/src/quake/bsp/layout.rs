@@ -1,6 +1,7 @@
 //! Where each format has what: a table for each.
 
-use super::{BspFormat, i16_at, i32_at, u16_at, u32_at};
+use super::BspFormat;
+use crate::bytes::{i16_at, i32_at, u16_at, u32_at};
 
 /// Where the records of a kind are, and how many bytes one has.
 #[derive(Debug, Clone, Copy)]
@@ -71,11 +72,20 @@ pub(in crate::quake) enum RowForm {
     Raw,
 }
 
+/// A list of edges, each with two vertices, and where a face has its run of it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Edges {
+    pub(super) edges: Records,
+    pub(super) surfedges: usize,
+    pub(super) first: Number,
+    pub(super) count: Number,
+}
+
 /// The corners of faces.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum FaceForm {
-    /// A run of a list of edges, each with two vertices.
-    Edges { edges: Records, surfedges: usize, first: Number, count: Number },
+    /// A run of a list of edges.
+    Edges(Edges),
     /// A run of vertices, and of indices of these: triangles, or a grid of control points.
     Vertices { indices: usize },
 }
@@ -171,14 +181,19 @@ const BSP29: Layout = Layout {
     model_faces: 56,
     vertices: records(3, 12),
     faces: records(7, 20),
-    face_form: FaceForm::Edges { edges: records(12, 4), surfedges: 13, first: Number::I32(4), count: Number::U16(8) },
+    face_form: FaceForm::Edges(Edges {
+        edges: records(12, 4),
+        surfedges: 13,
+        first: Number::I32(4),
+        count: Number::U16(8),
+    }),
     face_texinfo: Some(Number::U16(10)),
     marks: records(11, 2),
 };
 
 /// Faces, edges and marks of the wide variants of version 29.
 const WIDE_FACES: FaceForm =
-    FaceForm::Edges { edges: records(12, 8), surfedges: 13, first: Number::I32(8), count: Number::U32(12) };
+    FaceForm::Edges(Edges { edges: records(12, 8), surfedges: 13, first: Number::I32(8), count: Number::U32(12) });
 
 const BSP2: Layout = Layout {
     magic: b"BSP2",
@@ -244,7 +259,12 @@ const QUAKE2: Layout = Layout {
     model_faces: 40,
     vertices: records(2, 12),
     faces: records(6, 20),
-    face_form: FaceForm::Edges { edges: records(11, 4), surfedges: 12, first: Number::I32(4), count: Number::U16(8) },
+    face_form: FaceForm::Edges(Edges {
+        edges: records(11, 4),
+        surfedges: 12,
+        first: Number::I32(4),
+        count: Number::U16(8),
+    }),
     face_texinfo: None,
     marks: records(9, 2),
 };
@@ -259,7 +279,12 @@ const QBISM: Layout = Layout {
     leaf_bounds: Bounds::Float(12),
     leaf_faces: [Number::U32(36), Number::U32(40)],
     faces: records(6, 28),
-    face_form: FaceForm::Edges { edges: records(11, 8), surfedges: 12, first: Number::I32(8), count: Number::U32(12) },
+    face_form: FaceForm::Edges(Edges {
+        edges: records(11, 8),
+        surfedges: 12,
+        first: Number::I32(8),
+        count: Number::U32(12),
+    }),
     marks: records(9, 4),
     ..QUAKE2
 };
@@ -295,64 +320,22 @@ const QUAKE3: Layout = Layout {
 const WOLFENSTEIN: Layout = Layout { magic: b"IBSP\x2f\0\0\0", name: "IBSP 47", game: "Wolfenstein", ..QUAKE3 };
 
 /// Lumps of Quake, Half-Life and Hexen II.
+#[rustfmt::skip]
 static QUAKE_LUMPS: [&str; 15] = [
-    "entities",
-    "planes",
-    "textures",
-    "vertices",
-    "visibility",
-    "nodes",
-    "texinfo",
-    "faces",
-    "lighting",
-    "clipnodes",
-    "leafs",
-    "marksurfaces",
-    "edges",
-    "surfedges",
-    "models",
+    "entities", "planes", "textures", "vertices", "visibility", "nodes", "texinfo", "faces", "lighting", "clipnodes",
+    "leafs", "marksurfaces", "edges", "surfedges", "models",
 ];
 
 /// Lumps of Quake II and Qbism.
+#[rustfmt::skip]
 static QUAKE2_LUMPS: [&str; 19] = [
-    "entities",
-    "planes",
-    "vertices",
-    "visibility",
-    "nodes",
-    "texinfo",
-    "faces",
-    "lighting",
-    "leafs",
-    "leaffaces",
-    "leafbrushes",
-    "edges",
-    "surfedges",
-    "models",
-    "brushes",
-    "brushsides",
-    "pop",
-    "areas",
-    "areaportals",
+    "entities", "planes", "vertices", "visibility", "nodes", "texinfo", "faces", "lighting", "leafs", "leaffaces",
+    "leafbrushes", "edges", "surfedges", "models", "brushes", "brushsides", "pop", "areas", "areaportals",
 ];
 
 /// Lumps of Quake III.
+#[rustfmt::skip]
 static QUAKE3_LUMPS: [&str; 17] = [
-    "entities",
-    "shaders",
-    "planes",
-    "nodes",
-    "leafs",
-    "leaffaces",
-    "leafbrushes",
-    "models",
-    "brushes",
-    "brushsides",
-    "vertices",
-    "indices",
-    "fogs",
-    "faces",
-    "lightmaps",
-    "lightgrid",
-    "visibility",
+    "entities", "shaders", "planes", "nodes", "leafs", "leaffaces", "leafbrushes", "models", "brushes", "brushsides",
+    "vertices", "indices", "fogs", "faces", "lightmaps", "lightgrid", "visibility",
 ];

@@ -15,10 +15,8 @@
 //! | `IBSP`, i32 46 or 47 (Quake III, Wolfenstein) | 17 | 48 bytes, names its cluster | 104 bytes, with triangles | 36 bytes |
 
 mod covers;
-mod error;
 mod faces;
 mod family;
-mod kind;
 mod layout;
 mod leaf;
 mod places;
@@ -29,17 +27,17 @@ mod triangles;
 mod world_faces;
 
 pub use covers::FaceCover;
-pub use error::{BspError, BspLumpId};
 pub use faces::{AmbientKind, AmbientTexture, AmbientTextures};
-pub use kind::LeafKind;
 pub(in crate::quake) use layout::RowForm;
-pub use leaf::{BspLeaf, LeafRow};
+pub use leaf::{BspLeaf, LeafKind, LeafRow};
 pub use places::ClusterPlaces;
 pub(in crate::quake) use rewrite::NewVisibility;
 pub use surfaces::LeafFaces;
 pub use tree::{BspChild, BspNode, BspTree};
 pub use world_faces::WorldFaces;
 
+use crate::bytes::{i32_at, u32_at};
+use crate::error::{Malformed, malformed};
 use std::ops::Range;
 
 /// How many steps a leaf may be below the root. Maps that were examined have 22 to 127.
@@ -83,17 +81,15 @@ impl BspFormat {
     ];
 
     /// The first bytes of files of each.
-    pub const MAGICS: [&'static [u8]; 9] = [
-        Self::ALL[0].magic(),
-        Self::ALL[1].magic(),
-        Self::ALL[2].magic(),
-        Self::ALL[3].magic(),
-        Self::ALL[4].magic(),
-        Self::ALL[5].magic(),
-        Self::ALL[6].magic(),
-        Self::ALL[7].magic(),
-        Self::ALL[8].magic(),
-    ];
+    pub(crate) const MAGICS: [&'static [u8]; 9] = {
+        let mut magics: [&[u8]; 9] = [b""; 9];
+        let mut k = 0;
+        while k < magics.len() {
+            magics[k] = Self::ALL[k].magic();
+            k += 1;
+        }
+        magics
+    };
 
     /// The first bytes of a file.
     pub const fn magic(self) -> &'static [u8] {
@@ -142,8 +138,17 @@ impl BspFormat {
     }
 
     /// A lump as errors name it.
-    fn lump_id(self, index: usize) -> BspLumpId {
-        BspLumpId { index, name: self.lump_names()[index] }
+    fn label(self, index: usize) -> String {
+        format!("lump {index} ({})", self.lump_names()[index])
+    }
+
+    /// The bytes of a lump, if they are a whole number of records.
+    fn whole_records(self, lump: usize, record: usize, bytes: &[u8]) -> Result<&[u8], Malformed> {
+        if bytes.len().is_multiple_of(record) {
+            return Ok(bytes);
+        }
+        let (lump, len) = (self.label(lump), bytes.len());
+        Err(malformed!("{lump}: {len} bytes are no whole number of records of {record}"))
     }
 }
 
@@ -167,6 +172,8 @@ struct Bspx {
     n_lumps: usize,
 }
 
+/// How maps begin.
+const KNOWN: &str = "version 29 or 30, BSP2, 2PSB, IBSP and version 38, 46 or 47, or QBSP and version 38";
 /// Bytes of an entry of the BSPX directory: 24 of name, u32 place, u32 length.
 const BSPX_ENTRY: usize = 32;
 /// Bytes before the entries: `BSPX`, u32 number of lumps.
@@ -176,32 +183,27 @@ impl Bsp {
     /// Checks a whole map. Time and memory in proportion to the bytes, whatever counts they claim.
     ///
     /// # Errors
-    /// [`BspError`] with the lump and the leaf concerned.
+    /// [`Malformed`] with the lump and the leaf concerned.
     ///
     /// # Source
     /// Quake's specifications 3.4 (Girlich and others), and id Software's published tools of Quake II and Quake III for the
     /// layout of versions 38 and 46; the wide formats and BSPX as current engines read them. Half-Life's, Hexen II's, Wolfenstein's
     /// and Qbism's are by their public descriptions.
-    pub fn parse(bytes: Vec<u8>) -> Result<Self, BspError> {
-        let Some(start) = bytes.first_chunk::<8>() else {
-            return Err(BspError::NoHeader { len: bytes.len(), needed: BspFormat::Bsp29.header_len() });
+    pub fn parse(bytes: Vec<u8>) -> Result<Self, Malformed> {
+        let short =
+            |needed: usize| Err(malformed!("not a map: {} bytes are less than a header of {needed}", bytes.len()));
+        let Some(start) = bytes.first_chunk::<8>() else { return short(BspFormat::Bsp29.header_len()) };
+        let Some(begins) = BspFormat::ALL.into_iter().find(|f| start.starts_with(f.magic())) else {
+            return Err(malformed!("not a map: it begins with \"{}\", not with {KNOWN}", start.escape_ascii()));
         };
-        let begins = BspFormat::ALL.into_iter().find(|f| start.starts_with(f.magic()));
-        let begins = begins.ok_or(BspError::Version { found: *start })?;
-        let needed = begins.header_len();
-        if bytes.len() < needed {
-            return Err(BspError::NoHeader { len: bytes.len(), needed });
+        if bytes.len() < begins.header_len() {
+            return short(begins.header_len());
         }
         let format = family::told_apart(begins, &bytes)?;
         let n_lumps = format.lump_names().len();
         let lumps = (0..n_lumps).map(|k| lump_range(format, &bytes, k)).collect::<Result<Vec<_>, _>>()?;
         let bspx = find_bspx(&bytes, &lumps)?;
-        let records = |lump: usize, record: usize| -> Result<&[u8], BspError> {
-            let range = lumps[lump].clone();
-            let whole = range.len().is_multiple_of(record);
-            let error = BspError::LumpLength { lump: format.lump_id(lump), len: range.len(), record };
-            if whole { Ok(&bytes[range]) } else { Err(error) }
-        };
+        let records = |lump: usize, record: usize| format.whole_records(lump, record, &bytes[lumps[lump].clone()]);
         let layout = format.layout();
         let leafs = leaf::parse_leafs(layout, records(layout.leafs.lump, layout.leafs.len)?)?;
         let n_visible_leafs = match layout.model_leafs {
@@ -281,33 +283,39 @@ impl Bsp {
     }
 }
 
-fn lump_range(format: BspFormat, bytes: &[u8], lump: usize) -> Result<Range<usize>, BspError> {
+fn lump_range(format: BspFormat, bytes: &[u8], lump: usize) -> Result<Range<usize>, Malformed> {
     let at = format.magic().len() + 8 * lump;
     let (offset, len) = (i32_at(bytes, at), i32_at(bytes, at + 4));
     // An empty lump may claim any place.
     if len == 0 {
         return Ok(0..0);
     }
-    let id = format.lump_id(lump);
-    let error = BspError::LumpRange { lump: id, offset, len, file_len: bytes.len() };
-    let (Ok(start), Ok(n_bytes)) = (usize::try_from(offset), usize::try_from(len)) else { return Err(error) };
-    match start.checked_add(n_bytes) {
-        Some(end) if end <= bytes.len() && start >= format.header_len() => Ok(start..end),
-        Some(end) if end <= bytes.len() => Err(BspError::OverlapsHeader { lump: id }),
-        _ => Err(error),
+    let start = usize::try_from(offset).ok();
+    let range = start.zip(usize::try_from(len).ok()).and_then(|(start, len)| Some(start..start.checked_add(len)?));
+    let Some(range) = range.filter(|range| range.end <= bytes.len()) else {
+        let what = format_args!("{len} bytes at byte {offset}");
+        return Err(malformed!("{}: {what} are not inside the file of {} bytes", format.label(lump), bytes.len()));
+    };
+    if range.start < format.header_len() {
+        return Err(malformed!("{} overlaps the header", format.label(lump)));
     }
+    Ok(range)
 }
 
 /// Looks for more lumps where they may be: behind all others, at a multiple of four.
-fn find_bspx(bytes: &[u8], lumps: &[Range<usize>]) -> Result<Option<Bspx>, BspError> {
+fn find_bspx(bytes: &[u8], lumps: &[Range<usize>]) -> Result<Option<Bspx>, Malformed> {
     let at = lumps.iter().map(|l| l.end).max().unwrap_or(0).next_multiple_of(4);
     if at == 0 || !bytes.get(at..at + BSPX_HEADER).is_some_and(|header| header.starts_with(b"BSPX")) {
         return Ok(None);
     }
     let n_lumps = u32_at(bytes, at + 4);
+    let unsound = |bad: usize| {
+        let what = format_args!("{n_lumps} lumps, the first bad one is {bad}");
+        Err(malformed!("the BSPX directory at byte {at} is not sound: {what}"))
+    };
     let entries = &bytes[at + BSPX_HEADER..];
     if entries.len() as u64 / (BSPX_ENTRY as u64) < u64::from(n_lumps) {
-        return Err(BspError::Bspx { at, n_lumps, bad: 0 });
+        return unsound(0);
     }
     // They begin behind their directory; otherwise moving them would change what they contain.
     let behind = (at + BSPX_HEADER) as u64 + u64::from(n_lumps) * BSPX_ENTRY as u64;
@@ -316,30 +324,7 @@ fn find_bspx(bytes: &[u8], lumps: &[Range<usize>]) -> Result<Option<Bspx>, BspEr
         len > 0 && (start < behind || start + len > bytes.len() as u64)
     };
     match entries.chunks_exact(BSPX_ENTRY).take(n_lumps as usize).position(outside) {
-        Some(bad) => Err(BspError::Bspx { at, n_lumps, bad }),
+        Some(bad) => unsound(bad),
         None => Ok(Some(Bspx { at, n_lumps: n_lumps as usize })),
     }
-}
-
-/// The bytes at `at`, which the caller knows to be inside.
-fn bytes_at<const N: usize>(bytes: &[u8], at: usize) -> [u8; N] {
-    let mut out = [0; N];
-    out.copy_from_slice(&bytes[at..at + N]);
-    out
-}
-
-fn i32_at(bytes: &[u8], at: usize) -> i32 {
-    i32::from_le_bytes(bytes_at(bytes, at))
-}
-
-fn u32_at(bytes: &[u8], at: usize) -> u32 {
-    u32::from_le_bytes(bytes_at(bytes, at))
-}
-
-fn u16_at(bytes: &[u8], at: usize) -> u16 {
-    u16::from_le_bytes(bytes_at(bytes, at))
-}
-
-fn i16_at(bytes: &[u8], at: usize) -> i16 {
-    i16::from_le_bytes(bytes_at(bytes, at))
 }

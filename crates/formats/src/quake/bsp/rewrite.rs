@@ -1,6 +1,8 @@
 //! Writing a map again with another visibility lump.
 
-use super::{BSPX_ENTRY, BSPX_HEADER, Bsp, BspError, i32_at, u32_at};
+use super::{BSPX_ENTRY, BSPX_HEADER, Bsp};
+use crate::bytes::{i32_at, u32_at};
+use crate::error::{Malformed, malformed};
 use std::ops::Range;
 
 impl Bsp {
@@ -8,20 +10,20 @@ impl Bsp {
     /// Quake II, whose leafs do not change, nothing is refused. A map whose leafs would happen to stay as they are is refused too.
     ///
     /// # Errors
-    /// [`BspError::Shared`].
-    pub fn check_leafs(&self) -> Result<(), BspError> {
+    /// [`Malformed`] with both lumps.
+    pub fn check_leafs(&self) -> Result<(), Malformed> {
         let changes = !self.format.has_clusters() && self.n_visible_leafs > 0;
         self.over_leafs().filter(|_| changes).map_or(Ok(()), |other| Err(self.shared(other)))
     }
 
     /// As [`Self::with_visibility`] says, from the parts of a visibility lump.
-    pub(in crate::quake) fn rewritten(&self, new: &NewVisibility<'_>) -> Result<Vec<u8>, BspError> {
+    pub(in crate::quake) fn rewritten(&self, new: &NewVisibility<'_>) -> Result<Vec<u8>, Malformed> {
         let vis = self.format.visibility_lump();
         let splice = self.splice(new.bytes.len());
         let (old, pad) = (splice.old.clone(), splice.pad);
         let len = (self.bytes.len() - old.len() + splice.lead + new.bytes.len() + pad) as u64;
         if i32::try_from(len).is_err() {
-            return Err(BspError::TooLarge { len });
+            return Err(malformed!("the file would have {len} bytes, more than a map can have"));
         }
         let leafs = self.changed_leafs(new)?;
         let mut out = Vec::with_capacity(len as usize);
@@ -105,7 +107,7 @@ impl Bsp {
     }
 
     /// The lump of leafs with new places and loudness, or with its old bytes where nothing is to change.
-    fn changed_leafs(&self, new: &NewVisibility<'_>) -> Result<Vec<u8>, BspError> {
+    fn changed_leafs(&self, new: &NewVisibility<'_>) -> Result<Vec<u8>, Malformed> {
         let index = self.format.leaf_lump();
         let mut leafs = self.lump_bytes(index).to_vec();
         let layout = self.format.layout();
@@ -113,7 +115,7 @@ impl Bsp {
         let n_sounds = if self.format.has_sounds() { self.n_visible_leafs } else { 0 };
         for (found, n_leafs) in [(new.leaf_rows.len(), n_rows), (new.ambient.len(), n_sounds)] {
             if found != n_leafs {
-                return Err(BspError::RowCount { found, n_leafs });
+                return Err(malformed!("the rows are for {found} leafs, the map has {n_leafs} that can be seen"));
             }
         }
         let mut records: Vec<&mut [u8]> = leafs.chunks_exact_mut(layout.leafs.len).skip(1).collect();
@@ -138,8 +140,9 @@ impl Bsp {
         (0..self.lumps.len()).find(|&k| k != index && over(&self.lumps[k]))
     }
 
-    fn shared(&self, other: usize) -> BspError {
-        BspError::Shared { lump: self.format.lump_id(self.format.leaf_lump()), other: self.format.lump_id(other) }
+    fn shared(&self, other: usize) -> Malformed {
+        let [lump, other] = [self.format.leaf_lump(), other].map(|lump| self.format.label(lump));
+        malformed!("{lump} has to change, but {other} lies over it")
     }
 }
 

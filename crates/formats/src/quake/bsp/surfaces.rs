@@ -1,8 +1,10 @@
 //! The faces of a map's world: their corners, and which leafs list them.
 
-use super::layout::{FaceForm, Number, Records};
+use super::layout::{Edges, FaceForm};
 use super::world_faces::WorldFaces;
-use super::{Bsp, BspError, i32_at, triangles, u16_at, u32_at};
+use super::{Bsp, triangles};
+use crate::bytes::{i32_at, u16_at, u32_at};
+use crate::error::{Malformed, malformed};
 use crate::point::check_point;
 use sightlines_geometry::Point3;
 use std::ops::Range;
@@ -32,45 +34,41 @@ impl LeafFaces {
     }
 }
 
-/// Where the corners of faces come from: a run of a list of edges, each with two vertices.
-struct Edges {
-    edges: Records,
-    surfedges: usize,
-    first: Number,
-    count: Number,
-}
-
 impl Bsp {
     /// Reads the faces of the world with their corners. Time and memory in proportion to the file.
     ///
     /// # Errors
-    /// [`BspError`] for lumps that are not a whole number of records, for a face, list, edge or vertex that is not there,
+    /// [`Malformed`] for lumps that are not a whole number of records, for a face, list, edge or vertex that is not there,
     /// for a vertex that is nowhere, and for faces that share more of a list than their number explains.
     ///
     /// # Source
     /// As [`Bsp::parse`].
-    pub fn world_faces(&self) -> Result<WorldFaces, BspError> {
+    pub fn world_faces(&self) -> Result<WorldFaces, Malformed> {
         let layout = self.format().layout();
         let vertices = self.vertices()?;
         let faces = self.records(layout.faces.lump, layout.faces.len)?;
-        let (model, at) = (self.world_model()?, layout.model_faces);
-        let run = [i32_at(model, at), i32_at(model, at + 4)].map(i64::from);
-        let world = self.run((layout.models.lump, 0), run, layout.faces.lump, faces.len() / layout.faces.len)?;
+        let world = self.world_face_run(faces.len() / layout.faces.len)?;
         match layout.face_form {
-            FaceForm::Edges { edges, surfedges, first, count } => {
-                self.faces_of_edges(&Edges { edges, surfedges, first, count }, world, faces, &vertices)
-            }
+            FaceForm::Edges(edges) => self.faces_of_edges(edges, world, faces, &vertices),
             FaceForm::Vertices { indices } => triangles::faces(self, indices, world, faces, &vertices),
         }
     }
 
+    /// The faces of the world, of so many in the file.
+    pub(super) fn world_face_run(&self, n_faces: usize) -> Result<Range<usize>, Malformed> {
+        let layout = self.format().layout();
+        let (model, at) = (self.world_model()?, layout.model_faces);
+        let run = [i32_at(model, at), i32_at(model, at + 4)].map(i64::from);
+        self.run((layout.models.lump, 0), run, layout.faces.lump, n_faces)
+    }
+
     fn faces_of_edges(
         &self,
-        from: &Edges,
+        from: Edges,
         world: Range<usize>,
         faces: &[u8],
         vertices: &[Point3],
-    ) -> Result<WorldFaces, BspError> {
+    ) -> Result<WorldFaces, Malformed> {
         let (layout, edge_len) = (self.format().layout(), from.edges.len);
         let edges = self.records(from.edges.lump, edge_len)?;
         let listed = self.records(from.surfedges, 4)?;
@@ -100,9 +98,9 @@ impl Bsp {
     /// Reads which faces the visible leafs list. Time and memory in proportion to the file.
     ///
     /// # Errors
-    /// [`BspError`] for lumps that are not a whole number of records, for a part of the list or a face that is not there,
+    /// [`Malformed`] for lumps that are not a whole number of records, for a part of the list or a face that is not there,
     /// and for leafs that share more of the list than their number explains.
-    pub fn leaf_faces(&self) -> Result<LeafFaces, BspError> {
+    pub fn leaf_faces(&self) -> Result<LeafFaces, Malformed> {
         let layout = self.format().layout();
         let (list, leafs) = (layout.marks.lump, layout.leafs.lump);
         let n_faces = self.records(layout.faces.lump, layout.faces.len)?.len() / layout.faces.len;
@@ -123,19 +121,21 @@ impl Bsp {
             }
             Ok(range)
         };
-        let ranges = self.visible_leafs().iter().zip(1..).map(range).collect::<Result<_, BspError>>()?;
+        let ranges = self.visible_leafs().iter().zip(1..).map(range).collect::<Result<_, Malformed>>()?;
         Ok(LeafFaces { marks, ranges })
     }
 
-    fn vertices(&self) -> Result<Vec<Point3>, BspError> {
+    fn vertices(&self) -> Result<Vec<Point3>, Malformed> {
         let vertices = self.format().layout().vertices;
         let records = self.records(vertices.lump, vertices.len)?.chunks_exact(vertices.len).enumerate();
-        let lump = self.format().lump_id(vertices.lump);
         let float = |record: &[u8], k: usize| f64::from(f32::from_bits(u32_at(record, 4 * k)));
         let vertex = |(vertex, record): (usize, &[u8])| {
             let point = std::array::from_fn(|k| float(record, k));
             // Floats are within the range of coordinates, if they are finite.
-            check_point(point).map_err(|_| BspError::Vertex { lump, vertex })
+            check_point(point).map_err(|_| {
+                let lump = self.format().label(vertices.lump);
+                malformed!("{lump}: vertex {vertex} has a coordinate that is not a finite number")
+            })
         };
         records.map(vertex).collect()
     }
@@ -147,17 +147,23 @@ impl Bsp {
         [first, count]: [i64; 2],
         of: usize,
         n: usize,
-    ) -> Result<Range<usize>, BspError> {
-        let (lump, of) = (self.format().lump_id(by.0), self.format().lump_id(of));
-        let error = BspError::Run { lump, record: by.1, first, count, of, n };
-        let (Ok(start), Ok(len)) = (usize::try_from(first), usize::try_from(count)) else { return Err(error) };
-        let end = start.checked_add(len).filter(|&end| end <= n);
-        end.map(|end| start..end).ok_or(error)
+    ) -> Result<Range<usize>, Malformed> {
+        let (start, len) = (usize::try_from(first).ok(), usize::try_from(count).ok());
+        let run = start.zip(len).and_then(|(start, len)| Some(start..start.checked_add(len)?));
+        run.filter(|run| run.end <= n).ok_or_else(|| {
+            let [lump, of] = [by.0, of].map(|k| self.format().label(k));
+            let what = format_args!("{count} records from {first} on of {of}, which has {n}");
+            malformed!("{lump}: record {} names {what}", by.1)
+        })
     }
 
     /// Runs may share records, but not so often that a small file becomes a large map.
-    pub(super) fn refuse_shared(&self, lump: usize, n_named: u64, of: usize, n: usize) -> Result<(), BspError> {
-        let [lump, of] = [lump, of].map(|k| self.format().lump_id(k));
-        if n_named <= MOST_SHARED * n as u64 { Ok(()) } else { Err(BspError::SharedRuns { lump, n_named, of, n }) }
+    pub(super) fn refuse_shared(&self, lump: usize, n_named: u64, of: usize, n: usize) -> Result<(), Malformed> {
+        if n_named <= MOST_SHARED * n as u64 {
+            return Ok(());
+        }
+        let [lump, of] = [lump, of].map(|k| self.format().label(k));
+        let what = format_args!("{n_named} records of {of}, which has {n}");
+        Err(malformed!("{lump}: its records name {what}: they share more than is read"))
     }
 }

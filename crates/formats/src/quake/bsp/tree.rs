@@ -1,7 +1,9 @@
 //! The tree of planes that a map's world was cut along, down to its leafs.
 
 use super::layout::Layout;
-use super::{Bsp, BspError, MAX_TREE_DEPTH, i32_at, u16_at, u32_at};
+use super::{Bsp, MAX_TREE_DEPTH};
+use crate::bytes::{i32_at, u16_at, u32_at};
+use crate::error::{Malformed, malformed};
 use sightlines_geometry::Point3;
 
 /// What is on a side of a plane of a tree.
@@ -58,13 +60,13 @@ impl Bsp {
     /// Reads the tree of the world. O(file).
     ///
     /// # Errors
-    /// [`BspError`] for lumps that are not a whole number of records, a plane, node or leaf that is not there, a plane that
+    /// [`Malformed`] for lumps that are not a whole number of records, a plane, node or leaf that is not there, a plane that
     /// is none, a node that is reached twice, and a tree that is too deep.
     ///
     /// # Source
     /// As [`Bsp::parse`]. That children of version 29 are as many nodes as there are and count leafs from the other end of
     /// 16 bits is how engines read maps with more than 32767 nodes; for others it is the same as a sign.
-    pub fn world_tree(&self) -> Result<BspTree, BspError> {
+    pub fn world_tree(&self) -> Result<BspTree, Malformed> {
         let layout = self.format().layout();
         let planes = self.records(layout.planes.lump, layout.planes.len)?;
         let nodes = self.records(layout.nodes.lump, layout.nodes.len)?;
@@ -86,32 +88,25 @@ impl Bsp {
     }
 
     /// The record of model 0, which is the world.
-    pub(super) fn world_model(&self) -> Result<&[u8], BspError> {
+    pub(super) fn world_model(&self) -> Result<&[u8], Malformed> {
         let super::layout::Records { lump, len } = self.format().layout().models;
         let models = self.records(lump, len)?;
-        models.get(..len).ok_or(BspError::NoModel { lump: self.format().lump_id(lump) })
+        models.get(..len).ok_or_else(|| malformed!("{}: there is no model 0", self.format().label(lump)))
     }
 
     /// The bytes of a lump of records of `record` bytes.
-    pub(super) fn records(&self, lump: usize, record: usize) -> Result<&[u8], BspError> {
-        let bytes = self.lump_bytes(lump);
-        let whole = bytes.len().is_multiple_of(record);
-        let error = BspError::LumpLength { lump: self.format().lump_id(lump), len: bytes.len(), record };
-        if whole { Ok(bytes) } else { Err(error) }
+    pub(super) fn records(&self, lump: usize, record: usize) -> Result<&[u8], Malformed> {
+        self.format().whole_records(lump, record, self.lump_bytes(lump))
     }
 
     /// An index that a record of a lump names, if the other lump has so many records.
-    pub(super) fn named(&self, by: (usize, usize), found: i64, of: usize, n: usize) -> Result<usize, BspError> {
+    pub(super) fn named(&self, by: (usize, usize), found: i64, of: usize, n: usize) -> Result<usize, Malformed> {
         let index = usize::try_from(found).ok().filter(|&k| k < n);
-        let (lump, of) = (self.format().lump_id(by.0), self.format().lump_id(of));
-        index.ok_or(BspError::Reference { lump, record: by.1, found, of, n })
+        index.ok_or_else(|| {
+            let [lump, of] = [by.0, of].map(|k| self.format().label(k));
+            malformed!("{lump}: record {} names record {found} of {of}, which has {n}", by.1)
+        })
     }
-}
-
-/// A child as the file has it, checked.
-enum Found {
-    Node(u32),
-    Leaf(u32),
 }
 
 /// A tree whose nodes are placed one after the other, breadth first.
@@ -124,18 +119,19 @@ struct Growing {
 }
 
 impl Growing {
-    /// Puts a node behind the others, with children that are still to come.
-    fn add(&mut self, file: &NodesOfFile<'_>, found: Found, depth: usize) -> Result<BspChild, BspError> {
+    /// Puts a node of the file behind the others, with children that are still to come; returns it as one of the tree.
+    fn add(&mut self, file: &NodesOfFile<'_>, found: BspChild, depth: usize) -> Result<BspChild, Malformed> {
         let index = match found {
-            Found::Leaf(leaf) => return Ok(BspChild::Leaf(leaf)),
-            Found::Node(index) => index,
+            BspChild::Leaf(_) => return Ok(found),
+            BspChild::Node(index) => index,
         };
-        let (lump, node) = (file.bsp.format().lump_id(file.layout.nodes.lump), index as usize);
-        if std::mem::replace(&mut self.is_reached[node], true) {
-            return Err(BspError::NodeTwice { lump, node });
+        let nodes = || file.bsp.format().label(file.layout.nodes.lump);
+        if std::mem::replace(&mut self.is_reached[index as usize], true) {
+            return Err(malformed!("{}: node {index} is reached twice, so this is no tree", nodes()));
         }
         if depth >= MAX_TREE_DEPTH {
-            return Err(BspError::TreeDepth { lump, node });
+            let what = format_args!("{MAX_TREE_DEPTH} steps below the root, more than are followed");
+            return Err(malformed!("{}: node {index} is {what}", nodes()));
         }
         let (normal, distance) = file.plane(index)?;
         self.nodes.push(BspNode { index, normal, distance, children: [BspChild::Leaf(0); 2] });
@@ -176,20 +172,23 @@ impl NodesOfFile<'_> {
     }
 
     /// The normal and the distance of a node's plane.
-    fn plane(&self, node: u32) -> Result<(Point3, f64), BspError> {
+    fn plane(&self, node: u32) -> Result<(Point3, f64), Malformed> {
         let (planes, by) = (self.layout.planes, (self.layout.nodes.lump, node as usize));
         let found = i64::from(u32_at(self.node(node), 0));
         let plane = self.bsp.named(by, found, planes.lump, self.planes.len() / planes.len)?;
-        plane_of(&self.planes[planes.len * plane..])
-            .ok_or_else(|| BspError::NotAPlane { lump: self.bsp.format().lump_id(planes.lump), plane })
+        plane_of(&self.planes[planes.len * plane..]).ok_or_else(|| {
+            let lump = self.bsp.format().label(planes.lump);
+            malformed!("{lump}: plane {plane} has no normal of unit length, or no finite distance")
+        })
     }
 
-    fn found(&self, child: i64, by: (usize, usize)) -> Result<Found, BspError> {
+    /// A child as the file has it, checked.
+    fn found(&self, child: i64, by: (usize, usize)) -> Result<BspChild, Malformed> {
         if child < 0 {
             let (leafs, n) = (self.layout.leafs.lump, self.bsp.leafs().len());
-            Ok(Found::Leaf(self.bsp.named(by, -1 - child, leafs, n)? as u32))
+            Ok(BspChild::Leaf(self.bsp.named(by, -1 - child, leafs, n)? as u32))
         } else {
-            Ok(Found::Node(self.bsp.named(by, child, self.layout.nodes.lump, self.n_nodes())? as u32))
+            Ok(BspChild::Node(self.bsp.named(by, child, self.layout.nodes.lump, self.n_nodes())? as u32))
         }
     }
 }

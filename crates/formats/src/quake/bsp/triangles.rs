@@ -1,7 +1,9 @@
 //! Faces of Quake III: runs of vertices, as triangles or as the grid of a curved face.
 
+use super::Bsp;
 use super::world_faces::WorldFaces;
-use super::{Bsp, BspError, i32_at};
+use crate::bytes::i32_at;
+use crate::error::{Malformed, malformed};
 use sightlines_geometry::Point3;
 use std::ops::Range;
 
@@ -16,7 +18,7 @@ const CURVED: i32 = 2;
 /// The faces of the world, from their records. Memory in proportion to the lumps, as runs may share little.
 ///
 /// # Errors
-/// [`BspError`] for a run, an index or a grid that is not there.
+/// [`Malformed`] for a run, an index or a grid that is not there.
 ///
 /// # Source
 /// The published tools and engine of Quake III for the records.
@@ -26,7 +28,7 @@ pub(super) fn faces(
     world: Range<usize>,
     faces: &[u8],
     vertices: &[Point3],
-) -> Result<WorldFaces, BspError> {
+) -> Result<WorldFaces, Malformed> {
     let layout = bsp.format().layout();
     let (own, lump) = (layout.faces.lump, layout.vertices.lump);
     let listed = bsp.records(indices, 4)?;
@@ -43,7 +45,8 @@ pub(super) fn faces(
             let [width, height] = [number(GRID), number(GRID + 4)];
             let is_grid = width > 0 && height > 0 && width.checked_mul(height) == Some(run.len() as i64);
             if !is_grid {
-                return Err(BspError::Grid { lump: bsp.format().lump_id(own), face: k, width, height, n: run.len() });
+                let (lump, n) = (bsp.format().label(own), run.len());
+                return Err(malformed!("{lump}: face {k}: a grid of {width} by {height} has not its {n} points"));
             }
             grid(&vertices[run], width as usize, &mut found);
         } else {

@@ -25,7 +25,7 @@ impl PrtDialect {
     pub const ALL: [Self; 5] = [Self::Prt1, Self::Prt2, Self::Prt1Am, Self::HalfLife, Self::Quake3];
 
     /// The first bytes of files of each that has such.
-    pub const MAGICS: [&'static [u8]; 3] = [b"PRT1", b"PRT2", b"PRT1-AM"];
+    pub(crate) const MAGICS: [&'static [u8]; 3] = [b"PRT1", b"PRT2", b"PRT1-AM"];
 
     /// The word that a file begins with, if it is one.
     pub const fn magic(self) -> Option<&'static str> {

@@ -1,6 +1,7 @@
 //! Hints of portals, and solid faces: what files of Quake III have besides. Visibility does not need them.
 
-use super::{PORTAL_POINTS, Prt, PrtErrorKind, PrtItem};
+use super::{PORTAL_POINTS, Prt, beyond};
+use crate::error::{Malformed, Within};
 use crate::point::check_point;
 use sightlines_cells::Point3;
 
@@ -18,26 +19,23 @@ impl Prt {
     /// are dropped, as the form has none.
     ///
     /// # Errors
-    /// [`PrtErrorKind`] for another number of hints than of portals, and for a face with a cluster, a number of points or a coordinate that cannot be.
-    pub fn with_faces(mut self, hints: Vec<u32>, mut faces: Vec<SolidFace>) -> Result<Self, PrtErrorKind> {
-        let n = self.n_portals() as u64;
-        if hints.len() as u64 != n {
-            return Err(PrtErrorKind::count(
-                PrtItem::Hint { portal: hints.len().min(self.n_portals()) },
-                hints.len(),
-                n..=n,
-            ));
+    /// [`Malformed`] for another number of hints than of portals, and for a face with a cluster, a number of points or a coordinate that cannot be.
+    pub fn with_faces(mut self, hints: Vec<u32>, mut faces: Vec<SolidFace>) -> Result<Self, Malformed> {
+        let n = self.n_portals();
+        if hints.len() != n {
+            return Err(beyond(hints.len(), n..=n).within(format_args!("the hint of portal {}", hints.len().min(n))));
         }
-        let max = u64::from(self.n_clusters() - 1);
         for (face, solid) in faces.iter_mut().enumerate() {
             if !PORTAL_POINTS.contains(&solid.points.len()) {
-                return Err(PrtErrorKind::count(PrtItem::FacePoints { face }, solid.points.len(), 3..=64));
+                let place = format_args!("the number of points of solid face {face}");
+                return Err(beyond(solid.points.len(), PORTAL_POINTS).within(place));
             }
-            if u64::from(solid.cluster) > max {
-                return Err(PrtErrorKind::count(PrtItem::FaceCluster { face }, solid.cluster, 0..=max));
+            if solid.cluster >= self.n_clusters() {
+                let place = format_args!("the cluster of solid face {face}");
+                return Err(beyond(solid.cluster, 0..=self.n_clusters() - 1).within(place));
             }
             for (point, p) in solid.points.iter_mut().enumerate() {
-                *p = check_point(*p).map_err(|source| PrtErrorKind::FaceCoordinate { face, point, source })?;
+                *p = check_point(*p).within(format_args!("solid face {face}, point {point}"))?;
             }
         }
         (self.leafs, self.faces) = (None, Some((hints, faces)));

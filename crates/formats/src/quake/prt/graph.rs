@@ -11,18 +11,3 @@ pub fn graph_of_prt(prt: &Prt) -> CellGraph<Convex> {
     let portals = once.filter_map(|p| Some((p.clusters.map(CellId), shape(p.points)?)));
     CellGraph::of_portals(prt.n_clusters() as usize, portals.collect())
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::quake::prt::parse_prt;
-
-    #[test]
-    fn a_portal_leads_from_the_first_cluster_into_the_second() {
-        let text = "PRT1\n3\n2\n4 1 0 (0 0 0 ) (0 1 0 ) (0 1 1 ) (0 0 1 )\n3 1 2 (-9 0 0 ) (-9 1 0 ) (-9 2 0 )\n";
-        let graph = graph_of_prt(&parse_prt(text.as_bytes()).unwrap());
-        assert_eq!((graph.n_cells(), graph.portals().len()), (3, 1), "a portal without area is none");
-        assert_eq!(graph.portals()[0].cells, [CellId(1), CellId(0)]);
-        assert_eq!(graph.portals()[0].shape.normal(), [2.0, 0.0, 0.0]);
-    }
-}

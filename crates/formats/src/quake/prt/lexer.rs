@@ -1,5 +1,8 @@
 //! Pieces of a text with their places.
 
+use crate::error::{Malformed, malformed};
+use std::fmt::Display;
+
 /// A piece of the text, or its end.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Token<'t> {
@@ -15,6 +18,19 @@ pub(super) struct Token<'t> {
 const SHOWN: usize = 40;
 
 impl Token<'_> {
+    /// An error of this piece.
+    pub(super) fn error(&self, what: Malformed) -> Malformed {
+        what.within(format_args!("line {}, column {}", self.line, self.column))
+    }
+
+    /// The error where something else should stand.
+    pub(super) fn unexpected(&self, expected: impl Display) -> Malformed {
+        self.error(match self.bytes {
+            Some(_) => malformed!("expected {expected}, found {:?}", self.shown()),
+            None => malformed!("expected {expected}, found the end of the file"),
+        })
+    }
+
     /// The piece as an error shows it.
     pub(super) fn shown(&self) -> String {
         let bytes = self.bytes.unwrap_or_default();

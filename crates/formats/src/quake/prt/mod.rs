@@ -20,7 +20,6 @@
 //! dialect that only begins alike.
 
 mod dialect;
-mod error;
 mod faces;
 mod graph;
 mod lexer;
@@ -30,15 +29,16 @@ mod repeats;
 mod write;
 
 pub use dialect::{LeafList, PrtDialect};
-pub use error::{PrtError, PrtErrorKind, PrtItem};
 pub use faces::SolidFace;
 pub use graph::graph_of_prt;
 pub use read::{line_of_portal, parse_prt};
 pub use write::write_prt;
 
 use super::{LeafClusters, MAX_CLUSTERS};
+use crate::error::{Malformed, Within, malformed};
 use crate::point::{are_collinear, check_point};
 use sightlines_cells::{Point3, Portal3};
+use std::fmt::Display;
 use std::ops::RangeInclusive;
 
 /// How far the points of a portal may be from a plane, in map units, beside what doubles of their size cannot hold
@@ -73,6 +73,11 @@ struct Record {
     end: usize,
 }
 
+/// The error of a number that is not in its range.
+fn beyond<T: Display>(found: impl Display, range: RangeInclusive<T>) -> Malformed {
+    malformed!("{found} is not from {} to {}", range.start(), range.end())
+}
+
 /// An opening between two clusters.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PrtPortal<'p> {
@@ -96,11 +101,10 @@ impl Prt {
     /// Clusters without portals, each of them one leaf: a `PRT1`.
     ///
     /// # Errors
-    /// [`PrtErrorKind::Count`] unless there are 1 to [`MAX_CLUSTERS`].
-    pub fn new(n_clusters: u32) -> Result<Self, PrtErrorKind> {
+    /// [`Malformed`] unless there are 1 to [`MAX_CLUSTERS`].
+    pub fn new(n_clusters: u32) -> Result<Self, Malformed> {
         if !(1..=MAX_CLUSTERS).contains(&n_clusters) {
-            let (found, max) = (n_clusters.to_string(), u64::from(MAX_CLUSTERS));
-            return Err(PrtErrorKind::Count { item: PrtItem::Clusters, found, min: 1, max });
+            return Err(beyond(n_clusters, 1..=MAX_CLUSTERS).within("the number of clusters"));
         }
         Ok(Self { n_clusters, portals: Vec::new(), points: Vec::new(), leafs: None, faces: None })
     }
@@ -108,38 +112,38 @@ impl Prt {
     /// Adds a portal. Its points keep their order; coordinates nearer to zero than 2^-140 become zero.
     ///
     /// # Errors
-    /// [`PrtErrorKind`] with the number of the portal; it is then not added.
-    pub fn push_portal(&mut self, clusters: [u32; 2], points: &[Point3]) -> Result<(), PrtErrorKind> {
+    /// [`Malformed`] with the number of the portal; it is then not added.
+    pub fn push_portal(&mut self, clusters: [u32; 2], points: &[Point3]) -> Result<(), Malformed> {
         let portal = self.portals.len();
         if !PORTAL_POINTS.contains(&points.len()) {
-            return Err(PrtErrorKind::count(PrtItem::Points { portal }, points.len(), 3..=64));
+            let place = format_args!("the number of points of portal {portal}");
+            return Err(beyond(points.len(), PORTAL_POINTS).within(place));
         }
-        let max = u64::from(self.n_clusters - 1);
         if let Some(&cluster) = clusters.iter().find(|&&c| c >= self.n_clusters) {
-            return Err(PrtErrorKind::count(PrtItem::Cluster { portal }, cluster, 0..=max));
+            let place = format_args!("a cluster of portal {portal}");
+            return Err(beyond(cluster, 0..=self.n_clusters - 1).within(place));
         }
         if clusters[0] == clusters[1] {
-            return Err(PrtErrorKind::SelfPortal { portal, cluster: clusters[0] });
+            return Err(malformed!("portal {portal} joins cluster {} with itself", clusters[0]));
         }
         let before = self.points.len();
         for (point, &p) in points.iter().enumerate() {
-            match check_point(p) {
-                Ok(p) => self.points.push(p),
-                Err(source) => {
-                    self.points.truncate(before);
-                    return Err(PrtErrorKind::Coordinate { portal, point, source });
-                }
-            }
+            let checked = check_point(p).within(format_args!("portal {portal}, point {point}"));
+            let checked = checked.inspect_err(|_| self.points.truncate(before))?;
+            self.points.push(checked);
         }
         self.portals.push(Record { clusters, end: self.points.len() });
         let added = self.portal(portal);
         let largest = added.points.as_flattened().iter().fold(0.0, |m: f64, x| m.max(x.abs()));
         let wrong = match Portal3::around(added.points).map(|shape| shape.unevenness()) {
-            None if !added.is_degenerate() => Some(PrtErrorKind::NotConvex { portal }),
-            Some(by) if by > MAX_UNEVENNESS.max(largest * 2f64.powi(-44)) => Some(PrtErrorKind::NotFlat { portal, by }),
-            _ => None,
+            None if !added.is_degenerate() => {
+                malformed!("portal {portal} is not a convex polygon: its points go round no area")
+            }
+            Some(by) if by > MAX_UNEVENNESS.max(largest * 2f64.powi(-44)) => {
+                malformed!("portal {portal} is not flat: a point is {by:.3} units off the plane of the others")
+            }
+            _ => return Ok(()),
         };
-        let Some(wrong) = wrong else { return Ok(()) };
         self.portals.pop();
         self.points.truncate(before);
         Err(wrong)
@@ -148,11 +152,12 @@ impl Prt {
     /// The same portals, but clusters are made of these leafs: a `PRT2`, a `PRT1-AM`, or the form of Half-Life.
     ///
     /// # Errors
-    /// [`PrtErrorKind::Leafs`] if a leaf is in a cluster that is not there; [`PrtErrorKind::LeafOrder`] if the leafs of clusters do
-    /// not follow each other and the list is of their counts.
-    pub fn with_leafs(mut self, list: LeafList, cluster_of_leaf: Vec<u32>) -> Result<Self, PrtErrorKind> {
+    /// [`Malformed`] if a leaf is in a cluster that is not there, or if the leafs of clusters do not follow each other and the list is
+    /// of their counts.
+    pub fn with_leafs(mut self, list: LeafList, cluster_of_leaf: Vec<u32>) -> Result<Self, Malformed> {
         if let (LeafList::Counts, Some(k)) = (list, cluster_of_leaf.windows(2).position(|pair| pair[0] > pair[1])) {
-            return Err(PrtErrorKind::LeafOrder { leaf: k + 1, cluster: cluster_of_leaf[k + 1] });
+            let (leaf, cluster) = (k + 1, cluster_of_leaf[k + 1]);
+            return Err(malformed!("leaf {leaf} is of cluster {cluster}, and the leaf before it of a later one"));
         }
         self.faces = None;
         self.leafs = Some((list, LeafClusters::new(self.n_clusters, cluster_of_leaf)?));

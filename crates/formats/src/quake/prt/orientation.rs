@@ -94,48 +94,6 @@ impl Plane {
 mod tests {
     use super::*;
 
-    /// A row of cubes of 64 units, with a portal between each two; those in the list go round the wrong way.
-    fn row(n: u32, reversed: &[u32]) -> Prt {
-        let mut prt = Prt::new(n).unwrap();
-        for k in 0..n - 1 {
-            let x = 64.0 * f64::from(k + 1);
-            // Counter-clockwise as seen from inside of the second cluster, at larger x.
-            let mut points = [[x, 0.0, 0.0], [x, 64.0, 0.0], [x, 64.0, 64.0], [x, 0.0, 64.0]];
-            if reversed.contains(&k) {
-                points.reverse();
-            }
-            prt.push_portal([k, k + 1], &points).unwrap();
-        }
-        prt
-    }
-
-    #[test]
-    fn portals_that_go_round_the_wrong_way_are_found() {
-        assert_eq!(row(6, &[]).inside_out(), None);
-        // At the ends of the row only one cluster tells.
-        for (k, found) in [(0, None), (1, Some(1)), (2, Some(2)), (3, Some(3)), (4, None)] {
-            assert_eq!(row(6, &[k]).inside_out(), found, "portal {k}");
-        }
-        assert_eq!(row(6, &[0, 1, 2, 3, 4]).inside_out(), Some(0));
-        assert_eq!(row(3, &[0, 1]).inside_out(), Some(0));
-        assert_eq!(row(2, &[0]).inside_out(), None, "nothing tells");
-    }
-
-    /// A dead end, and a cluster that winds from it round a bend and back behind it.
-    #[test]
-    fn a_cluster_that_winds_back_is_no_mistake() {
-        let mut prt = Prt::new(4).unwrap();
-        let square = |x: f64, y: f64| [[x, y, 0.0], [x, y + 64.0, 0.0], [x, y + 64.0, 64.0], [x, y, 64.0]];
-        prt.push_portal([0, 1], &square(0.0, 0.0)).unwrap();
-        let mut back = square(-64.0, 128.0);
-        back.reverse();
-        prt.push_portal([1, 2], &back).unwrap();
-        let mut further = square(-128.0, 128.0);
-        further.reverse();
-        prt.push_portal([2, 3], &further).unwrap();
-        assert_eq!(prt.inside_out(), None);
-    }
-
     #[test]
     fn clusters_on_both_sides_are_no_evidence() {
         let plane = Plane { normal: [1.0, 0.0, 0.0], middle: [0.0; 3] };

@@ -28,32 +28,3 @@ fn key(portal: &PrtPortal<'_>) -> ([u32; 2], Vec<[u64; 3]>) {
     corners.rotate_left(least);
     ([a.min(b), a.max(b)], corners)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn repeats_are_found_whatever_their_order() {
-        let square = [[8.0, 0.0, 0.0], [8.0, 4.0, 0.0], [8.0, 4.0, 4.0], [8.0, 0.0, 4.0]];
-        let turned = [square[2], square[3], square[0], square[1]];
-        let mut reversed = turned;
-        reversed.reverse();
-        let mut moved = square;
-        moved[0][1] = -1.0;
-        let mut prt = Prt::new(3).unwrap();
-        let all: [([u32; 2], &[[f64; 3]]); 7] = [
-            ([0, 1], &square),
-            ([0, 1], &turned),
-            ([1, 0], &reversed),
-            ([0, 1], &moved),
-            ([0, 2], &square),
-            ([0, 1], &square),
-            ([0, 1], &square[..3]),
-        ];
-        all.iter().for_each(|(clusters, points)| prt.push_portal(*clusters, points).unwrap());
-        assert_eq!(prt.repeats(), [false, true, true, false, false, true, false]);
-        assert_eq!(prt.n_repeats(), 3);
-        assert_eq!(crate::quake::graph_of_prt(&prt).portals().len(), 4);
-    }
-}

@@ -17,18 +17,14 @@ fn write_to(prt: &Prt, out: &mut String) -> std::fmt::Result {
     if let Some(magic) = prt.dialect().magic() {
         writeln!(out, "{magic}")?;
     }
+    let (n_clusters, n_portals) = (prt.n_clusters(), prt.n_portals());
     match &prt.leafs {
-        None => writeln!(out, "{}\n{}", prt.n_clusters(), prt.n_portals())?,
-        Some((LeafList::PerCluster, leafs)) => {
-            writeln!(out, "{}\n{}\n{}", leafs.n_leafs(), prt.n_clusters(), prt.n_portals())?;
-        }
-        Some((LeafList::PerLeaf, leafs)) => {
-            writeln!(out, "{}\n{}\n{}", prt.n_clusters(), prt.n_portals(), leafs.n_leafs())?;
-        }
-        Some((LeafList::Counts, leafs)) => {
-            writeln!(out, "{}\n{}", prt.n_clusters(), prt.n_portals())?;
-            (0..leafs.n_clusters()).try_for_each(|cluster| writeln!(out, "{}", leafs.leafs_of(cluster).len()))?;
-        }
+        Some((LeafList::PerCluster, leafs)) => writeln!(out, "{}\n{n_clusters}\n{n_portals}", leafs.n_leafs())?,
+        Some((LeafList::PerLeaf, leafs)) => writeln!(out, "{n_clusters}\n{n_portals}\n{}", leafs.n_leafs())?,
+        _ => writeln!(out, "{n_clusters}\n{n_portals}")?,
+    }
+    if let Some((LeafList::Counts, leafs)) = &prt.leafs {
+        (0..leafs.n_clusters()).try_for_each(|cluster| writeln!(out, "{}", leafs.leafs_of(cluster).len()))?;
     }
     let hints = prt.hints();
     if hints.is_some() {

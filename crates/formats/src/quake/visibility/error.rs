@@ -1,7 +1,6 @@
 //! What can be wrong between a map, its portals and its visibility lump.
 
-use super::BspError;
-use crate::quake::rle::RleError;
+use crate::error::Malformed;
 
 /// Why visibility cannot be read from a map or written for it.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -55,73 +54,7 @@ pub enum VisibilityError {
         /// Bytes so far.
         len: usize,
     },
-    /// The row of a leaf is not in the lump.
-    #[error("leaf {leaf}: its row begins at byte {offset} of the {len} bytes of the visibility lump")]
-    RowPlace {
-        /// The leaf, as the map counts.
-        leaf: usize,
-        /// Where its row should begin.
-        offset: u32,
-        /// Bytes of the lump.
-        len: usize,
-    },
-    /// The row of a leaf cannot be read.
-    #[error("leaf {leaf}: its row at byte {offset} of the visibility lump: {source}")]
-    Row {
-        /// The leaf, as the map counts.
-        leaf: usize,
-        /// Where its row begins.
-        offset: u32,
-        /// What is wrong with it.
-        source: RleError,
-    },
-    /// The lump is too short for the places of its rows.
-    #[error("the visibility lump of {len} bytes has no room for the places of the rows of {n_clusters} clusters")]
-    Places {
-        /// Bytes of the lump.
-        len: usize,
-        /// Clusters that it claims.
-        n_clusters: u32,
-    },
-    /// The lump is too short for its rows, or these are too short for so many clusters.
-    #[error("the visibility lump of {len} bytes has no room for rows of {n_clusters} clusters of {width} bytes each")]
-    RawRows {
-        /// Bytes of the lump.
-        len: usize,
-        /// Clusters that it claims.
-        n_clusters: u32,
-        /// Bytes of a row that it claims.
-        width: u32,
-    },
-    /// The lump is for another number of clusters than the map has.
-    #[error("the visibility lump is for {lump} clusters, the leafs have {map}")]
-    LumpClusters {
-        /// Clusters of the lump.
-        lump: u32,
-        /// Clusters that leafs name.
-        map: usize,
-    },
-    /// The row of a cluster is not in the lump.
-    #[error("cluster {cluster}: its row begins at byte {offset} of the {len} bytes of the visibility lump")]
-    ClusterRowPlace {
-        /// The cluster.
-        cluster: usize,
-        /// Where its row should begin.
-        offset: u32,
-        /// Bytes of the lump.
-        len: usize,
-    },
-    /// The row of a cluster cannot be read.
-    #[error("cluster {cluster}: its row at byte {offset} of the visibility lump: {source}")]
-    ClusterRow {
-        /// The cluster.
-        cluster: usize,
-        /// Where its row begins.
-        offset: u32,
-        /// What is wrong with it.
-        source: RleError,
-    },
-    /// The faces of a leaf cannot be looked up.
+    /// The visibility lump of the map cannot be read, or the faces of a leaf cannot be looked up.
     #[error(transparent)]
-    Bsp(#[from] BspError),
+    Bsp(#[from] Malformed),
 }

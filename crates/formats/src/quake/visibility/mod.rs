@@ -5,12 +5,12 @@
 //! each cluster, as it is.
 
 use super::bsp::{AmbientTextures, NewVisibility, RowForm};
-use super::{Bsp, BspError, LeafClusters, rle};
+use super::{Bsp, LeafClusters, rle};
+use crate::error::{Malformed, malformed};
 use sightlines_pvs::BitMatrix;
 use sightlines_pvs::bits::{ones, or_words};
 use std::borrow::Cow;
 
-mod bytes;
 mod error;
 mod fit;
 mod orientation;
@@ -44,9 +44,9 @@ impl Bsp {
     /// multiple of four), it goes behind the last of all, and the bytes of the old one stay where they are.
     ///
     /// # Errors
-    /// [`BspError::RowCount`] for a lump that was made for another number of leafs, [`BspError::Shared`] if leafs
-    /// would have to change under another lump, [`BspError::TooLarge`].
-    pub fn with_visibility(&self, new: &VisibilityLump) -> Result<Vec<u8>, BspError> {
+    /// [`Malformed`] for a lump that was made for another number of leafs, if leafs would have to change under another lump, and for a
+    /// file that would be too large.
+    pub fn with_visibility(&self, new: &VisibilityLump) -> Result<Vec<u8>, Malformed> {
         let VisibilityLump { bytes, leaf_rows, ambient } = new;
         self.rewritten(&NewVisibility { bytes, leaf_rows, ambient })
     }
@@ -205,6 +205,22 @@ fn quake2_lump(seen: &BitMatrix) -> Result<VisibilityLump, VisibilityError> {
         entry.copy_from_slice(&place.to_le_bytes());
     }
     Ok(VisibilityLump { bytes, leaf_rows: Vec::new(), ambient: Vec::new() })
+}
+
+/// Puts bytes of a row, of at least `n` bits, into a row of a matrix. Bits past the last cluster mean nothing.
+fn put_row(bytes: &mut [u8], n: usize, row: &mut [u64]) {
+    let bytes = &mut bytes[..n.div_ceil(8)];
+    if let (Some(last), true) = (bytes.last_mut(), !n.is_multiple_of(8)) {
+        *last &= (1 << (n % 8)) - 1;
+    }
+    for (word, bytes) in row.iter_mut().zip(bytes.chunks(8)) {
+        *word = bytes.iter().rev().fold(0, |word, &byte| word << 8 | u64::from(byte));
+    }
+}
+
+/// The error of a lump for another number of clusters than the map has.
+fn other_clusters(lump: u32, map: usize) -> Malformed {
+    malformed!("the visibility lump is for {lump} clusters, the leafs have {map}")
 }
 
 fn append_row(words: &[u64], n_columns: usize, out: &mut Vec<u8>) {

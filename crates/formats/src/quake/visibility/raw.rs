@@ -1,7 +1,8 @@
 //! Rows as they are, those of Quake III: the number of clusters, the bytes of a row, and a row for each.
 
-use super::bytes::{number, put_row};
-use super::{Bsp, VisibilityError, VisibilityLump, check_square, place};
+use super::{Bsp, VisibilityError, VisibilityLump, check_square, other_clusters, place, put_row};
+use crate::bytes::number_at;
+use crate::error::{Malformed, malformed};
 use sightlines_pvs::BitMatrix;
 
 /// Bytes before the rows.
@@ -26,19 +27,23 @@ pub(super) fn lump(seen: &BitMatrix) -> Result<VisibilityLump, VisibilityError> 
 }
 
 /// The rows of a map; those of any width that is enough.
-pub(super) fn rows(bsp: &Bsp) -> Result<BitMatrix, VisibilityError> {
+pub(super) fn rows(bsp: &Bsp) -> Result<BitMatrix, Malformed> {
     let (lump, n) = (bsp.visibility(), bsp.n_clusters());
-    let [n_clusters, width] = [0, 4].map(|at| number(lump, at));
-    let (Some(n_clusters), Some(width)) = (n_clusters, width) else {
-        return Err(VisibilityError::RawRows { len: lump.len(), n_clusters: n_clusters.unwrap_or(0), width: 0 });
+    let no_room = |n_clusters: u32, width: u32| {
+        let what = format_args!("rows of {n_clusters} clusters of {width} bytes each");
+        Err(malformed!("the visibility lump of {} bytes has no room for {what}", lump.len()))
+    };
+    let (n_clusters, width) = match [0, 4].map(|at| number_at(lump, at)) {
+        [Some(n_clusters), Some(width)] => (n_clusters, width),
+        [n_clusters, _] => return no_room(n_clusters.unwrap_or(0), 0),
     };
     if n_clusters as usize != n {
-        return Err(VisibilityError::LumpClusters { lump: n_clusters, map: n });
+        return Err(other_clusters(n_clusters, n));
     }
     let needed = HEADER as u64 + u64::from(width) * n as u64;
     // Before memory is taken for as many.
     if (width as usize) < n.div_ceil(8) || needed > lump.len() as u64 {
-        return Err(VisibilityError::RawRows { len: lump.len(), n_clusters, width });
+        return no_room(n_clusters, width);
     }
     let mut seen = BitMatrix::new(n, n);
     let mut row = vec![0; n.div_ceil(8)];

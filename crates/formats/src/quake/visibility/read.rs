@@ -1,7 +1,8 @@
 //! Reads a map's visibility lump.
 
-use super::bytes::{number, put_row};
-use super::{Bsp, LeafClusters, VisibilityError, check_match, raw, rle};
+use super::{Bsp, LeafClusters, VisibilityError, check_match, other_clusters, put_row, raw, rle};
+use crate::bytes::number_at;
+use crate::error::{Malformed, Within, malformed};
 use crate::quake::bsp::{LeafRow, RowForm};
 use sightlines_pvs::BitMatrix;
 
@@ -23,7 +24,7 @@ pub fn read_visibility(bsp: &Bsp, leafs: &LeafClusters) -> Result<Option<BitMatr
         RowForm::Raw => raw::rows(bsp),
         RowForm::OfLeafs => quake_rows(bsp, leafs),
     };
-    rows.map(Some)
+    Ok(Some(rows?))
 }
 
 /// Which clusters hear which in a map of Quake II; `None` for an empty lump and for other formats.
@@ -32,10 +33,10 @@ pub fn read_visibility(bsp: &Bsp, leafs: &LeafClusters) -> Result<Option<BitMatr
 /// [`VisibilityError`] with the cluster whose row is wrong.
 pub fn read_hearing(bsp: &Bsp) -> Result<Option<BitMatrix>, VisibilityError> {
     let has_rows = bsp.row_form() == RowForm::SeenAndHeard && !bsp.visibility().is_empty();
-    has_rows.then(|| quake2_rows(bsp, 1)).transpose()
+    Ok(has_rows.then(|| quake2_rows(bsp, 1)).transpose()?)
 }
 
-fn quake_rows(bsp: &Bsp, leafs: &LeafClusters) -> Result<BitMatrix, VisibilityError> {
+fn quake_rows(bsp: &Bsp, leafs: &LeafClusters) -> Result<BitMatrix, Malformed> {
     let (lump, n_clusters) = (bsp.visibility(), leafs.n_clusters());
     let mut seen = BitMatrix::new(n_clusters, n_clusters);
     let mut row = vec![0u8; rle::row_len(leafs.n_leafs())];
@@ -50,9 +51,7 @@ fn quake_rows(bsp: &Bsp, leafs: &LeafClusters) -> Result<BitMatrix, VisibilityEr
                 (0..n_clusters).for_each(|other| seen.set(cluster, other, true));
                 continue;
             };
-            let bytes = lump.get(offset as usize..).filter(|bytes| !bytes.is_empty());
-            let bytes = bytes.ok_or(VisibilityError::RowPlace { leaf, offset, len: lump.len() })?;
-            rle::decode(bytes, &mut row).map_err(|source| VisibilityError::Row { leaf, offset, source })?;
+            decode(lump, offset, &mut row).within(format_args!("leaf {leaf}"))?;
             for (byte, bits) in row.iter().enumerate().filter(|(_, bits)| **bits != 0) {
                 let columns = (0..8).filter(|k| bits >> k & 1 == 1).map(|k| 8 * byte + k);
                 for &other in columns.filter_map(|leaf| leafs.cluster_of_leaf().get(leaf)) {
@@ -64,26 +63,34 @@ fn quake_rows(bsp: &Bsp, leafs: &LeafClusters) -> Result<BitMatrix, VisibilityEr
     Ok(seen)
 }
 
+/// Reads the row that begins at a place of a lump.
+fn decode(lump: &[u8], offset: u32, row: &mut [u8]) -> Result<(), Malformed> {
+    let bytes = lump.get(offset as usize..).filter(|bytes| !bytes.is_empty());
+    let beyond = || malformed!("its row begins at byte {offset} of the {} bytes of the visibility lump", lump.len());
+    let read = rle::decode(bytes.ok_or_else(beyond)?, row);
+    read.map(drop).within(format_args!("its row at byte {offset} of the visibility lump"))
+}
+
 /// The rows of one kind of a lump of Quake II: 0 seen, 1 heard.
-pub(super) fn quake2_rows(bsp: &Bsp, kind: usize) -> Result<BitMatrix, VisibilityError> {
+pub(super) fn quake2_rows(bsp: &Bsp, kind: usize) -> Result<BitMatrix, Malformed> {
     let (lump, n) = (bsp.visibility(), bsp.n_clusters());
-    let number = |at: usize| number(lump, at);
-    let n_clusters = number(0).ok_or(VisibilityError::Places { len: lump.len(), n_clusters: 0 })?;
+    let no_room = |n_clusters: u32| {
+        let what = format_args!("the places of the rows of {n_clusters} clusters");
+        malformed!("the visibility lump of {} bytes has no room for {what}", lump.len())
+    };
+    let n_clusters = number_at(lump, 0).ok_or_else(|| no_room(0))?;
     if n_clusters as usize != n {
-        return Err(VisibilityError::LumpClusters { lump: n_clusters, map: n });
+        return Err(other_clusters(n_clusters, n));
     }
     // Before memory is taken for as many.
     if lump.len() < 4 + 8 * n {
-        return Err(VisibilityError::Places { len: lump.len(), n_clusters });
+        return Err(no_room(n_clusters));
     }
     let mut seen = BitMatrix::new(n, n);
     let mut row = vec![0u8; rle::row_len(n)];
     for cluster in 0..n {
-        let offset =
-            number(4 + 8 * cluster + 4 * kind).ok_or(VisibilityError::Places { len: lump.len(), n_clusters })?;
-        let bytes = lump.get(offset as usize..).filter(|bytes| !bytes.is_empty());
-        let bytes = bytes.ok_or(VisibilityError::ClusterRowPlace { cluster, offset, len: lump.len() })?;
-        rle::decode(bytes, &mut row).map_err(|source| VisibilityError::ClusterRow { cluster, offset, source })?;
+        let offset = number_at(lump, 4 + 8 * cluster + 4 * kind).ok_or_else(|| no_room(n_clusters))?;
+        decode(lump, offset, &mut row).within(format_args!("cluster {cluster}"))?;
         put_row(&mut row, n, seen.row_mut(cluster));
     }
     Ok(seen)

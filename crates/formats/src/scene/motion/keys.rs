@@ -2,8 +2,7 @@
 
 use super::turns::{MOST_PIECES, SAME, one_arc, thin, turned_between};
 use super::{Motions, ROUNDING};
-use crate::scene::accessor::Elements;
-use crate::scene::error::AccessorRole;
+use crate::scene::accessor::{AccessorRole, Elements};
 use crate::scene::json::{Channel, Node, Sampler};
 use crate::scene::range::{Range, RangeBox, united};
 use serde_json::Value;

@@ -14,9 +14,8 @@ mod keys;
 mod shape;
 mod turns;
 
-use super::accessor::Elements;
+use super::accessor::{AccessorRole, Elements};
 use super::buffers::Buffers;
-use super::error::AccessorRole;
 use super::json::{Document, Mesh, Primitive};
 use super::range::{Range, RangeBox, bounded, box_of, mapped, rotations, united};
 use super::transform::Transform;

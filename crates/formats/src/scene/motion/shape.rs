@@ -1,8 +1,7 @@
 //! Meshes that change their shape: morph targets and skins.
 
 use super::{Motions, Moved, ROUNDING, Vertices};
-use crate::scene::accessor::Elements;
-use crate::scene::error::AccessorRole;
+use crate::scene::accessor::{AccessorRole, Elements};
 use crate::scene::json::{Mesh, Node, Primitive};
 use crate::scene::range::{Range, RangeBox, bounded, box_of, mapped, united};
 use crate::scene::transform::Transform;
@@ -147,7 +146,7 @@ impl<'a> Motions<'a, '_> {
             let bind = match binds {
                 Some(binds) if k < binds.count => {
                     let columns: [f64; 16] = binds.numbers(k).try_into().ok()?;
-                    Transform::of_columns(&columns)?
+                    Transform::from_columns(&columns).ok()?
                 }
                 Some(_) => return None,
                 None => Transform::IDENTITY,

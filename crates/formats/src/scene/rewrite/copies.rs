@@ -3,9 +3,9 @@
 use super::document::{Object, as_index, as_object, attributes};
 use super::error::RewriteError;
 use super::extensions;
-use crate::scene::accessor::Elements;
+use crate::error::{Within, malformed};
+use crate::scene::accessor::{AccessorRole, Elements};
 use crate::scene::buffers::Buffers;
-use crate::scene::error::AccessorRole;
 use crate::scene::json::Document;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
@@ -74,8 +74,8 @@ impl<'a> Copies<'a> {
         place: &str,
     ) -> Result<Value, RewriteError> {
         let mut primitive = primitive.clone();
-        let object = as_object(&mut primitive, || place.to_owned())?;
-        extensions::adapt(object, || place.to_owned())?;
+        let object = as_object(&mut primitive, place)?;
+        extensions::adapt(object, place)?;
         if as_list {
             // Without a mode, a list of triangles is drawn.
             object.remove("mode");
@@ -88,7 +88,7 @@ impl<'a> Copies<'a> {
             None => *self.sets.entry(used.to_vec()).or_insert(n_sets),
         };
         for (name, accessor) in attributes(&mut primitive)? {
-            let old = as_index(accessor, || format!("{place}: {name}"))?;
+            let old = as_index(accessor, format_args!("{place}: {name}"))?;
             let copy = match self.copied.get(&(old, set)) {
                 Some(&copy) => copy,
                 None => {
@@ -103,17 +103,17 @@ impl<'a> Copies<'a> {
     }
 
     fn attribute(&mut self, accessor: usize, used: &[usize], is_position: bool) -> Result<usize, RewriteError> {
-        let kind_of = |kind| RewriteError::Accessor { accessor, kind };
+        let place = format_args!("accessor {accessor}");
         let Original { document, buffers } = self.original;
-        let elements = Elements::new(document, buffers, accessor, AccessorRole::Attribute).map_err(kind_of)?;
+        let elements = Elements::new(document, buffers, accessor, AccessorRole::Attribute).within(place)?;
         let count = elements.count;
         if let Some(&index) = used.last().filter(|&&last| last >= count) {
-            return Err(RewriteError::Element { accessor, index, count });
+            return Err(malformed!("there is no element {index} of {count}").within(place).into());
         }
         let stride = elements.size.next_multiple_of(4);
         self.count_bytes(used.len().saturating_mul(stride))?;
         let mut new = dense(self.old, accessor, &elements, used.iter().copied(), used.len(), Layout::Vertices)?;
-        extensions::adapt(&mut new.json, || format!("accessors[{accessor}]"))?;
+        extensions::adapt(&mut new.json, format_args!("accessors[{accessor}]"))?;
         let had_bounds = ["min", "max"].map(|key| new.json.remove(key).is_some()).contains(&true);
         if is_position || had_bounds {
             put_bounds(&mut new.json, &elements, used);
@@ -141,7 +141,7 @@ impl<'a> Copies<'a> {
     fn count_bytes(&mut self, more: usize) -> Result<(), RewriteError> {
         self.n_bytes = self.n_bytes.saturating_add(more);
         if u32::try_from(self.n_bytes).is_err() {
-            return Err(RewriteError::TooLarge { len: self.n_bytes });
+            return Err(RewriteError::too_large(self.n_bytes));
         }
         Ok(())
     }
@@ -150,7 +150,7 @@ impl<'a> Copies<'a> {
 /// Elements of an accessor, one behind the other.
 ///
 /// # Errors
-/// [`RewriteError::Form`] if the accessor has no members by name.
+/// [`RewriteError`] if the accessor has no members by name.
 pub(super) fn dense(
     old: &[Value],
     accessor: usize,
@@ -160,7 +160,7 @@ pub(super) fn dense(
     layout: Layout,
 ) -> Result<NewAccessor, RewriteError> {
     let mut json = old[accessor].clone();
-    let members = as_object(&mut json, || format!("accessors[{accessor}]"))?;
+    let members = as_object(&mut json, format_args!("accessors[{accessor}]"))?;
     for key in ["bufferView", "byteOffset", "sparse"] {
         members.remove(key);
     }

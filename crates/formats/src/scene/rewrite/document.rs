@@ -3,22 +3,24 @@
 //! The document was read before, but readers are more lenient than writers may be: what was skipped may have any form.
 
 use super::error::RewriteError;
+use crate::error::malformed;
 use serde_json::{Map, Value};
+use std::fmt::Display;
 
 /// What has members.
 pub(super) type Object = Map<String, Value>;
 
-pub(super) fn form(place: impl Into<String>, expected: &'static str) -> RewriteError {
-    RewriteError::Form { place: place.into(), expected }
+pub(super) fn form(place: impl Display, expected: &str) -> RewriteError {
+    malformed!("{place} is not {expected}").into()
 }
 
-pub(super) fn as_object(value: &mut Value, place: impl FnOnce() -> String) -> Result<&mut Object, RewriteError> {
-    value.as_object_mut().ok_or_else(|| form(place(), "an object"))
+pub(super) fn as_object(value: &mut Value, place: impl Display) -> Result<&mut Object, RewriteError> {
+    value.as_object_mut().ok_or_else(|| form(place, "an object"))
 }
 
 /// An index into a list of the document.
-pub(super) fn as_index(value: &Value, place: impl FnOnce() -> String) -> Result<usize, RewriteError> {
-    value.as_u64().and_then(|n| usize::try_from(n).ok()).ok_or_else(|| form(place(), "an index"))
+pub(super) fn as_index(value: &Value, place: impl Display) -> Result<usize, RewriteError> {
+    value.as_u64().and_then(|n| usize::try_from(n).ok()).ok_or_else(|| form(place, "an index"))
 }
 
 /// A member that is a list; empty if there is none.
@@ -32,18 +34,18 @@ pub(super) fn list<'v>(object: &'v mut Object, key: &str) -> Result<&'v mut [Val
 
 /// The accessors of a primitive's attributes and of its morph targets, with the names of the attributes.
 pub(super) fn attributes(primitive: &mut Value) -> Result<Vec<(&str, &mut Value)>, RewriteError> {
-    let primitive = as_object(primitive, || "primitive".to_owned())?;
+    let primitive = as_object(primitive, "primitive")?;
     let mut found = Vec::new();
     for (key, value) in primitive {
         match (key.as_str(), value) {
             (_, Value::Null) => {}
             ("attributes", value) => {
-                let named = as_object(value, || "attributes".to_owned())?;
+                let named = as_object(value, "attributes")?;
                 found.extend(named.iter_mut().map(|(name, accessor)| (name.as_str(), accessor)));
             }
             ("targets", Value::Array(targets)) => {
                 for target in targets {
-                    let named = as_object(target, || "target".to_owned())?;
+                    let named = as_object(target, "target")?;
                     found.extend(named.iter_mut().map(|(name, accessor)| (name.as_str(), accessor)));
                 }
             }
@@ -61,17 +63,17 @@ pub(super) fn for_each_accessor(
     visit: &mut dyn FnMut(&mut Value) -> Result<(), RewriteError>,
 ) -> Result<(), RewriteError> {
     for (k, animation) in list(document, "animations")?.iter_mut().enumerate() {
-        for sampler in list(as_object(animation, || format!("animations[{k}]"))?, "samplers")? {
-            let sampler = as_object(sampler, || format!("animations[{k}].samplers"))?;
+        for sampler in list(as_object(animation, format_args!("animations[{k}]"))?, "samplers")? {
+            let sampler = as_object(sampler, format_args!("animations[{k}].samplers"))?;
             visit_member(sampler, "input", visit)?;
             visit_member(sampler, "output", visit)?;
         }
     }
     for (k, skin) in list(document, "skins")?.iter_mut().enumerate() {
-        visit_member(as_object(skin, || format!("skins[{k}]"))?, "inverseBindMatrices", visit)?;
+        visit_member(as_object(skin, format_args!("skins[{k}]"))?, "inverseBindMatrices", visit)?;
     }
     for (k, mesh) in list(document, "meshes")?.iter_mut().enumerate() {
-        for primitive in list(as_object(mesh, || format!("meshes[{k}]"))?, "primitives")? {
+        for primitive in list(as_object(mesh, format_args!("meshes[{k}]"))?, "primitives")? {
             if let Some(primitive) = primitive.as_object_mut() {
                 visit_member(primitive, "indices", visit)?;
             }
@@ -126,7 +128,7 @@ mod tests {
         });
         let (mut views, mut accessors) = (Vec::new(), Vec::new());
         let into = |list: &mut Vec<usize>, value: &Value| {
-            list.push(as_index(value, String::new)?);
+            list.push(as_index(value, "")?);
             Ok(())
         };
         for_each_view(&mut document, &mut |v| into(&mut views, v)).unwrap();
@@ -140,7 +142,7 @@ mod tests {
         for text in [r#"{"meshes": 3}"#, r#"{"meshes": [[]]}"#, r#"{"meshes": [{"primitives": [[{"A": 1}]]}]}"#] {
             let mut document: Value = serde_json::from_str(text).unwrap();
             let found = for_each_accessor(document.as_object_mut().unwrap(), &mut |_| Ok(()));
-            assert!(matches!(found, Err(RewriteError::Form { .. })), "{text}: {found:?}");
+            assert!(matches!(found, Err(RewriteError::Malformed(_))), "{text}: {found:?}");
         }
     }
 }

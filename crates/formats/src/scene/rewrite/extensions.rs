@@ -3,21 +3,13 @@
 use super::document::{Object, as_object, form, list};
 use super::error::RewriteError;
 use serde_json::Value;
+use std::fmt::Display;
 
 /// Extensions that name no accessors, no buffers, and buffer views only by the key `bufferView`.
+#[rustfmt::skip]
 const KNOWN: [&str; 12] = [
-    "AGI_",
-    "EXT_lights_",
-    "EXT_texture_",
-    "FB_ngon_encoding",
-    DRACO,
-    "KHR_lights_",
-    "KHR_materials_",
-    "KHR_mesh_quantization",
-    "KHR_node_visibility",
-    "KHR_texture_",
-    "KHR_xmp",
-    "MSFT_",
+    "AGI_", "EXT_lights_", "EXT_texture_", "FB_ngon_encoding", DRACO, "KHR_lights_", "KHR_materials_",
+    "KHR_mesh_quantization", "KHR_node_visibility", "KHR_texture_", "KHR_xmp", "MSFT_",
 ];
 /// Codes a primitive again, beside its accessors.
 const DRACO: &str = "KHR_draco_mesh_compression";
@@ -31,12 +23,12 @@ const MESHOPT: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"
 /// Refuses extensions that name buffers in a way of their own: buffers are merged.
 pub(super) fn any_unknown(document: &mut Object) -> Result<bool, RewriteError> {
     for (k, view) in list(document, "bufferViews")?.iter_mut().enumerate() {
-        let place = || format!("bufferViews[{k}]");
+        let place = format_args!("bufferViews[{k}]");
         let view = as_object(view, place)?;
         // What codes the same bytes again is not needed.
         remove(view, &MESHOPT);
         if let Some(name) = names(view)?.first() {
-            return Err(RewriteError::Extension { place: place(), name: name.clone() });
+            return Err(RewriteError::Extension { place: place.to_string(), name: name.clone() });
         }
     }
     let mut any = false;
@@ -73,11 +65,11 @@ fn unknown_in(value: &Value, place: &str) -> Result<bool, RewriteError> {
 }
 
 fn unknown_among(extensions: &Value, place: &str) -> Result<bool, RewriteError> {
-    let extensions = extensions.as_object().ok_or_else(|| form(format!("extensions of {place}"), "an object"))?;
+    let extensions = extensions.as_object().ok_or_else(|| form(format_args!("extensions of {place}"), "an object"))?;
     let mut any = false;
     for (name, content) in extensions {
         let known = KNOWN.iter().any(|known| name.starts_with(known));
-        if !known && names_buffers(content) {
+        if !known && has_key(content, "buffer") {
             return Err(RewriteError::Extension { place: place.to_owned(), name: name.clone() });
         }
         any |= !known | unknown_in(content, place)?;
@@ -85,19 +77,11 @@ fn unknown_among(extensions: &Value, place: &str) -> Result<bool, RewriteError> 
     Ok(any)
 }
 
-fn names_buffers(value: &Value) -> bool {
-    match value {
-        Value::Array(list) => list.iter().any(names_buffers),
-        Value::Object(object) => object.iter().any(|(key, value)| key == "buffer" || names_buffers(value)),
-        _ => false,
-    }
-}
-
 /// Makes the extensions of a primitive, or of an accessor, fit other corners than those it had.
-pub(super) fn adapt(object: &mut Object, place: impl FnOnce() -> String) -> Result<(), RewriteError> {
+pub(super) fn adapt(object: &mut Object, place: impl Display) -> Result<(), RewriteError> {
     remove(object, &[DRACO]);
     match names(object)?.into_iter().find(|name| name != VARIANTS) {
-        Some(name) => Err(RewriteError::Extension { place: place(), name }),
+        Some(name) => Err(RewriteError::Extension { place: place.to_string(), name }),
         None => Ok(()),
     }
 }

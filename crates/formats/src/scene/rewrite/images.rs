@@ -22,7 +22,7 @@ pub(super) fn outside(
 ) -> Result<Vec<OutsideImage>, RewriteError> {
     let mut by_uri: BTreeMap<String, Vec<usize>> = BTreeMap::new();
     for (k, image) in list(document, "images")?.iter_mut().enumerate() {
-        let image = as_object(image, || format!("images[{k}]"))?;
+        let image = as_object(image, format_args!("images[{k}]"))?;
         match image.get("uri").and_then(Value::as_str) {
             Some(uri) if !image.contains_key("bufferView") => by_uri.entry(uri.to_owned()).or_default().push(k),
             _ => {}

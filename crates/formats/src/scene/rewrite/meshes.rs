@@ -4,8 +4,7 @@ use super::copies::{Copies, Original};
 use super::document::{Object, as_index, as_object, attributes, form, list};
 use super::error::RewriteError;
 use super::variants::{Plan, Variant, Variants};
-use crate::scene::accessor::Elements;
-use crate::scene::error::AccessorRole;
+use crate::scene::accessor::{AccessorRole, Elements};
 use crate::scene::primitive::read_indices;
 use crate::scene::source::GltfSource;
 use serde_json::{Value, json};
@@ -83,10 +82,10 @@ pub(super) fn change(
 }
 
 fn primitives_of(mesh: &mut Value, m: usize) -> Result<&mut Vec<Value>, RewriteError> {
-    let mesh = as_object(mesh, || format!("meshes[{m}]"))?;
+    let mesh = as_object(mesh, format_args!("meshes[{m}]"))?;
     match mesh.entry("primitives").or_insert_with(|| json!([])) {
         Value::Array(primitives) => Ok(primitives),
-        _ => Err(form(format!("meshes[{m}].primitives"), "a list")),
+        _ => Err(form(format_args!("meshes[{m}].primitives"), "a list")),
     }
 }
 
@@ -107,7 +106,7 @@ fn thinned(
                 (false, _) => &mut whole,
             };
             for (name, accessor) in attributes(primitive)? {
-                set.insert(as_index(accessor, || format!("meshes[{m}].primitives[{k}]: {name}"))?);
+                set.insert(as_index(accessor, format_args!("meshes[{m}].primitives[{k}]: {name}"))?);
             }
         }
     }
@@ -130,7 +129,7 @@ fn compacted(
     };
     let mut shares = false;
     for (name, accessor) in attributes(&mut primitive.clone())? {
-        shares |= thinned.contains(&as_index(accessor, || format!("{place}: {name}"))?);
+        shares |= thinned.contains(&as_index(accessor, format_args!("{place}: {name}"))?);
     }
     let n_positions = document.accessors[positions].count;
     if !shares || corners.len() == n_positions {
@@ -195,7 +194,7 @@ fn put_meshes(
     let mut lost = BTreeSet::new();
     let nodes = list(root, "nodes")?;
     for &(node, mesh) in mesh_of_node {
-        let object = as_object(&mut nodes[node], || format!("nodes[{node}]"))?;
+        let object = as_object(&mut nodes[node], format_args!("nodes[{node}]"))?;
         match mesh {
             Some(mesh) => _ = object.insert("mesh".to_owned(), json!(mesh)),
             None => {
@@ -207,7 +206,7 @@ fn put_meshes(
     }
     for node in nodes.iter_mut().filter_map(Value::as_object_mut).filter(|_| !gone.is_empty()) {
         if let Some(mesh) = node.get_mut("mesh").filter(|mesh| !mesh.is_null()) {
-            let before = as_index(mesh, || "the mesh of a node".to_owned())?;
+            let before = as_index(mesh, "the mesh of a node")?;
             *mesh = json!(before - gone.range(..before).count());
         }
     }

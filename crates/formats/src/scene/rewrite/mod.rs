@@ -19,6 +19,7 @@ use super::movers::INSTANCING;
 use super::source::GltfSource;
 use super::write::container;
 use crate::beside::Neighbours;
+use crate::error::malformed;
 use copies::{Copies, Original};
 use document::{Object, as_object, list};
 use serde_json::{Value, json};
@@ -53,56 +54,50 @@ impl GltfSource {
         triangles: &[Option<Vec<[u32; 3]>>],
         simplified: Option<Simplified>,
     ) -> Result<Vec<u8>, RewriteError> {
-        rewrite(self, triangles, simplified)
+        check(self, triangles)?;
+        let (text, binary) = split(&self.bytes).expect("the source was read before");
+        let document: Document = serde_json::from_str(text).expect("the source was read before");
+        let whole = serde_json::from_str(text);
+        let mut whole: Value = whole.map_err(|error| malformed!("the glTF text cannot be written again: {error}"))?;
+        let root = as_object(&mut whole, "the document")?;
+        let beside = self.folder.as_ref().map(|folder| folder as &dyn Neighbours);
+        let buffers = Buffers::new(&document.buffers, binary, beside).with_loaded(&self.loaded);
+        // An object is one of many instances of its triangles.
+        let is_instanced =
+            |node: &Node| node.extensions.as_ref().is_some_and(|extensions| extensions.instances.is_some());
+        if let Some(k) = document.nodes.iter().position(is_instanced) {
+            return Err(RewriteError::Extension { place: format!("nodes[{k}]"), name: INSTANCING.to_owned() });
+        }
+        let keep_all = extensions::any_unknown(root)?;
+        let outside = images::outside(root, beside)?;
+        let variants = Variants::new(self, &document, triangles);
+        let old = list(root, "accessors")?.to_vec();
+        let original = Original { document: &document, buffers: &buffers };
+        let mut copies = Copies::new(original, &old);
+        if !variants.are_all_as_before() {
+            meshes::change(root, self, original, &variants, &mut copies, keep_all)?;
+        }
+        if let Some(simplified) = simplified {
+            mark(root, simplified.occluder && document.asset.simplified.is_none_or(|before| before.occluder))?;
+        }
+        extensions::forget_codings(root);
+        let binary = repack::repack(root, original, &old, copies.new, &outside, keep_all)?;
+        let text = serde_json::to_vec(&whole).expect("what was JSON is JSON");
+        container(text, &binary).map_err(RewriteError::too_large)
     }
-}
-
-/// As [`GltfSource::rewrite`] says.
-fn rewrite(
-    source: &GltfSource,
-    triangles: &[Option<Vec<[u32; 3]>>],
-    simplified: Option<Simplified>,
-) -> Result<Vec<u8>, RewriteError> {
-    check(source, triangles)?;
-    let (text, binary) = split(&source.bytes).expect("the source was read before");
-    let document: Document = serde_json::from_str(text).expect("the source was read before");
-    let mut whole: Value = serde_json::from_str(text).map_err(|source| RewriteError::Json { source })?;
-    let root = as_object(&mut whole, || "the document".to_owned())?;
-    let beside = source.folder.as_ref().map(|folder| folder as &dyn Neighbours);
-    let buffers = Buffers::new(&document.buffers, binary, beside).with_loaded(&source.loaded);
-    // An object is one of many instances of its triangles.
-    let is_instanced = |node: &Node| node.extensions.as_ref().is_some_and(|extensions| extensions.instances.is_some());
-    if let Some(k) = document.nodes.iter().position(is_instanced) {
-        return Err(RewriteError::Extension { place: format!("nodes[{k}]"), name: INSTANCING.to_owned() });
-    }
-    let keep_all = extensions::any_unknown(root)?;
-    let outside = images::outside(root, beside)?;
-    let variants = Variants::new(source, &document, triangles);
-    let old = list(root, "accessors")?.to_vec();
-    let original = Original { document: &document, buffers: &buffers };
-    let mut copies = Copies::new(original, &old);
-    if !variants.are_all_as_before() {
-        meshes::change(root, source, original, &variants, &mut copies, keep_all)?;
-    }
-    if let Some(simplified) = simplified {
-        mark(root, simplified.occluder && document.asset.simplified.is_none_or(|before| before.occluder))?;
-    }
-    extensions::forget_codings(root);
-    let binary = repack::repack(root, original, &old, copies.new, &outside, keep_all)?;
-    let text = serde_json::to_vec(&whole).expect("what was JSON is JSON");
-    container(text, &binary).map_err(|len| RewriteError::TooLarge { len })
 }
 
 fn check(source: &GltfSource, triangles: &[Option<Vec<[u32; 3]>>]) -> Result<(), RewriteError> {
     let (found, expected) = (triangles.len(), source.n_objects());
     if found != expected {
-        return Err(RewriteError::Objects { found, expected });
+        return Err(malformed!("triangles of {found} objects for a scene of {expected}").into());
     }
     for (object, list) in triangles.iter().enumerate() {
         let n_vertices = source.object(object).map_or(0, |o| o.corners.len());
         for (triangle, corners) in list.iter().flatten().enumerate() {
             if let Some(&vertex) = corners.iter().find(|&&v| v as usize >= n_vertices) {
-                return Err(RewriteError::Index { object, triangle, vertex });
+                let place = format_args!("object {object}, triangle {triangle}");
+                return Err(malformed!("there is no vertex {vertex}").within(place).into());
             }
         }
     }

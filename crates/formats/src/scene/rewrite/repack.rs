@@ -4,8 +4,9 @@ use super::copies::{Layout, NewAccessor, Original, dense};
 use super::document::{Object, as_index, as_object, attributes, for_each_accessor, for_each_view, list};
 use super::error::RewriteError;
 use super::images::{OutsideImage, put};
-use crate::scene::accessor::{Elements, view_bytes};
-use crate::scene::error::{AccessorErrorKind, AccessorRole};
+use crate::error::Within;
+use crate::scene::accessor::{AccessorRole, Elements, no_view, view_bytes};
+use crate::scene::buffers::missing;
 use serde_json::{Value, json};
 
 /// Puts all data together.
@@ -25,9 +26,9 @@ pub(super) fn repack(
     let mut used = vec![keep_all; old.len()];
     used.resize(old.len() + new.len(), true);
     for_each_accessor(root, &mut |value| {
-        let accessor = as_index(value, || "an accessor".to_owned())?;
-        let missing = RewriteError::Accessor { accessor, kind: AccessorErrorKind::Missing };
-        *used.get_mut(accessor).ok_or(missing)? = true;
+        let accessor = as_index(value, "an accessor")?;
+        let missing = || missing().within(format_args!("accessor {accessor}"));
+        *used.get_mut(accessor).ok_or_else(missing)? = true;
         Ok(())
     })?;
     let mut direct = vec![keep_all; n_views];
@@ -44,8 +45,8 @@ pub(super) fn repack(
     let views = list(root, "bufferViews")?;
     for view in (0..n_views).filter(|&v| kept[v]) {
         let bytes = view_bytes(original.document, original.buffers, view);
-        let bytes = bytes.map_err(|kind| RewriteError::View { view, kind })?;
-        let json = as_object(&mut views[view], || format!("bufferViews[{view}]"))?;
+        let bytes = bytes.within(format_args!("buffer view {view}"))?;
+        let json = as_object(&mut views[view], format_args!("bufferViews[{view}]"))?;
         // Whatever is aligned in it stays so.
         let offset = original.document.buffer_views[view].byte_offset;
         view_map[view] = Some(packed.view(std::mem::take(json), bytes, offset % 8)?);
@@ -53,8 +54,8 @@ pub(super) fn repack(
     let mut accessors = Vec::new();
     let mut accessor_map = vec![None; used.len()];
     let remap_view = |value: &mut Value| {
-        let view = as_index(value, || "bufferView".to_owned())?;
-        let missing = || RewriteError::View { view, kind: AccessorErrorKind::NoView { view } };
+        let view = as_index(value, "bufferView")?;
+        let missing = || no_view(view).within(format_args!("buffer view {view}"));
         *value = json!(view_map.get(view).copied().flatten().ok_or_else(missing)?);
         Ok(())
     };
@@ -77,7 +78,7 @@ pub(super) fn repack(
     }
     outside_of_accessors(root, &mut |value| remap_view(value))?;
     for_each_accessor(root, &mut |value| {
-        let accessor = as_index(value, || "an accessor".to_owned())?;
+        let accessor = as_index(value, "an accessor")?;
         *value = json!(accessor_map[accessor].expect("what is used stays"));
         Ok(())
     })?;
@@ -150,7 +151,7 @@ fn fates(
                 // A small file may name the same bytes very often.
                 n_bytes = n_bytes.saturating_add(elements.count.saturating_mul(elements.size));
                 if u32::try_from(n_bytes).is_err() {
-                    return Err(RewriteError::TooLarge { len: n_bytes });
+                    return Err(RewriteError::too_large(n_bytes));
                 }
                 dense(old, accessor, &elements, all, elements.count, layout).map(Fate::New)
             }
@@ -166,7 +167,7 @@ fn vertex_accessors(root: &mut Object, n_accessors: usize) -> Result<Vec<bool>, 
     for mesh in list(root, "meshes")?.iter_mut().filter_map(Value::as_object_mut) {
         for primitive in list(mesh, "primitives")? {
             for (_, accessor) in attributes(primitive)? {
-                let accessor = as_index(accessor, || "an accessor".to_owned())?;
+                let accessor = as_index(accessor, "an accessor")?;
                 if let Some(is_vertices) = is_vertices.get_mut(accessor) {
                     *is_vertices = true;
                 }
@@ -192,7 +193,7 @@ fn outside_of_accessors(
 fn each_view_of(accessor: &Value, visit: &mut dyn FnMut(usize)) -> Result<(), RewriteError> {
     // Accessors are small, and references are only visited in what may be changed.
     for_each_view(&mut accessor.clone(), &mut |value| {
-        visit(as_index(value, || "bufferView".to_owned())?);
+        visit(as_index(value, "bufferView")?);
         Ok(())
     })
 }
@@ -202,8 +203,8 @@ fn views_of(accessor: &Value, marks: &mut [bool]) -> Result<(), RewriteError> {
 }
 
 fn mark(value: &mut Value, marks: &mut [bool]) -> Result<(), RewriteError> {
-    let view = as_index(value, || "bufferView".to_owned())?;
-    let missing = || RewriteError::View { view, kind: AccessorErrorKind::NoView { view } };
+    let view = as_index(value, "bufferView")?;
+    let missing = || no_view(view).within(format_args!("buffer view {view}"));
     *marks.get_mut(view).ok_or_else(missing)? = true;
     Ok(())
 }
@@ -222,7 +223,7 @@ impl Packed {
         let offset = len + (rest + 8 - len % 8) % 8;
         let end = offset.saturating_add(bytes.len());
         if u32::try_from(end).is_err() {
-            return Err(RewriteError::TooLarge { len: end });
+            return Err(RewriteError::too_large(end));
         }
         self.binary.resize(offset, 0);
         self.binary.extend_from_slice(bytes);

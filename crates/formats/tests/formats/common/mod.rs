@@ -7,8 +7,15 @@ pub(crate) mod udmf;
 
 use sightlines_formats::doom::{DoomMapSource, ML_TWOSIDED, SourceLine, SourceThing};
 use sightlines_formats::wad::{WadBuilder, WadKind};
-use sightlines_formats::{LumpName, Wad};
+use sightlines_formats::{LumpName, Malformed, Wad};
 use std::path::{Path, PathBuf};
+
+/// The line of a text that an error names.
+pub(crate) fn line_of(error: &Malformed) -> usize {
+    let (_, behind) = error.place.split_once("line ").expect("a line");
+    let digits = behind.split(|c: char| !c.is_ascii_digit()).next();
+    digits.and_then(|digits| digits.parse().ok()).expect("a number")
+}
 
 /// Two square rooms joined by a two-sided line, sector 0 in the west and sector 1 in the east, with a
 /// thing in each.

@@ -6,14 +6,15 @@ mod entities;
 mod inserts;
 mod layers;
 
-use sightlines_formats::dxf::{DxfError, parse_dxf};
+use sightlines_formats::Malformed;
+use sightlines_formats::dxf::parse_dxf;
 use sightlines_formats::{PlanFile, PlanReadOptions};
 
 fn read(bytes: &[u8]) -> PlanFile {
     parse_dxf(bytes, &PlanReadOptions::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn refused(bytes: &[u8]) -> DxfError {
+fn refused(bytes: &[u8]) -> Malformed {
     parse_dxf(bytes, &PlanReadOptions::default()).expect_err("it should be refused")
 }
 

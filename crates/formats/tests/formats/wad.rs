@@ -1,5 +1,9 @@
-use super::*;
+//! The WAD container: what is read, what is refused, and what an edit changes.
+
 use proptest::prelude::*;
+use sightlines_formats::ReadErrorKind;
+use sightlines_formats::wad::{Edit, Lump, LumpName, Wad, WadError};
+use std::fs::File;
 
 /// A WAD with the given directory: 12 bytes of header, `body` bytes, then the entries.
 fn raw(body: usize, entries: &[(i32, i32, &str)]) -> Vec<u8> {
@@ -154,4 +158,22 @@ fn shared_lumps_stay_shared_unless_replaced() {
     let n_lumps = 3;
     let missing = wad.with_edits(&[Edit::Replace { lump: 3, bytes: vec![] }]);
     assert_eq!(missing, Err(WadError::NoSuchLump { lump: 3, n_lumps }));
+}
+
+#[test]
+fn names_end_at_the_first_zero() {
+    let junk = LumpName::from_raw(*b"MAP01\0XY");
+    assert!(junk.is("MAP01") && junk.is("map01") && !junk.is("MAP0") && !junk.is("MAP01\0"));
+    assert_eq!((junk.to_string(), junk.raw()), ("MAP01".to_owned(), *b"MAP01\0XY"));
+    assert_ne!(junk, LumpName::new("MAP01").unwrap());
+    let full = LumpName::new("LINEDEFS").unwrap();
+    assert!(full.is("LINEDEFS") && !full.is("LINEDEF"));
+}
+
+#[test]
+fn odd_names_are_refused_or_shown_escaped() {
+    for bad in ["", "NINECHARS", "ä", "A\0B"] {
+        assert!(LumpName::new(bad).is_err(), "{bad:?}");
+    }
+    assert_eq!(LumpName::from_raw([7, 0xFF, b'A', 0, 0, 0, 0, 0]).to_string(), r"\x07\xffA");
 }

@@ -1,5 +1,10 @@
-use super::*;
+//! The index of levels.
+
+use crate::common::line_of;
 use proptest::prelude::*;
+use sightlines_formats::levels::{
+    INDEX_NAME, LevelFile, LevelsIndex, parse_levels_index, read_levels_index, write_levels_index,
+};
 
 fn level(k: usize) -> LevelFile {
     let file = format!("level_{k}.glb");
@@ -53,7 +58,7 @@ fn what_is_wrong_is_reported_with_its_place() {
     let stops = |from: &str, to: &str, says: &str| {
         let text = write_levels_index(&small()).replacen(from, to, 1);
         let error = parse_levels_index(text.as_bytes()).unwrap_err();
-        assert!(matches!(error.place, LevelsPlace::Text(line, _) if line > 1), "{error}");
+        assert!(line_of(&error) > 1, "{error}");
         assert!(error.to_string().ends_with(says), "{error}");
     };
     stops("\"budget\": 0.001,", "", ": missing field `budget`");

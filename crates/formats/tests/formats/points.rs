@@ -1,5 +1,7 @@
-use super::*;
+//! Points as CSV and GeoJSON.
+
 use proptest::prelude::*;
+use sightlines_formats::points::{parse_points, read_points};
 
 fn read(text: &str) -> Vec<(f64, f64, Option<String>)> {
     let points = parse_points(text.as_bytes()).unwrap_or_else(|error| panic!("{text}: {error}"));

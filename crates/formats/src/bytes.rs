@@ -1,0 +1,28 @@
+//! Bytes of files: numbers in them, and marks before texts.
+
+/// What follows the three bytes that some editors put before a text.
+pub(crate) fn without_mark(text: &[u8]) -> &[u8] {
+    text.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(text)
+}
+
+/// The bytes at `at`, which the caller knows to be inside.
+pub(crate) fn bytes_at<const N: usize>(bytes: &[u8], at: usize) -> [u8; N] {
+    let mut out = [0; N];
+    out.copy_from_slice(&bytes[at..at + N]);
+    out
+}
+
+/// Little-endian numbers at a place that the caller knows to be inside.
+macro_rules! numbers {
+    ($($name:ident: $number:ty),+) => {
+        $(pub(crate) fn $name(bytes: &[u8], at: usize) -> $number {
+            <$number>::from_le_bytes(bytes_at(bytes, at))
+        })+
+    };
+}
+numbers!(i16_at: i16, u16_at: u16, i32_at: i32, u32_at: u32);
+
+/// A little-endian number; `None` if it is not inside.
+pub(crate) fn number_at(bytes: &[u8], at: usize) -> Option<u32> {
+    bytes.get(at..)?.first_chunk().map(|&number| u32::from_le_bytes(number))
+}
