@@ -8,11 +8,17 @@ mod claims;
 mod cut;
 mod manifest;
 mod own;
+mod runs;
+mod slot;
+mod status;
 mod store;
 
 pub use claims::batch;
 pub use cut::cut;
 pub use manifest::{InputFile, Manifest, PhasePlan, ShardPlan};
+pub use runs::{ParseShardRunError, ShardRun, in_words};
+pub use slot::JobSlot;
+pub use status::PhaseStatus;
 pub use store::{JobStore, Outcome, Role};
 
 use crate::error::StateError;
@@ -67,6 +73,17 @@ pub enum JobError {
     /// Another job is in the folder.
     #[error("{}: there is another job in the folder; name a new one, or remove it", .0.display())]
     OtherJob(PathBuf),
+    /// The work has another key than the job.
+    #[error("{}: the command and what it reads are not what they were when the job was planned", .0.display())]
+    OtherWork(PathBuf),
+    /// A file that the job reads has changed.
+    #[error("{}: the file is not what it was when the job in {} was planned", path.display(), folder.display())]
+    OtherInput {
+        /// The file.
+        path: PathBuf,
+        /// The folder of the job.
+        folder: PathBuf,
+    },
     /// The journal of a shard cannot be used.
     #[error(transparent)]
     State(Box<StateError>),

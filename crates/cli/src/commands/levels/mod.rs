@@ -6,16 +6,18 @@ use crate::Answer;
 use crate::error::{Result, anyhow};
 use crate::folder::NewFolder;
 use crate::input;
-use crate::kept::{Identity, Inputs, Keeping, Kept, ResumeArgs};
-use crate::memory::{MemoryArgs, Needs, Size};
+use crate::kept::{self, Keeping, Kept, ResumeArgs};
+use crate::memory::{MemoryArgs, Size};
 use crate::output;
 use crate::progress::Bar;
 use crate::simplification::{self, HowArgs, OutFormat, ReadScene, read, written};
 use outcome::Outcome;
 use sightlines::cells::Scene;
+use sightlines::checkpoint::{Identity, Inputs};
 use sightlines::formats::levels::{INDEX_NAME, LevelFile, LevelsIndex, write_levels_index};
 use sightlines::formats::{GltfSource, SceneFile};
 use sightlines::multifocal::FromRegion;
+use sightlines::progress::memory::Needs;
 use sightlines::simplify::{
     Effort, HiddenBy, LevelOptions, Levels, MakeMethod, SimplifyError, SimplifyOptions, levels_with,
 };
@@ -72,7 +74,7 @@ pub(crate) fn run(args: &LevelsArgs, show_progress: bool) -> Result<Answer> {
     let keeping = Keeping::File(&args.resume);
     let is_there = args.table.exists() && args.scene.exists();
     let inputs = [&args.scene, &args.table].map(PathBuf::as_path);
-    let inputs = Inputs::look(keeping, inputs.into_iter().filter(|_| is_there))?;
+    let inputs = kept::look(keeping, inputs.into_iter().filter(|_| is_there))?;
     let table = input::table(&args.table)?;
     // What was see-through for the table must not count as a wall here.
     let ReadScene { file, source } = read(&args.scene, &args.how.surfaces.options_with(table.info()))?;
@@ -122,7 +124,7 @@ impl LevelsArgs {
         let Self { scene: _, table: _, how, memory: _, work_memory: _, resume: _, output: _, json: _ } = self;
         let LevelOptions { simplify, memory, bytes_per_triangle } = *options;
         let simplify = SimplifyOptions { threads: 0, ..simplify };
-        let mut identity = Identity::new("levels", inputs);
+        let mut identity = kept::identity("levels", inputs);
         // Files that a scene names are part of it.
         identity.debug("content", &file.scene.checksum());
         identity.debug("how", &how.for_any_threads());

@@ -7,7 +7,7 @@ use super::scenes::Scenes;
 use crate::commands::build::region::RegionArgs;
 use crate::error::{ErrorAbout, Result, anyhow, bail};
 use crate::folder::cannot_be_made;
-use crate::kept::{Identity, Inputs, Keeping, Kept, PROGRAM, UNITS};
+use crate::kept::{self, Keeping, Kept, PROGRAM, UNITS};
 use crate::memory::MemoryArgs;
 use crate::output;
 use crate::progress::Bar;
@@ -15,6 +15,7 @@ use crate::surfaces::SurfaceArgs;
 use crate::{Answer, interrupt};
 use sightlines::bake::{BakeRequest, Runtime};
 use sightlines::checkpoint::KeyHasher;
+use sightlines::checkpoint::{Identity, Inputs};
 use sightlines::formats::scene::SceneReadOptions;
 use sightlines::geometry::{Aabb, BoxTree};
 use sightlines::packed::Packed;
@@ -94,7 +95,7 @@ pub(crate) fn make(args: &TilesBuildArgs, keeping: Keeping<'_>, show_progress: b
     let runtime = Runtime { progress: Some(&Quiet), warn: crate::buffers::warn, ..Runtime::default() };
     let reading = args.surfaces.options();
     let files = input::files(&args.world, &input::plan(&args.world)?);
-    let looked_at = Inputs::look(keeping, files.iter().map(PathBuf::as_path))?;
+    let looked_at = kept::look(keeping, files.iter().map(PathBuf::as_path))?;
     // As it was looked at.
     let plan = input::plan(&args.world)?;
     if files != input::files(&args.world, &plan) {
@@ -135,7 +136,7 @@ pub(crate) fn make(args: &TilesBuildArgs, keeping: Keeping<'_>, show_progress: b
 
 /// What decides the results of units.
 fn identity(inputs: &Inputs, keys: &[TileKeys]) -> Identity {
-    let mut identity = Identity::new("tiles", inputs);
+    let mut identity = kept::identity("tiles", inputs);
     keys.iter().for_each(|keys| identity.debug("tile", &(keys.key, keys.far_key)));
     identity
 }
