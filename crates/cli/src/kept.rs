@@ -5,7 +5,7 @@ use crate::interrupt;
 use crate::output::{self, count};
 use crate::plain::plain;
 use sightlines::checkpoint::{Identity, Inputs, JobStore, Journal, Key, Opening, StateError};
-use sightlines::progress::{UnitStore, Units};
+use sightlines::progress::{Halt, UnitStore, Units};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -203,13 +203,13 @@ impl<'a> Kept<'a> {
     }
 
     /// Before anything is written that the command makes: an error if another worker of the job has written it.
-    pub(crate) fn before_writing(&self) -> Result<()> {
+    pub(crate) fn before_writing(&self) -> Result<(), Halt> {
         self.before_writing_files(&self.outputs)
     }
 
     /// The same where it is known only now which files that are.
-    pub(crate) fn before_writing_files(&self, files: &[PathBuf]) -> Result<()> {
-        Ok(self.job.map_or(Ok(()), |job| job.begin_writing(files))?)
+    pub(crate) fn before_writing_files(&self, files: &[PathBuf]) -> Result<(), Halt> {
+        self.job.map_or(Ok(()), |job| job.begin_writing(files))
     }
 
     /// After the end, if all went well: leaves all results in their file.

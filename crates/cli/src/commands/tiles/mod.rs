@@ -1,12 +1,9 @@
 //! `tiles`: a world that is too large for one table.
 
-mod bake;
 mod build;
 mod check;
-mod input;
 mod outcome;
 mod query;
-mod scenes;
 
 pub(crate) use build::{TilesBuildArgs, make};
 pub(crate) use outcome::Outcome;
