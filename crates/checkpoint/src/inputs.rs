@@ -1,5 +1,6 @@
 //! What decides the results of a work: files as they were before they were read, and values.
 
+use crate::error::StateError;
 use crate::job::InputFile;
 use crate::key::{Key, KeyHasher};
 use std::path::{Path, PathBuf};
@@ -8,23 +9,6 @@ use std::{fmt, fs, io};
 
 /// The times of files are as coarse as this on some systems.
 const COARSE: Duration = Duration::from_secs(3);
-
-/// Why the content of a file cannot be part of a key.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum InputError {
-    /// It cannot be read.
-    #[error("{}: {source}", path.display())]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// The error of the system.
-        source: io::Error,
-    },
-    /// What was read may be something else than what was looked at.
-    #[error("{}: the file has changed while it was read; run the command again", .0.display())]
-    Changed(PathBuf),
-}
 
 /// The files that a work reads, as they were before it read them.
 #[derive(Debug, Default)]
@@ -44,9 +28,9 @@ impl Inputs {
     /// Looks at all content of files before they are read.
     ///
     /// # Errors
-    /// [`InputError::Read`].
-    pub fn look<'p>(paths: impl IntoIterator<Item = &'p Path>) -> Result<Self, InputError> {
-        let looked = paths.into_iter().map(|path| Looked::new(path).map_err(|source| failed(path, source)));
+    /// [`StateError::Read`].
+    pub fn look<'p>(paths: impl IntoIterator<Item = &'p Path>) -> Result<Self, StateError> {
+        let looked = paths.into_iter().map(|path| Looked::new(path).map_err(|source| StateError::read(path, source)));
         Ok(Self(looked.collect::<Result<_, _>>()?))
     }
 
@@ -65,21 +49,21 @@ impl Inputs {
     /// Refuses files that are not what was looked at. Reads the content only of those that were just written.
     ///
     /// # Errors
-    /// [`InputError`].
-    pub fn check(&self) -> Result<(), InputError> {
+    /// [`StateError`].
+    pub fn check(&self) -> Result<(), StateError> {
         (0..self.0.len()).try_for_each(|nth| self.check_file(nth))
     }
 
     /// Refuses one of them if it is not what was looked at.
     ///
     /// # Errors
-    /// [`InputError`].
-    pub fn check_file(&self, nth: usize) -> Result<(), InputError> {
+    /// [`StateError`].
+    pub fn check_file(&self, nth: usize) -> Result<(), StateError> {
         let Some(looked) = self.0.get(nth) else { return Ok(()) };
         match looked.is_same() {
             Ok(true) => Ok(()),
-            Ok(false) => Err(InputError::Changed(looked.path.clone())),
-            Err(source) => Err(failed(&looked.path, source)),
+            Ok(false) => Err(StateError::InputChanged(looked.path.clone())),
+            Err(source) => Err(StateError::read(&looked.path, source)),
         }
     }
 
@@ -87,10 +71,6 @@ impl Inputs {
     pub fn paths(&self) -> impl Iterator<Item = &Path> {
         self.0.iter().map(|looked| looked.path.as_path())
     }
-}
-
-fn failed(path: &Path, source: io::Error) -> InputError {
-    InputError::Read { path: path.to_owned(), source }
 }
 
 impl Looked {
@@ -169,12 +149,12 @@ mod tests {
         let key = |inputs: &Inputs| Identity::new(("1", 1), "toy", inputs).key();
         let (a, b) = (key(&look("a")), look("b"));
         assert!(b.check().is_ok() && key(&b) != a && key(&look("a")) == a);
-        assert!(matches!(b.check(), Err(InputError::Changed(_))), "it has the same length");
+        assert!(matches!(b.check(), Err(StateError::InputChanged(_))), "it has the same length");
         let apart = |inputs: &Inputs| Identity::apart_from(("1", 1), "toy", inputs).key();
         assert_eq!(apart(&look("c")), apart(&b));
         assert_ne!(Identity::apart_from(("1", 2), "toy", &b).key(), apart(&b));
         fs::remove_file(&path).unwrap();
-        assert!(matches!(b.check(), Err(InputError::Read { .. })));
+        assert!(matches!(b.check(), Err(StateError::Read { .. })));
         assert!(Inputs::look([path.as_path()]).is_err() && Inputs::names([path.as_path()]).paths().eq([&*path]));
     }
 }

@@ -20,7 +20,7 @@ mod lock;
 mod records;
 
 pub use error::StateError;
-pub use inputs::{Identity, InputError, Inputs};
+pub use inputs::{Identity, Inputs};
 pub use job::{
     InputFile, Job, JobError, JobSlot, JobStore, Manifest, Outcome, ParseShardRunError, PhasePlan, PhaseStatus, Role,
     ShardPlan, ShardRun, ShardState, batch, cut, in_words,

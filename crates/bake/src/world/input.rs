@@ -41,8 +41,8 @@ pub(super) struct Loaded {
 
 /// The plan of a world.
 pub(super) fn plan(path: &Path) -> Result<WorldPlan, WorldBakeError> {
-    let text = fs::read(path).map_err(|source| WorldBakeError::Io { path: path.to_owned(), source })?;
-    WorldPlan::parse(&text).map_err(|source| WorldBakeError::Plan { path: path.to_owned(), source })
+    let text = fs::read(path).map_err(|error| WorldBakeError::file(path, error))?;
+    WorldPlan::parse(&text).map_err(|error| WorldBakeError::file(path, error))
 }
 
 /// The plan, and all files that it names.
@@ -68,7 +68,7 @@ pub(super) fn look(
     if (0..3).any(|k| loaded.viewers.min[k] >= loaded.viewers.max[k]) {
         let what =
             format!("{}: there is no room for viewers in the box of the scene; name \"viewers\"", scene.display());
-        return Err(WorldBakeError::Plan { path: world.to_owned(), source: WorldError::Tile { tile, what } });
+        return Err(WorldBakeError::file(world, WorldError::Tile { tile, what }));
     }
     let bounds = TileBounds { viewers: loaded.viewers, extent };
     let axes = format!("{:?}, {:?}", loaded.info.up, loaded.info.unit);
@@ -95,7 +95,10 @@ impl TileInput {
         let cells = tile_cells(&loaded.scene, &loaded.viewers, &request, runtime);
         let cells = cells.map_err(|source| WorldBakeError::scene(&self.scene, source))?;
         if cells.is_empty() {
-            return Err(WorldBakeError::NoCells { path: self.scene.clone(), tile: self.plan.name.clone() });
+            let tile = &self.plan.name;
+            let why =
+                format!("the tile {tile:?} has no cells: no eye can be in it; leave it out, or give it \"viewers\"");
+            return Err(WorldBakeError::file(&self.scene, why));
         }
         Ok(cells)
     }
@@ -122,8 +125,10 @@ fn load(
         return Err(WorldBakeError::Occluder(path.to_owned()));
     }
     file.info.warnings.iter().for_each(|warning| warn(&format!("{}: {warning}", path.display())));
-    let moved = |source| WorldBakeError::Moved { path: path.to_owned(), source };
-    let (scene, info) = (file.scene.translated(plan.at).map_err(moved)?, file.info);
+    let moved = file.scene.translated(plan.at);
+    let scene =
+        moved.map_err(|error| WorldBakeError::file(path, format!("moved to its place in the world: {error}")))?;
+    let info = file.info;
     let given = cells.map(read_view_cells).transpose()?.map(|given| moved_cells(given, plan.at));
     let of_cells = |given: &ViewCells| {
         let boxes = upright_cells(given);

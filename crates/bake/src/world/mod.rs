@@ -47,7 +47,7 @@ const PHASE: &str = "tiles";
 /// The plan of a world, and all files that it names.
 ///
 /// # Errors
-/// [`WorldBakeError::Io`], and [`WorldBakeError::Plan`].
+/// [`WorldBakeError::File`].
 pub fn world_files(world: &Path) -> Result<Vec<PathBuf>, WorldBakeError> {
     Ok(input::files(world, &input::plan(world)?))
 }
@@ -190,7 +190,7 @@ impl<'a> WorldBake<'a> {
     /// # Errors
     /// [`WorldBakeError`]: tiles that are whole stay.
     pub fn run(&self, folder: &Path, run: &WorldRun<'_>) -> Result<WorldReport, WorldBakeError> {
-        fs::create_dir_all(folder).map_err(|source| WorldBakeError::Io { path: folder.to_owned(), source })?;
+        fs::create_dir_all(folder).map_err(|error| WorldBakeError::file(folder, error))?;
         let missing = self.missing(folder);
         self.bake(folder, &missing, run)?;
         self.finish(folder, &missing)
@@ -276,12 +276,12 @@ impl<'a> WorldBake<'a> {
         for (tile, (input, &TileKeys { key, far_key, .. })) in self.inputs.iter().zip(&self.keys).enumerate() {
             for part in TilePart::ALL {
                 let path = self.path(folder, tile, part);
-                let found = fs::metadata(&path).map_err(|source| WorldBakeError::Io { path, source })?;
+                let found = fs::metadata(&path).map_err(|error| WorldBakeError::file(&path, error))?;
                 report.n_bytes += found.len();
             }
             let path = self.path(folder, tile, TilePart::Table);
-            let file = File::open(&path).map_err(|source| WorldBakeError::Io { path: path.clone(), source })?;
-            let table = Packed::open(file, 0).map_err(|source| WorldBakeError::Table { path, source })?;
+            let file = File::open(&path).map_err(|error| WorldBakeError::file(&path, error))?;
+            let table = Packed::open(file, 0).map_err(|error| WorldBakeError::file(&path, error))?;
             let (n_cells, n_objects) = (table.n_cells() as u32, table.n_objects() as u32);
             let (name, bounds) = (input.plan.name.clone(), input.bounds);
             index.tiles.push(TileEntry { name, bounds, key, far_key, n_cells, n_objects });
@@ -304,11 +304,11 @@ impl<'a> WorldBake<'a> {
 /// Refuses scenes with other axes or units than the first.
 fn check_axes(inputs: &[TileInput]) -> Result<(), WorldBakeError> {
     let first = &inputs[0];
-    inputs.iter().find(|tile| tile.axes != first.axes).map_or(Ok(()), |other| {
-        let [path, first_path] = [&other.scene, &first.scene].map(PathBuf::clone);
-        let (found, expected) = (other.axes.clone(), first.axes.clone());
-        Err(WorldBakeError::Axes { path, found, first: first_path, expected })
-    })
+    let Some(other) = inputs.iter().find(|tile| tile.axes != first.axes) else { return Ok(()) };
+    let (found, file, expected) = (&other.axes, first.scene.display(), &first.axes);
+    let why =
+        format!("up is {found}, and in {file} it is {expected}: all scenes of a world have the same axes and units");
+    Err(WorldBakeError::file(&other.scene, why))
 }
 
 /// Calls `make` for each number below `n`, on so many threads; the results in order.

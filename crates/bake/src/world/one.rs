@@ -8,6 +8,7 @@ use crate::tile::{NearTile, Tile, bake_far, bake_tile};
 use sightlines_checkpoint::KeyHasher;
 use sightlines_geometry::Aabb;
 use sightlines_tiles::{TilePart, far_bytes, near_bytes, table_bytes};
+use std::path::Path;
 use std::sync::Arc;
 
 /// The keys of a tile, and what they are of.
@@ -103,7 +104,7 @@ pub(super) fn bake(
     let parts = Tile { scene, file, cells: &own.cells, near: &of_near, far: &of_far };
     let failed = |source| WorldBakeError::scene(&input.scene, source);
     let names = keys.far.iter().map(|&k| inputs[k as usize].plan.name.clone()).collect();
-    let write = |source| WorldBakeError::Tile { name: input.plan.name.clone(), source };
+    let write = |error| WorldBakeError::file(Path::new(&format!("tile {:?}", input.plan.name)), error);
     if only_far {
         let rows = bake_far(&parts, request, runtime).map_err(failed)?;
         return Ok(Files(vec![(TilePart::Far, far_bytes(keys.far_key, names, &rows).map_err(write)?)]));

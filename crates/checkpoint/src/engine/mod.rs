@@ -19,7 +19,7 @@ pub use slurm::Slurm;
 use crate::job::{Job, JobError};
 use sightlines_progress::{Observer, Progress};
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Shards of a phase that are to be done.
 #[derive(Debug, Clone, Copy)]
@@ -91,14 +91,6 @@ pub enum EngineError {
         name: String,
         /// What it said.
         message: String,
-    },
-    /// A folder cannot be made.
-    #[error("{}: {source}", path.display())]
-    Folder {
-        /// The folder.
-        path: PathBuf,
-        /// The error of the system.
-        source: io::Error,
     },
     /// The folder of the job.
     #[error(transparent)]

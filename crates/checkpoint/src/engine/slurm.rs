@@ -96,11 +96,11 @@ impl Slurm<'_> {
     /// Writes the scripts of an attempt into the folder of the job, and starts nothing; their paths. Attempt 0 is for scripts that are only to be read.
     ///
     /// # Errors
-    /// [`EngineError::Folder`], and [`JobError::Write`].
+    /// [`EngineError::Job`].
     pub fn write(&self, round: &Round<'_>, attempt: u32) -> Result<[PathBuf; 2], EngineError> {
         let files = Files::of(round, attempt);
         let folder = &files.folder;
-        fs::create_dir_all(folder).map_err(|source| EngineError::Folder { path: folder.clone(), source })?;
+        fs::create_dir_all(folder).map_err(|source| JobError::Read { path: folder.clone(), source })?;
         let options: String = self.options.iter().map(|option| format!("#SBATCH {option}\n")).collect();
         let name = &round.job.manifest().phases[round.phase].name;
         let array = ShardRun::texts(&self.tasks(round)).join(",");

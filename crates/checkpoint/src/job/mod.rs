@@ -41,7 +41,7 @@ const PARTS: &str = "parts";
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum JobError {
-    /// A file cannot be read.
+    /// A file cannot be read, or a folder not made.
     #[error("{}: {source}", path.display())]
     Read {
         /// The file or folder.

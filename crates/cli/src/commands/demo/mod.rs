@@ -5,8 +5,7 @@ mod tower;
 
 use crate::Answer;
 use crate::error::{ErrorAbout, Result};
-use crate::folder::cannot_be_made;
-use crate::output::{self, bytes};
+use crate::output::{self, bytes, cannot_be_made};
 use crate::reasons::reasons;
 use serde::Serialize;
 use sightlines::progress::memory;

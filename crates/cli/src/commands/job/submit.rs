@@ -6,7 +6,6 @@ use super::task::Task;
 use super::{absolute, interrupted, open};
 use crate::error::{ErrorAbout, Result, bail};
 use crate::kept::PROGRAM;
-use crate::named::one_of;
 use crate::progress::Bar;
 use crate::{Answer, interrupt, output};
 use sightlines::checkpoint::engine::{
@@ -19,31 +18,14 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Who does shards.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum Kind {
+    /// Workers on this machine
     Local,
+    /// An array job of Slurm for the shards, and a job that merges behind it
     Slurm,
+    /// A command of yours for each shard
     Command,
-}
-
-impl Kind {
-    const ALL: [Self; 3] = [Self::Local, Self::Slurm, Self::Command];
-
-    const fn name(self) -> &'static str {
-        match self {
-            Self::Local => "local",
-            Self::Slurm => "slurm",
-            Self::Command => "command",
-        }
-    }
-
-    const fn about(self) -> &'static str {
-        match self {
-            Self::Local => "Workers on this machine",
-            Self::Slurm => "An array job of Slurm for the shards, and a job that merges behind it",
-            Self::Command => "A command of yours for each shard",
-        }
-    }
 }
 
 /// Arguments of `job submit`.
@@ -53,7 +35,7 @@ pub(crate) struct SubmitArgs {
     #[arg(value_name = "JOB")]
     job: PathBuf,
     /// Who does the shards
-    #[arg(long, help_heading = "Method", value_name = "WHO", default_value = "local", value_parser = one_of(&Kind::ALL, Kind::name, Kind::about))]
+    #[arg(long, help_heading = "Method", value_name = "WHO", default_value = "local")]
     engine: Kind,
     /// local: workers; command: commands that run at once [default: as many as there are cores]
     #[arg(long, help_heading = "Method", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]

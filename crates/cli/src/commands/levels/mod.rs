@@ -4,7 +4,6 @@ mod outcome;
 
 use crate::Answer;
 use crate::error::{Result, anyhow};
-use crate::folder::NewFolder;
 use crate::input;
 use crate::kept::{self, Keeping, Kept, ResumeArgs};
 use crate::memory::{MemoryArgs, Size};
@@ -15,7 +14,7 @@ use outcome::Outcome;
 use sightlines::cells::Scene;
 use sightlines::checkpoint::{Identity, Inputs};
 use sightlines::formats::levels::{INDEX_NAME, LevelFile, LevelsIndex, write_levels_index};
-use sightlines::formats::{GltfSource, SceneFile};
+use sightlines::formats::{FolderError, GltfSource, NewFolder, SceneFile};
 use sightlines::multifocal::FromRegion;
 use sightlines::progress::memory::Needs;
 use sightlines::simplify::{
@@ -70,7 +69,12 @@ pub(crate) fn run(args: &LevelsArgs, show_progress: bool) -> Result<Answer> {
     let work_memory = MemoryArgs::of(args.work_memory);
     work_memory.watch();
     // Outputs that cannot be written are reported before the work is done.
-    let folder = NewFolder::new(&args.output, is_ours)?;
+    let folder = NewFolder::new(&args.output, is_ours).map_err(|error| match error {
+        FolderError::Other { .. } => {
+            anyhow!("{error}, which is no level: name a new folder, or one that only holds levels")
+        }
+        error => error.into(),
+    })?;
     let keeping = Keeping::File(&args.resume);
     let is_there = args.table.exists() && args.scene.exists();
     let inputs = [&args.scene, &args.table].map(PathBuf::as_path);
@@ -165,6 +169,8 @@ fn write(
     }
     folder.save(INDEX_NAME, write_levels_index(&index).as_bytes())?;
     let outcome = Outcome::new(args, (scene, method), &index, (n_bytes, roundings), start.elapsed());
-    folder.finish()?;
+    if let Some((old, error)) = folder.finish()? {
+        tracing::warn!("{}: what the folder was before cannot be removed: {error}", old.display());
+    }
     Ok(outcome)
 }

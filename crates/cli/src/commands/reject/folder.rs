@@ -3,10 +3,9 @@
 use super::outcome::{FileOutcome, FileStatus, FolderOutcome};
 use super::{BAR, Map, RejectArgs, finish, warn};
 use crate::error::{Result, anyhow, bail};
-use crate::folder::cannot_be_made;
 use crate::interrupt;
 use crate::kept::{self, Keeping, Kept};
-use crate::output;
+use crate::output::{self, cannot_be_made};
 use crate::progress::Bar;
 use sightlines::bake::{RejectError, RejectMaps, RejectTables, RejectWadsError, reject_wads};
 use sightlines::checkpoint::Inputs;
