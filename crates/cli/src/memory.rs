@@ -5,6 +5,7 @@ use crate::interrupt;
 use crate::output::bytes;
 use sightlines::progress::memory::{MemoryBudget, Needs, TooLarge, n_threads};
 use std::fmt;
+use std::io::ErrorKind;
 
 /// A number of bytes as an argument: `2GiB`, `800MB`, or a plain number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -71,7 +72,9 @@ impl MemoryArgs {
     /// Looks at the memory in use from here on, again and again, and ends the work under way if it is too much.
     pub(crate) fn watch(self) {
         if let Err(error) = self.budget().watch(interrupt::request_for_memory) {
-            tracing::warn!("--memory: {error}");
+            let about =
+                if error.kind() == ErrorKind::Unsupported { "" } else { "the memory in use cannot be looked at: " };
+            tracing::warn!("--memory: {about}{error}");
         }
     }
 

@@ -40,18 +40,6 @@ pub struct TooLarge {
     pub limit: u64,
 }
 
-/// Why the memory in use cannot be watched.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum WatchError {
-    /// The system does not report it.
-    #[error("this system does not report how much memory is used; only estimates count")]
-    NotReported,
-    /// There cannot be another thread.
-    #[error("the memory in use cannot be looked at: {0}")]
-    Thread(#[from] io::Error),
-}
-
 /// The bytes of memory that a process may use, by what it needs and by what the system reports; `None` for no limit.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct MemoryBudget(pub Option<u64>);
@@ -83,10 +71,11 @@ impl MemoryBudget {
     /// Looks at the memory in use from here on, every 20 ms on a thread of its own. Calls `exceeded` with what is in use and the limit, once it is more.
     ///
     /// # Errors
-    /// [`WatchError`]: then nothing is watched, and estimates count alone.
-    pub fn watch(self, exceeded: impl FnOnce(u64, u64) + Send + 'static) -> Result<(), WatchError> {
+    /// A system that does not report it, or has no room for a thread: then nothing is watched, and estimates count alone.
+    pub fn watch(self, exceeded: impl FnOnce(u64, u64) + Send + 'static) -> io::Result<()> {
         let Some(limit) = self.0 else { return Ok(()) };
-        resident_bytes().ok_or(WatchError::NotReported)?;
+        let unknown = "this system does not report how much memory is used; only estimates count";
+        resident_bytes().ok_or_else(|| io::Error::new(io::ErrorKind::Unsupported, unknown))?;
         let look = move || {
             loop {
                 if let Some(used) = resident_bytes().filter(|used| *used > limit) {

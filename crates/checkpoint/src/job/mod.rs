@@ -25,7 +25,6 @@ use crate::error::StateError;
 use crate::index::Results;
 use crate::key::Key;
 use crate::records::{Owner, record};
-use manifest::ManifestError;
 use sightlines_formats::{WriteError, atomic_write};
 use std::collections::BTreeSet;
 use std::fs;
@@ -53,12 +52,12 @@ pub enum JobError {
     #[error(transparent)]
     Write(#[from] WriteError),
     /// The manifest is damaged.
-    #[error("{}: {source}", path.display())]
+    #[error("{}: {what}", path.display())]
     Manifest {
         /// The file.
         path: PathBuf,
         /// What is wrong.
-        source: ManifestError,
+        what: String,
     },
     /// Another version of the program planned the job.
     #[error("{}: planned by version {found} of the program, and this is {expected}; plan it anew", path.display())]
@@ -145,7 +144,7 @@ impl Job {
         }
         let parts = folder.join(PARTS);
         fs::create_dir_all(&parts).map_err(|source| WriteError { path: parts, source })?;
-        let key = manifest.check().map_err(|source| JobError::Manifest { path, source })?;
+        let key = manifest.check().map_err(|what| JobError::Manifest { path, what })?;
         let job = Self { folder: folder.to_owned(), manifest, key };
         job.save()?;
         Ok(job)
@@ -158,8 +157,7 @@ impl Job {
     pub fn open(folder: &Path, program: &str) -> Result<Self, JobError> {
         let path = folder.join(MANIFEST);
         let text = fs::read(&path).map_err(|source| JobError::Read { path: path.clone(), source })?;
-        let (manifest, key) =
-            Manifest::parse(&text).map_err(|source| JobError::Manifest { path: path.clone(), source })?;
+        let (manifest, key) = Manifest::parse(&text).map_err(|what| JobError::Manifest { path: path.clone(), what })?;
         if manifest.program != program {
             let (found, expected) = (manifest.program, program.to_owned());
             return Err(JobError::OtherProgram { path, found, expected });
