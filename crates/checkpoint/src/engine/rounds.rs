@@ -30,8 +30,6 @@ pub enum Rounds<T> {
     Elsewhere(Option<String>),
     /// Shards have failed as often as they may.
     Missing {
-        /// The job.
-        job: Job,
         /// The place of the phase.
         phase: usize,
         /// The shards, and what there is of each.
@@ -63,7 +61,7 @@ pub fn run_rounds<T, E: From<EngineError>>(
                 let state = |shard| Ok((shard, job.state(shard)?));
                 let shards =
                     shards.into_iter().map(state).collect::<Result<_, JobError>>().map_err(EngineError::from)?;
-                return Ok(Rounds::Missing { job, phase, shards });
+                return Ok(Rounds::Missing { phase, shards });
             }
             if let Did::Output(told) = engine.run(&Round { job: &job, phase, shards: &shards }, tries.n, host)? {
                 return Ok(Rounds::Elsewhere(told));
@@ -82,7 +80,7 @@ pub fn run_rounds<T, E: From<EngineError>>(
             Merge::Missing { phase, shards } => {
                 shards.iter().for_each(|(shard, _)| remove_damaged(&job, *shard));
                 if tries.n > retries {
-                    return Ok(Rounds::Missing { job, phase, shards });
+                    return Ok(Rounds::Missing { phase, shards });
                 }
             }
             Merge::Written(written) => return Ok(Rounds::Merged(written)),

@@ -113,7 +113,7 @@ pub(crate) fn run(args: &SubmitArgs, show_progress: bool, verbose: bool) -> Resu
     };
     let found = match run_rounds((&folder, PROGRAM), (&engine, args.retries), &host, merge) {
         Ok(Rounds::Merged(written)) => written,
-        Ok(Rounds::Missing { job, phase, shards }) => Progress::Missing { job, phase, shards },
+        Ok(Rounds::Missing { phase, shards }) => Progress::Missing { job: open(&folder)?, phase, shards },
         Ok(Rounds::Elsewhere(told)) => Progress::Elsewhere(output_of(&open(&folder)?, out.as_deref())?, told),
         Err(error) if matches!(error.downcast_ref(), Some(EngineError::Stopped)) => return Err(interrupted()),
         Err(error) => return Err(error),
