@@ -12,8 +12,8 @@
 //!   walls along axes ([`places`]); the REJECT lumps of a WAD ([`reject_wad`]) or of several ([`reject_wads`]), the visibility of Quake maps and the state of an interrupted
 //!   search ([`quake`]), the table of a changing scene ([`live`]), why cells of a table see each other
 //!   ([`explain`](mod@explain)), lines of sight for the pairs of a table ([`lines`]);
-//!   the floor plan of a scene at a height ([`floor_cut`]); one tile of a world that is too large for one table ([`tile`]).
-//! - **Out of scope**: paths, the command line, pictures.
+//!   the floor plan of a scene at a height ([`floor_cut`]); one tile of a world that is too large for one table ([`tile`]), and all of them, from a plan to a folder ([`world`]).
+//! - **Out of scope**: paths but for those of worlds, the command line, pictures.
 //! - **Invariants**: the same scene and options give the same table, byte for byte, with any number of
 //!   threads; every approximation on the way errs towards visible.
 
@@ -37,6 +37,7 @@ pub mod lines;
 pub mod live;
 pub mod methods;
 mod mirrors;
+mod needs;
 mod objects;
 mod options;
 pub mod places;
@@ -56,6 +57,7 @@ mod subdivide;
 mod table;
 mod threads;
 pub mod tile;
+pub mod world;
 
 pub use backs::Backs;
 pub use bakeable::{Bakeable, BakeableError};
@@ -70,6 +72,7 @@ pub use graph::{GraphKind, GraphRef, OtherGraph, TableGraph};
 pub use input::BakeInput;
 pub use limit::LimitReport;
 pub use live::{LiveScene, LiveUpdate};
+pub use needs::portals_need;
 pub use options::{ParseSceneMethodError, Recipe, SceneMethod};
 pub use plan::{PlanBakeOptions, bake_plan};
 pub use prepared::{Decisions, Prepared, StatedViewers};

@@ -7,7 +7,7 @@ const STACK: usize = 8 << 20;
 ///
 /// If no threads can be started, those that all share do the work.
 pub(crate) fn on<T: Send>(threads: usize, run: impl FnOnce() -> T + Send) -> T {
-    let n = if threads == 0 { std::thread::available_parallelism().map_or(1, usize::from) } else { threads };
+    let n = sightlines_progress::memory::n_threads(threads);
     if rayon::current_thread_index().is_some() && rayon::current_num_threads() == n {
         return run();
     }

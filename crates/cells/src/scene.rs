@@ -354,6 +354,24 @@ impl Scene {
         (0..).zip(&self.objects).filter(|(object, _)| self.is_opaque(*object))
     }
 
+    /// The scene of other objects, each in the place of one of this scene, and as that: a mirror, see-through, moving, single-sided. It has no doors and no sources.
+    ///
+    /// # Errors
+    /// Those of [`Scene::new`].
+    pub fn replaced(&self, objects: impl IntoIterator<Item = (u32, SceneObject)>) -> Result<Self, SceneError> {
+        let (of, objects): (Vec<u32>, Vec<SceneObject>) = objects.into_iter().unzip();
+        let places =
+            |all: &[u32]| (0u32..).zip(&of).filter(|(_, of)| all.binary_search(of).is_ok()).map(|(k, _)| k).collect();
+        let moving = |(object, of): (u32, &u32)| {
+            let found = self.moving.binary_search_by_key(of, |moving| moving.object).ok()?;
+            Some(MovingObject { object, ..self.moving[found] })
+        };
+        let scene = Self::new(objects)?.with_mirrors(places(&self.mirrors))?;
+        let scene = scene.with_see_through(places(&self.see_through))?;
+        let scene = scene.with_moving((0u32..).zip(&of).filter_map(moving).collect())?;
+        scene.with_single_sided(places(&self.single_sided))?.with_front_occluders(places(&self.front_occluders))
+    }
+
     /// The scene of what hides: the same objects, of which those that are see-through have neither corners nor triangles.
     pub fn opaque_part(&self) -> Cow<'_, Self> {
         if self.see_through.is_empty() {

@@ -4,7 +4,7 @@ use sightlines_formats::WriteError;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Why a file of results cannot be used.
+/// Why a file of results, or a file that decides them, cannot be used.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum StateError {
@@ -49,6 +49,9 @@ pub enum StateError {
         /// The version that reads it.
         expected: String,
     },
+    /// A file that decides results may have been read as something else than what was looked at.
+    #[error("{}: the file has changed while it was read; run the command again", .0.display())]
+    InputChanged(PathBuf),
     /// It is of another input, or of other options.
     #[error("{}: the results are of another input or of other options", .0.display())]
     OtherKey(PathBuf),

@@ -3,14 +3,16 @@
 //! # Scope
 //!
 //! - **Owns**: stores of units in files: one file beside the output of a bake ([`Journal`]), and a folder that processes share ([`Job`],
-//!   [`JobStore`]); what tells the results of one bake from those of another ([`Key`]).
-//! - **Out of scope**: what units are and how they are computed (`bake`), who starts processes (the program).
+//!   [`JobStore`]); what tells the results of one bake from those of another ([`Key`]); who does the shards of a job ([`engine`]).
+//! - **Out of scope**: what units are and how they are computed (`bake`), command lines of processes (the program).
 //! - **Invariants**: no content of a file causes a panic or more memory than a small multiple of its size; a result is returned only
 //!   if its checksum holds; parts and the manifest of a job appear whole or not at all.
 
 mod division;
+pub mod engine;
 mod error;
 mod index;
+mod inputs;
 mod job;
 mod journal;
 mod key;
@@ -18,8 +20,10 @@ mod lock;
 mod records;
 
 pub use error::StateError;
+pub use inputs::{Identity, Inputs};
 pub use job::{
-    InputFile, Job, JobError, JobStore, Manifest, Outcome, PhasePlan, Role, ShardPlan, ShardState, batch, cut,
+    InputFile, Job, JobError, JobSlot, JobStore, Manifest, Outcome, ParseShardRunError, PhasePlan, PhaseStatus, Role,
+    ShardPlan, ShardRun, ShardState, batch, cut, in_words,
 };
 pub use journal::{Journal, Opening};
 pub use key::{Key, KeyHasher, ParseKeyError};

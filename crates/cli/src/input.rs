@@ -144,7 +144,7 @@ pub(crate) fn check_occluder(path: &Path, file: &SceneFile) -> Result<()> {
 }
 
 /// A scene whose triangles were moved, where occluders are needed.
-fn no_occluder(path: &Path) -> anyhow::Error {
+pub(crate) fn no_occluder(path: &Path) -> anyhow::Error {
     anyhow!(
         "{}: the scene was simplified and its triangles were moved, so that it may hide what can be seen: use the original that it was made from",
         path.display()

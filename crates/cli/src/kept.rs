@@ -1,15 +1,13 @@
 //! Results of units that outlive the program: so that a bake that was stopped goes on, or is shared.
 
-use crate::error::{ErrorAbout, Result, anyhow, bail};
+use crate::error::{Result, anyhow};
 use crate::interrupt;
 use crate::output::{self, count};
 use crate::plain::plain;
-use sightlines::checkpoint::{InputFile, Job, JobStore, Journal, Key, KeyHasher, Opening, StateError};
-use sightlines::progress::{UnitStore, Units};
+use sightlines::checkpoint::{Identity, Inputs, JobStore, Journal, Key, Opening, StateError};
+use sightlines::progress::{Halt, UnitStore, Units};
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
-use std::time::{Duration, SystemTime};
-use std::{fs, io};
+use std::time::Duration;
 
 /// The version of the program, which results are of.
 pub(crate) const PROGRAM: &str = env!("CARGO_PKG_VERSION");
@@ -128,110 +126,17 @@ fn advice(error: &StateError) -> &'static str {
     }
 }
 
-/// The files that a command reads, as they were before it read them.
-#[derive(Debug, Default)]
-pub(crate) struct Inputs(Vec<Looked>);
-
-#[derive(Debug)]
-struct Looked {
-    path: PathBuf,
-    n_bytes: u64,
-    key: Key,
-    modified: Option<SystemTime>,
-    /// Whether it was written so recently that a change may leave the time of the last one as it is.
-    is_fresh: bool,
+/// Looks at files before they are read: at all of their content, if results of units are kept.
+pub(crate) fn look<'p>(keeping: Keeping<'_>, paths: impl IntoIterator<Item = &'p Path>) -> Result<Inputs> {
+    Ok(match keeping {
+        Keeping::Nowhere => Inputs::names(paths),
+        Keeping::File(_) | Keeping::FileIfItFits(_) | Keeping::Job(_) => Inputs::look(paths)?,
+    })
 }
 
-/// The times of files are as coarse as this on some systems.
-const COARSE: Duration = Duration::from_secs(3);
-
-impl Inputs {
-    /// Looks at files before they are read: at all of their content, if results of units are kept.
-    pub(crate) fn look<'p>(keeping: Keeping<'_>, paths: impl IntoIterator<Item = &'p Path>) -> Result<Self> {
-        let looked = paths.into_iter().map(|path| match keeping {
-            Keeping::Nowhere => Ok(Looked::without_content(path)),
-            Keeping::File(_) | Keeping::FileIfItFits(_) | Keeping::Job(_) => Looked::new(path).in_file(path),
-        });
-        Ok(Self(looked.collect::<Result<_>>()?))
-    }
-
-    /// Refuses files that are not what was looked at: what was read is something else.
-    fn check(&self) -> Result<()> {
-        (0..self.0.len()).try_for_each(|nth| self.check_file(nth))
-    }
-
-    /// Refuses one of them if it is not what was looked at.
-    pub(crate) fn check_file(&self, nth: usize) -> Result<()> {
-        let Some(looked) = self.0.get(nth) else { return Ok(()) };
-        if !looked.is_same().in_file(&looked.path)? {
-            bail!("{}: the file has changed while it was read; run the command again", looked.path.display());
-        }
-        Ok(())
-    }
-
-    fn paths(&self) -> impl Iterator<Item = &Path> {
-        self.0.iter().map(|looked| looked.path.as_path())
-    }
-}
-
-impl Looked {
-    fn without_content(path: &Path) -> Self {
-        Self { path: path.to_owned(), n_bytes: 0, key: Key([0; 16]), modified: None, is_fresh: false }
-    }
-
-    fn new(path: &Path) -> io::Result<Self> {
-        // Before the content: what is changed in between has a later time.
-        let modified = fs::metadata(path)?.modified().ok();
-        let (n_bytes, key) = KeyHasher::new("").file("", path)?;
-        let age = modified.and_then(|modified| modified.elapsed().ok());
-        Ok(Self { path: path.to_owned(), n_bytes, key, modified, is_fresh: age.is_none_or(|age| age < COARSE) })
-    }
-
-    fn is_same(&self) -> io::Result<bool> {
-        let found = fs::metadata(&self.path)?;
-        if found.len() != self.n_bytes || found.modified().ok() != self.modified {
-            return Ok(false);
-        }
-        Ok(!self.is_fresh || KeyHasher::new("").file("", &self.path)?.1 == self.key)
-    }
-}
-
-/// What decides the results of a command: a key, and the files whose content is part of it.
-#[derive(Debug)]
-pub(crate) struct Identity {
-    hasher: KeyHasher,
-    pub(crate) inputs: Vec<InputFile>,
-}
-
-impl Identity {
-    /// Of a kind of work on files.
-    pub(crate) fn new(kind: &str, inputs: &Inputs) -> Self {
-        let mut identity = Self::apart_from(kind, inputs);
-        inputs.0.iter().for_each(|file| identity.hasher.value("file", &file.key.0));
-        identity
-    }
-
-    /// The same of what is added later only: the files may have other content with the same results.
-    pub(crate) fn apart_from(kind: &str, inputs: &Inputs) -> Self {
-        let mut hasher = KeyHasher::new(PROGRAM);
-        hasher.value("kind", kind.as_bytes());
-        hasher.value("units", &UNITS.to_le_bytes());
-        let file = |Looked { path, n_bytes, key, .. }: &Looked| InputFile {
-            path: path.display().to_string(),
-            n_bytes: *n_bytes,
-            key: key.to_string(),
-        };
-        Self { hasher, inputs: inputs.0.iter().map(file).collect() }
-    }
-
-    /// Adds a value.
-    pub(crate) fn debug(&mut self, name: &str, value: &dyn std::fmt::Debug) {
-        self.hasher.debug(name, value);
-    }
-
-    pub(crate) fn key(&self) -> Key {
-        self.hasher.finish()
-    }
+/// What decides the results of a kind of work on the content of files.
+pub(crate) fn identity(kind: &str, inputs: &Inputs) -> Identity {
+    Identity::new((PROGRAM, UNITS), kind, inputs)
 }
 
 /// Opens the store of a job for work with an identity.
@@ -298,13 +203,13 @@ impl<'a> Kept<'a> {
     }
 
     /// Before anything is written that the command makes: an error if another worker of the job has written it.
-    pub(crate) fn before_writing(&self) -> Result<()> {
+    pub(crate) fn before_writing(&self) -> Result<(), Halt> {
         self.before_writing_files(&self.outputs)
     }
 
     /// The same where it is known only now which files that are.
-    pub(crate) fn before_writing_files(&self, files: &[PathBuf]) -> Result<()> {
-        Ok(self.job.map_or(Ok(()), |job| job.begin_writing(files))?)
+    pub(crate) fn before_writing_files(&self, files: &[PathBuf]) -> Result<(), Halt> {
+        self.job.map_or(Ok(()), |job| job.begin_writing(files))
     }
 
     /// After the end, if all went well: leaves all results in their file.
@@ -371,27 +276,5 @@ impl std::fmt::Display for Interrupted {
                 "stopped: {why}; nothing was written. Try a larger --memory, fewer --threads, or `job plan`, which shares the work among processes"
             ),
         }
-    }
-}
-
-/// Opens a job for the work of a command, once.
-#[derive(Debug, Default)]
-pub(crate) struct JobSlot(OnceLock<JobStore>);
-
-impl JobSlot {
-    /// The store, if it was opened.
-    pub(crate) fn store(&self) -> Option<&JobStore> {
-        self.0.get()
-    }
-
-    /// Takes the store that `open` opens, of a job with the key of `identity`.
-    pub(crate) fn open(&self, identity: &Identity, open: impl FnOnce() -> Result<JobStore>) -> Result<&JobStore> {
-        let store = open()?;
-        let job: Job = store.job();
-        if job.key() != identity.key() {
-            let folder = job.folder().display();
-            bail!("{folder}: the command and what it reads are not what they were when the job was planned");
-        }
-        Ok(self.0.get_or_init(|| store))
     }
 }

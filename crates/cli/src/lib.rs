@@ -17,7 +17,6 @@ mod doors;
 mod error;
 mod eye;
 mod facts;
-mod folder;
 mod glb;
 mod input;
 mod interrupt;

@@ -74,6 +74,11 @@ pub(crate) fn check(inputs: &[&Path], outputs: &[&Path]) -> Result<()> {
     Ok(())
 }
 
+/// A folder that cannot be made.
+pub(crate) fn cannot_be_made(path: &Path, error: io::Error) -> anyhow::Error {
+    anyhow!("{}: cannot be made: {error}", path.display())
+}
+
 /// Two outputs for one file.
 pub(crate) fn two_outputs(path: &Path) -> anyhow::Error {
     anyhow!("{}: two outputs would be written to this file", path.display())

@@ -1,6 +1,5 @@
 //! What a viewer sees, as arguments: in a direction, by a method, with doors closed.
 
-use crate::doors::close;
 use crate::error::{ErrorAbout, Result, anyhow};
 use crate::place::Point;
 use crate::tables::Cells;
@@ -57,7 +56,7 @@ impl SightArgs {
     pub(crate) fn doors<C: Cells>(&self, cells: &C, path: &Path) -> Result<Doors> {
         let mut doors = Doors::all_open();
         for text in &self.closed {
-            close(text, cells.doors(), cells.n_portals(), path, &mut doors)?;
+            doors.close_named(text, cells.doors(), cells.n_portals()).in_file(path)?;
         }
         Ok(doors)
     }

@@ -10,7 +10,7 @@ use crate::surfaces::{self, SurfaceArgs};
 use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::bake::methods::{OcclusionMethod, OcclusionMethodFactory};
-use sightlines::cells::{MovingObject, Scene, SceneObject, Unlike};
+use sightlines::cells::{Scene, Unlike};
 use sightlines::formats::scene::{
     self, Rounding, SceneReadOptions, read_scene_with_source_and, write_rounded_glb, write_simplified_obj,
 };
@@ -149,12 +149,6 @@ pub(crate) fn along(
     Ok(along)
 }
 
-/// Whether what is left may be used to hide. Faces that are merged along a frame are in one plane there; with the corners of the file they are
-/// so only within the gap, and a merged face may be off the surface by as much.
-fn is_occluder(simplified: &Simplified, is_framed: bool) -> bool {
-    simplified.is_part_of_the_original() && !(is_framed && simplified.counts.merged > 0)
-}
-
 /// How a scene is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum OutFormat {
@@ -239,7 +233,7 @@ pub(crate) fn written(
     is_framed: bool,
     format: OutFormat,
 ) -> Result<Written> {
-    let occluder = is_occluder(simplified, is_framed);
+    let occluder = simplified.is_occluder(is_framed);
     let said = scene::Simplified { occluder };
     let exact = |bytes| Written { bytes, rounding: Rounding::default(), occluder };
     if let Some(source) = source {
@@ -247,7 +241,7 @@ pub(crate) fn written(
         let changes: Vec<_> = simplified.triangles.iter().enumerate().map(change).collect();
         return Ok(exact(source.rewrite(&changes, Some(said)).in_file(path)?));
     }
-    let left = left(scene, simplified);
+    let left = simplified.left(scene).expect("it is made of this scene");
     match format {
         OutFormat::Obj => Ok(exact(write_simplified_obj(&left, said).in_file(path)?)),
         OutFormat::Glb => {
@@ -255,41 +249,4 @@ pub(crate) fn written(
             Ok(Written { bytes, rounding, occluder: occluder && rounding.n_coordinates == 0 })
         }
     }
-}
-
-/// The objects of which something is left, with the vertices that are used.
-fn left(scene: &Scene, simplified: &Simplified) -> Scene {
-    let is_mirror = |k: usize| scene.mirrors().iter().any(|&mirror| mirror as usize == k);
-    let (mut objects, mut mirrors, mut see_through, mut moving) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    let mut single_sided = Vec::new();
-    for (k, (o, triangles)) in scene.objects().iter().zip(&simplified.triangles).enumerate() {
-        if triangles.is_empty() {
-            continue;
-        }
-        let mut used: Vec<u32> = triangles.iter().flatten().copied().collect();
-        used.sort_unstable();
-        used.dedup();
-        let place = |v: u32| used.partition_point(|&u| u < v) as u32;
-        if is_mirror(k) {
-            mirrors.push(objects.len() as u32);
-        }
-        if !scene.is_opaque(k as u32) {
-            see_through.push(objects.len() as u32);
-        }
-        if scene.single_sided().binary_search(&(k as u32)).is_ok() {
-            single_sided.push(objects.len() as u32);
-        }
-        let found = scene.moving().iter().find(|moving| moving.object as usize == k);
-        moving.extend(found.map(|found| MovingObject { object: objects.len() as u32, ..*found }));
-        objects.push(SceneObject {
-            name: o.name.clone(),
-            vertices: used.iter().map(|&v| o.vertices[v as usize]).collect(),
-            triangles: triangles.iter().map(|t| t.map(place)).collect(),
-        });
-    }
-    let scene = Scene::new(objects).expect("coordinates and indices are those of a scene");
-    let scene = scene.with_mirrors(mirrors).expect("mirrors are objects");
-    let scene = scene.with_see_through(see_through).expect("what is see-through is an object");
-    let scene = scene.with_moving(moving).expect("what moves is an object, and its box is that of a scene");
-    scene.with_single_sided(single_sided).expect("what has one side is an object")
 }

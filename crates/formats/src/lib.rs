@@ -5,7 +5,7 @@
 //! - **Owns**: the WAD container ([`wad`]), the maps inside ([`doom`]), their REJECT lumps ([`reject`]),
 //!   plans ([`plan`]) as GeoJSON ([`geojson`]) and DXF ([`dxf`]), scenes in space ([`scene`]) and simplified levels of them
 //!   ([`levels`]), view cells ([`view_cells`]), points ([`points`]), maps of the Quake family and their visibility
-//!   ([`quake`]), files that are replaced as a whole ([`files::atomic_write`]), the list of all formats and how they are recognised
+//!   ([`quake`]), files that are replaced as a whole ([`files::atomic_write`]), and folders ([`NewFolder`]), the list of all formats and how they are recognised
 //!   ([`input`]), and errors that name the file and the place in it ([`ReadError`]).
 //! - **Out of scope**: how a plan is cut into cells, what a sight line is, how a REJECT table is computed.
 //! - **Invariants**: no input causes a panic; memory stays within a small multiple of the input's size
@@ -21,6 +21,7 @@ pub mod doom;
 pub mod dxf;
 pub mod error;
 pub mod files;
+mod folder;
 pub mod geojson;
 pub mod input;
 mod json;
@@ -38,6 +39,7 @@ pub use debris::{Hidden, process_mark, remove_left};
 pub use doom::{DoomMap, MapLumps};
 pub use error::{Malformed, ReadError, ReadErrorKind};
 pub use files::{WriteError, atomic_write};
+pub use folder::{FolderError, NewFolder};
 pub use input::{Input, InputKind, Source, detect_file};
 pub use levels::{LevelFile, LevelsIndex};
 pub use plan::{DroppedLines, PlanFile, PlanReadOptions};

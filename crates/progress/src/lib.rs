@@ -3,11 +3,12 @@
 //! # Scope
 //!
 //! - **Owns**: the [`Observer`] trait, its reports ([`Progress`]) and kinds of work ([`Work`]), the error of a cancelled search ([`Cancelled`]), and
-//!   the counter that threads of a search share ([`Counter`]), what a search may spend ([`Budget`]), and the contract of stores that keep the
+//!   the counter that threads of a search share ([`Counter`]), what a search may spend ([`Budget`]), how much memory a process may use ([`memory`]), and the contract of stores that keep the
 //!   results of units of work ([`UnitStore`]).
 //! - **Out of scope**: time, terminals, what is searched.
 
 mod budget;
+pub mod memory;
 mod units;
 
 pub use budget::{Allowance, Budget, Shares, scattered};

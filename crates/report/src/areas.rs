@@ -116,6 +116,32 @@ pub fn areas_csv(areas: &[Area], names: &[&str]) -> String {
     out
 }
 
+/// What an eye sees of a scene in space: estimates, each with the ends of the interval in which it is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SeenInSpace {
+    /// The eye.
+    pub eye: [f64; 3],
+    /// The volume that it sees.
+    pub volume: [f64; 3],
+    /// The share of each object that it sees.
+    pub shares: Vec<[f64; 3]>,
+}
+
+/// What eyes see as CSV: a row for each eye and object, with what is seen of the object, and the volume of the eye.
+///
+/// * `names`: of the objects
+pub fn seen_csv(all: &[SeenInSpace], names: &[&str]) -> String {
+    let mut out =
+        String::from("x,y,z,index,volume,volume_low,volume_high,object,visible_share,share_low,share_high,name\n");
+    for (index, SeenInSpace { eye: [x, y, z], volume: [v, vl, vh], shares }) in all.iter().enumerate() {
+        for (object, ([s, sl, sh], name)) in shares.iter().zip(names).enumerate() {
+            let name = name.replace('"', "\"\"");
+            let _ = writeln!(out, "{x},{y},{z},{index},{v},{vl},{vh},{object},{s},{sl},{sh},\"{name}\"");
+        }
+    }
+    out
+}
+
 /// Draws areas over each other as SVG, in one transparent hue, with the walls and the eyes; where more eyes see, it is darker. Edges that are
 /// no wall are dashed.
 ///
@@ -223,6 +249,9 @@ mod tests {
     #[test]
     fn numbers_of_areas_are_rows() {
         assert_eq!(areas_csv(&[area(None)], &["area", "drift"]), "x,y,index,area,drift\n0.5,0.25,0,1,0.1\n");
+        let seen = SeenInSpace { eye: [1.0; 3], volume: [2.0, 1.0, 3.0], shares: vec![[0.5, 0.0, 1.0]] };
+        let rows = seen_csv(&[seen], &["a \"b\""]);
+        assert_eq!(rows.lines().nth(1), Some("1,1,1,0,2,1,3,0,0.5,0,1,\"a \"\"b\"\"\""));
         let named = areas_csv(&[area(Some("a, \"b\"")), area(None)], &["area", "drift"]);
         assert_eq!(named, "x,y,index,area,drift,name\n0.5,0.25,0,1,0.1,\"a, \"\"b\"\"\"\n0.5,0.25,1,1,0.1,\n");
     }

@@ -34,7 +34,7 @@ mod summary;
 mod theme;
 mod walk;
 
-pub use areas::{Area, AreaEdge, areas_csv, areas_geojson, areas_svg};
+pub use areas::{Area, AreaEdge, SeenInSpace, areas_csv, areas_geojson, areas_svg, seen_csv};
 pub use buffer_chart::{BufferChart, buffer_chart_svg};
 pub use draw::{
     DrawError, DrawOptions, Drawing, IsometricOptions, MAX_SIZE, MIN_SIZE, Sight, SliceOptions, Surfaces, Up, View,

@@ -77,6 +77,14 @@ impl Simplified {
         self
     }
 
+    /// Whether what is left may be used as an occluder at the place of the original. Faces that are merged along a [frame](sightlines_pvs::Frame) are in one
+    /// plane there; with the corners of the file they are so only within the gap, and a merged face may be off the surface by as much.
+    ///
+    /// * `is_framed`: whether it was simplified along a frame, with other corners than it is used with
+    pub fn is_occluder(&self, is_framed: bool) -> bool {
+        self.is_part_of_the_original() && !(is_framed && self.counts.merged > 0)
+    }
+
     /// The remaining triangles as a scene: the same objects with the same vertices, some perhaps without triangles.
     ///
     /// # Errors
@@ -87,9 +95,26 @@ impl Simplified {
             vertices: o.vertices.clone(),
             triangles: triangles.clone(),
         };
-        let objects = scene.objects().iter().zip(&self.triangles).map(object).collect();
-        let left = Scene::new(objects)?.with_mirrors(scene.mirrors().to_vec())?;
-        let left = left.with_see_through(scene.see_through().to_vec())?.with_moving(scene.moving().to_vec())?;
-        left.with_single_sided(scene.single_sided().to_vec())?.with_front_occluders(scene.front_occluders().to_vec())
+        scene.replaced((0..).zip(scene.objects().iter().zip(&self.triangles).map(object)))
+    }
+
+    /// The objects of which something is left, with the vertices that are used; without doors and sources.
+    ///
+    /// # Errors
+    /// As [`Simplified::scene`].
+    pub fn left(&self, scene: &Scene) -> Result<Scene, SceneError> {
+        let object = |(o, triangles): (&SceneObject, &Vec<[u32; 3]>)| {
+            let mut used: Vec<u32> = triangles.iter().flatten().copied().collect();
+            used.sort_unstable();
+            used.dedup();
+            let place = |v: u32| used.partition_point(|&u| u < v) as u32;
+            SceneObject {
+                name: o.name.clone(),
+                vertices: used.iter().map(|&v| o.vertices[v as usize]).collect(),
+                triangles: triangles.iter().map(|t| t.map(place)).collect(),
+            }
+        };
+        let objects = (0..).zip(scene.objects().iter().zip(&self.triangles).map(object));
+        scene.replaced(objects.filter(|(_, object)| !object.triangles.is_empty()))
     }
 }

@@ -120,10 +120,7 @@ where
         }
         worker.summary
     };
-    let threads = match options.threads {
-        0 => std::thread::available_parallelism().map_or(1, usize::from),
-        t => t,
-    };
+    let threads = sightlines_progress::memory::n_threads(options.threads);
     let summary = if threads == 1 {
         work(stabber.clone())
     } else {

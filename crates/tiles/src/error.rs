@@ -1,9 +1,7 @@
 //! What can be wrong with a world.
 
-use sightlines_packed::PackedError;
-use sightlines_packed::across::AcrossError;
-use std::io;
-use std::path::PathBuf;
+use std::error::Error;
+use std::path::{Path, PathBuf};
 
 /// Why a world, or a tile of it, cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -35,27 +33,11 @@ pub enum WorldError {
     World(&'static str),
     /// A file that cannot be read.
     #[error("{}: {source}", path.display())]
-    Io {
+    File {
         /// The file.
         path: PathBuf,
-        /// The error of the system.
-        source: io::Error,
-    },
-    /// A table that cannot be read.
-    #[error("{}: {source}", path.display())]
-    Table {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong.
-        source: PackedError,
-    },
-    /// What a tile sees of others cannot be read.
-    #[error("{}: {source}", path.display())]
-    Across {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong.
-        source: AcrossError,
+        /// The error of the system, or what is wrong in the file.
+        source: Box<dyn Error + Send + Sync>,
     },
     /// A file of another bake than the others, or of another number of cells.
     #[error("{}: this is not of the bake that the index of the world names", path.display())]
@@ -66,6 +48,10 @@ pub enum WorldError {
 }
 
 impl WorldError {
+    pub(crate) fn file(path: &Path, source: impl Into<Box<dyn Error + Send + Sync>>) -> Self {
+        Self::File { path: path.to_owned(), source: source.into() }
+    }
+
     pub(crate) fn syntax(error: &serde_json::Error) -> Self {
         // The message of the library ends with the position.
         let said = error.to_string();

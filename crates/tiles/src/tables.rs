@@ -5,10 +5,10 @@ use crate::index::TilePart;
 use crate::near::is_within;
 use crate::world::{TileId, World};
 use sightlines_packed::Packed;
-use sightlines_packed::PackedError;
-use sightlines_packed::across::{Across, AcrossError, SeenAcross};
+use sightlines_packed::across::{Across, SeenAcross};
 use sightlines_pvs::{CellId, ObjectId, Place, PlaceBuffer};
 use std::collections::BTreeSet;
+use std::error::Error;
 use std::fs::File;
 use std::path::PathBuf;
 
@@ -76,7 +76,7 @@ impl TileTables {
     /// Opens the files of a tile. At most `cache_bytes` of unpacked blocks of its table are kept.
     ///
     /// # Errors
-    /// [`WorldError::Io`], [`WorldError::Table`], [`WorldError::Across`]; [`WorldError::Mixed`] if the files are not those of the index.
+    /// [`WorldError::File`]; [`WorldError::Mixed`] if the files are not those of the index.
     ///
     /// # Panics
     /// If there is no such tile.
@@ -84,16 +84,10 @@ impl TileTables {
         let entry = &world.index().tiles[tile.0 as usize];
         let open = |part: TilePart| {
             let path = world.path(tile, part);
-            match File::open(&path) {
-                Ok(file) => Ok((file, path)),
-                Err(source) => Err(WorldError::Io { path, source }),
-            }
+            Ok((File::open(&path).map_err(|error| WorldError::file(&path, error))?, path))
         };
         let (file, path) = open(TilePart::Table)?;
-        let table = match Packed::open(file, cache_bytes) {
-            Ok(table) => table,
-            Err(source) => return Err(WorldError::Table { path, source }),
-        };
+        let table = Packed::open(file, cache_bytes).map_err(|error| WorldError::file(&path, error))?;
         let is_of = table.info().contains(&World::stated(entry.key)) && table.n_objects() == entry.n_objects as usize;
         if !is_of || table.n_cells() != entry.n_cells as usize {
             return Err(WorldError::Mixed { path });
@@ -101,11 +95,9 @@ impl TileTables {
         let across = |part: TilePart| {
             let (file, path) = open(part)?;
             let key = if part == TilePart::Far { entry.far_key } else { entry.key };
-            match Across::open(file) {
-                Ok(across) if across.columns().key == key && across.n_rows() == table.n_cells() => Ok(across),
-                Ok(_) => Err(WorldError::Mixed { path }),
-                Err(source) => Err(WorldError::Across { path, source }),
-            }
+            let across = Across::open(file).map_err(|error| WorldError::file(&path, error))?;
+            let is_of = across.columns().key == key && across.n_rows() == table.n_cells();
+            if is_of { Ok(across) } else { Err(WorldError::Mixed { path }) }
         };
         let (near, far) = (across(TilePart::Near)?, across(TilePart::Far)?);
         Self::new(world, tile, table, near, far).ok_or(WorldError::Mixed { path })
@@ -155,9 +147,9 @@ impl TileTables {
     /// Adds what the cells at a point see; returns whether there are any. [`Seen`] is neither cleared nor sorted.
     ///
     /// # Errors
-    /// [`WorldError::Table`], [`WorldError::Across`].
+    /// [`WorldError::File`].
     pub fn see(&self, eye: [f64; 3], seen: &mut Seen, scratch: &mut TileScratch) -> Result<bool, WorldError> {
-        let place = self.table.cells_at(eye, &mut scratch.place).map_err(|error| self.fail(error))?;
+        let place = self.table.cells_at(eye, &mut scratch.place).map_err(|error| self.fail(TilePart::Table, error))?;
         scratch.at.clear();
         if let Place::Inside(cells) = place {
             scratch.at.extend(cells);
@@ -171,12 +163,12 @@ impl TileTables {
     /// Adds what a cell sees.
     ///
     /// # Errors
-    /// [`WorldError::Table`], [`WorldError::Across`]; the latter also for a cell that there is not.
+    /// [`WorldError::File`], also for a cell that there is not.
     pub fn see_from(&self, cell: CellId, seen: &mut Seen, scratch: &mut TileScratch) -> Result<(), WorldError> {
         scratch.across.clear();
-        self.near.seen(cell, &mut scratch.across).map_err(|error| self.fail_across(TilePart::Near, error))?;
+        self.near.seen(cell, &mut scratch.across).map_err(|error| self.fail(TilePart::Near, error))?;
         let n_near = scratch.across.len();
-        self.far.seen(cell, &mut scratch.across).map_err(|error| self.fail_across(TilePart::Far, error))?;
+        self.far.seen(cell, &mut scratch.across).map_err(|error| self.fail(TilePart::Far, error))?;
         let (of_near, of_far) = scratch.across.split_at(n_near);
         for part in of_near {
             match part {
@@ -195,9 +187,9 @@ impl TileTables {
             }
         }
         seen.tiles.extend(&self.unknown);
-        self.table.visible(cell, &mut scratch.cells).map_err(|error| self.fail(error))?;
+        self.table.visible(cell, &mut scratch.cells).map_err(|error| self.fail(TilePart::Table, error))?;
         seen.cells.extend(scratch.cells.iter().map(|&cell| (self.tile, cell)));
-        self.table.objects_seen(cell, &mut scratch.objects).map_err(|error| self.fail(error))?;
+        self.table.objects_seen(cell, &mut scratch.objects).map_err(|error| self.fail(TilePart::Table, error))?;
         seen.objects.extend(scratch.objects.iter().map(|&object| (self.tile, object)));
         Ok(())
     }
@@ -207,17 +199,12 @@ impl TileTables {
     /// # Errors
     /// [`WorldError`] for the first damage.
     pub fn verify(&self) -> Result<(), WorldError> {
-        self.table.verify().map_err(|error| self.fail(error))?;
-        self.near.verify().map_err(|error| self.fail_across(TilePart::Near, error))?;
-        self.far.verify().map_err(|error| self.fail_across(TilePart::Far, error))
+        self.table.verify().map_err(|error| self.fail(TilePart::Table, error))?;
+        self.near.verify().map_err(|error| self.fail(TilePart::Near, error))?;
+        self.far.verify().map_err(|error| self.fail(TilePart::Far, error))
     }
 
-    fn fail(&self, source: PackedError) -> WorldError {
-        WorldError::Table { path: self.paths[0].clone(), source }
-    }
-
-    fn fail_across(&self, part: TilePart, source: AcrossError) -> WorldError {
-        let path = self.paths[if part == TilePart::Near { 1 } else { 2 }].clone();
-        WorldError::Across { path, source }
+    fn fail(&self, part: TilePart, error: impl Into<Box<dyn Error + Send + Sync>>) -> WorldError {
+        WorldError::file(&self.paths[part as usize], error)
     }
 }

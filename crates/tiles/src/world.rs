@@ -33,10 +33,10 @@ impl World {
     /// Opens a folder that was baked. Memory in proportion to the index.
     ///
     /// # Errors
-    /// [`WorldError::Io`], and those of [`WorldIndex::parse`].
+    /// [`WorldError::File`], and those of [`WorldIndex::parse`].
     pub fn open(folder: &Path) -> Result<Self, WorldError> {
         let path = folder.join(INDEX_NAME);
-        let text = fs::read(&path).map_err(|source| WorldError::Io { path, source })?;
+        let text = fs::read(&path).map_err(|error| WorldError::file(&path, error))?;
         let index = WorldIndex::parse(&text)?;
         let viewers: Vec<Aabb<3>> = index.tiles.iter().map(|tile| tile.bounds.viewers).collect();
         let by_name = (0..).zip(&index.tiles).map(|(k, tile)| (tile.name.clone(), TileId(k))).collect();

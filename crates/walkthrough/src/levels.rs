@@ -4,8 +4,9 @@
 //! what its budget allowed to change. How it is made, stored and read is up to a [`LoadLevel`], which reads it on
 //! another thread.
 
+use crate::coarse::CoarseVisibility;
 use crate::prefetch::{Prefetcher, Prepare};
-use sightlines_pvs::CellId;
+use sightlines_pvs::{CellId, Place, PlaceBuffer};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
@@ -26,6 +27,19 @@ pub struct LevelIndex {
     levels: Vec<LevelSize>,
     /// By level: the first cell that has it, the key by which it is requested.
     first_cell: Vec<Option<CellId>>,
+}
+
+/// What is drawn with levels by eyes in a cell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct LevelsDrawn {
+    /// Eyes in a cell.
+    pub n_frames: usize,
+    /// Those all of whose cells have the same level.
+    pub n_with_level: usize,
+    /// Triangles, by all eyes.
+    pub n_triangles: u64,
+    /// The most triangles by one.
+    pub most: u64,
 }
 
 /// Why an index is invalid.
@@ -74,6 +88,31 @@ impl LevelIndex {
     /// The level of a cell; `None` if it has none, or there is no such cell: the original is to be drawn.
     pub fn level_of(&self, cell: CellId) -> Option<u32> {
         self.level_of_cell.get(cell.idx()).copied().flatten()
+    }
+
+    /// What is drawn with these levels by some eyes. O(eyes), beside locating them.
+    ///
+    /// * `original`: the triangles of the scene without levels
+    ///
+    /// # Errors
+    /// Those of [`CoarseVisibility::cells_at`].
+    pub fn drawn_by<C: CoarseVisibility>(
+        &self,
+        original: u64,
+        cells: &C,
+        eyes: impl IntoIterator<Item = [f64; 3]>,
+    ) -> Result<LevelsDrawn, C::PlaceError> {
+        let (mut drawn, mut buffer) = (LevelsDrawn::default(), PlaceBuffer::new());
+        for eye in eyes {
+            if let Place::Inside(at) = cells.cells_at(eye, &mut buffer)? {
+                let n = self.n_triangles_at(at, original);
+                drawn.n_frames += 1;
+                drawn.n_with_level += usize::from(self.level_at(at).is_some());
+                drawn.n_triangles += n;
+                drawn.most = drawn.most.max(n);
+            }
+        }
+        Ok(drawn)
     }
 
     /// The level for an eye in these cells: the one that all of them share. `None` if they share none, or if there is

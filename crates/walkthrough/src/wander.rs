@@ -1,7 +1,7 @@
 //! A random walk through a scene, for measuring.
 
 use sightlines_eye_to_cell::CellSource;
-use sightlines_geometry::Random;
+use sightlines_geometry::{Aabb, Random};
 use sightlines_pvs::{CellId, PortalId};
 
 /// The position and direction of the viewer in a frame.
@@ -65,6 +65,25 @@ pub fn wander<S: CellSource + ?Sized>(
         });
     }
     Ok(frames)
+}
+
+/// A distance between frames that suits a scene: a 400th of the diagonal of the box around all cells. O(cells).
+///
+/// # Errors
+/// The first error of the source.
+pub fn usual_step<S: CellSource + ?Sized>(source: &S) -> Result<f64, S::Error> {
+    let mut all = Aabb::<3>::around([]);
+    for cell in (0..source.n_cells() as u32).map(CellId) {
+        let bounds = source.cell_box(cell)?;
+        for k in 0..3 {
+            if bounds.min[k] <= bounds.max[k] {
+                (all.min[k], all.max[k]) = (all.min[k].min(bounds.min[k]), all.max[k].max(bounds.max[k]));
+            }
+        }
+    }
+    let diagonal = (0..3).map(|k| (all.max[k] - all.min[k]).powi(2)).sum::<f64>().sqrt();
+    // Without cells there is no walk, whatever the step is.
+    Ok(if diagonal.is_finite() && diagonal > 0.0 { diagonal / 400.0 } else { 1.0 })
 }
 
 /// Goes straight to `goal`, one frame per step.

@@ -154,8 +154,10 @@ pub(crate) const GROUPS: [Group; 12] = [
         crates: &["checkpoint", "tiles"],
         paths: &[
             "crates/cli/src/commands/job/",
+            "crates/bake/src/world/",
             "crates/cli/src/kept.rs",
             "crates/cli/src/memory.rs",
+            "crates/progress/src/memory.rs",
             "crates/cli/src/interrupt.rs",
             "crates/cli/tests/cli/resume.rs",
             "crates/cli/tests/cli/jobs.rs",

@@ -1,6 +1,6 @@
 //! The manifest of a job, as JSON.
 
-use crate::key::{Key, ParseKeyError};
+use crate::key::Key;
 use serde::{Deserialize, Serialize};
 
 /// What the field `format` says.
@@ -61,38 +61,6 @@ pub struct Manifest {
     pub phases: Vec<PhasePlan>,
 }
 
-/// What is wrong with a manifest.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum ManifestError {
-    /// It is no JSON of this form.
-    #[error("{0}")]
-    Json(#[from] serde_json::Error),
-    /// It is something else.
-    #[error("this is no manifest of a job")]
-    NotManifest,
-    /// A later program wrote it.
-    #[error("version {0} of the manifest is not supported")]
-    Version(u32),
-    /// The key is none.
-    #[error("key: {0}")]
-    Key(#[from] ParseKeyError),
-    /// A name that no phase has.
-    #[error("phase {0}: the name is not of small letters and hyphens, or another phase has it")]
-    Name(usize),
-    /// Shards that are not all units in order.
-    #[error("phase {phase}: shard {shard} does not begin where the one before it ends, or its cost is no number")]
-    Shards {
-        /// The phase.
-        phase: usize,
-        /// The shard, counted from the first of the phase.
-        shard: usize,
-    },
-    /// There is no shard, or they are not all units.
-    #[error("phase {0}: the shards do not end with the last unit")]
-    Units(usize),
-}
-
 impl Manifest {
     /// A job whose phases are not known yet.
     pub fn new(program: &str, key: Key, command: Vec<String>, folder: String, max_shards: usize) -> Self {
@@ -101,21 +69,21 @@ impl Manifest {
         Self { format, version: VERSION, program, key, command, folder, inputs, max_shards, phases }
     }
 
-    /// The manifest in a text, and its key.
-    pub(crate) fn parse(text: &[u8]) -> Result<(Self, Key), ManifestError> {
+    /// The manifest in a text, and its key; or what is wrong with it.
+    pub(crate) fn parse(text: &[u8]) -> Result<(Self, Key), String> {
         /// What is read first.
         #[derive(Deserialize)]
         struct Form {
             format: Option<String>,
             version: Option<u32>,
         }
-        let form: Form = serde_json::from_slice(text)?;
+        let form: Form = serde_json::from_slice(text).map_err(|error| error.to_string())?;
         match (form.format.as_deref(), form.version) {
             (Some(FORMAT), Some(VERSION)) => {}
-            (Some(FORMAT), Some(version)) => return Err(ManifestError::Version(version)),
-            _ => return Err(ManifestError::NotManifest),
+            (Some(FORMAT), Some(version)) => return Err(format!("version {version} of the manifest is not supported")),
+            _ => return Err("this is no manifest of a job".to_owned()),
         }
-        let manifest: Self = serde_json::from_slice(text)?;
+        let manifest: Self = serde_json::from_slice(text).map_err(|error| error.to_string())?;
         let key = manifest.check()?;
         Ok((manifest, key))
     }
@@ -126,24 +94,28 @@ impl Manifest {
     }
 
     /// Checks all that others rely on.
-    pub(crate) fn check(&self) -> Result<Key, ManifestError> {
+    pub(crate) fn check(&self) -> Result<Key, String> {
         for (k, PhasePlan { name, n_units, shards }) in self.phases.iter().enumerate() {
             let is_name = !name.is_empty() && name.bytes().all(|byte| byte.is_ascii_lowercase() || byte == b'-');
             if !is_name || name.len() > 100 || self.phases[..k].iter().any(|other| other.name == *name) {
-                return Err(ManifestError::Name(k));
+                return Err(format!(
+                    "phase {k}: the name is not of small letters and hyphens, or another phase has it"
+                ));
             }
             let mut end = 0;
             for (shard, plan) in shards.iter().enumerate() {
                 if plan.begin != end || plan.end < end || !plan.cost.is_finite() || plan.cost < 0.0 {
-                    return Err(ManifestError::Shards { phase: k, shard });
+                    return Err(format!(
+                        "phase {k}: shard {shard} does not begin where the one before it ends, or its cost is no number"
+                    ));
                 }
                 end = plan.end;
             }
             if shards.is_empty() || end != *n_units {
-                return Err(ManifestError::Units(k));
+                return Err(format!("phase {k}: the shards do not end with the last unit"));
             }
         }
-        Ok(self.key.parse()?)
+        self.key.parse().map_err(|error| format!("key: {error}"))
     }
 
     /// How many shards all known phases have.

@@ -8,18 +8,23 @@ mod claims;
 mod cut;
 mod manifest;
 mod own;
+mod runs;
+mod slot;
+mod status;
 mod store;
 
 pub use claims::batch;
 pub use cut::cut;
 pub use manifest::{InputFile, Manifest, PhasePlan, ShardPlan};
+pub use runs::{ParseShardRunError, ShardRun, in_words};
+pub use slot::JobSlot;
+pub use status::PhaseStatus;
 pub use store::{JobStore, Outcome, Role};
 
 use crate::error::StateError;
 use crate::index::Results;
 use crate::key::Key;
 use crate::records::{Owner, record};
-use manifest::ManifestError;
 use sightlines_formats::{WriteError, atomic_write};
 use std::collections::BTreeSet;
 use std::fs;
@@ -35,7 +40,7 @@ const PARTS: &str = "parts";
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum JobError {
-    /// A file cannot be read.
+    /// A file cannot be read, or a folder not made.
     #[error("{}: {source}", path.display())]
     Read {
         /// The file or folder.
@@ -47,12 +52,12 @@ pub enum JobError {
     #[error(transparent)]
     Write(#[from] WriteError),
     /// The manifest is damaged.
-    #[error("{}: {source}", path.display())]
+    #[error("{}: {what}", path.display())]
     Manifest {
         /// The file.
         path: PathBuf,
         /// What is wrong.
-        source: ManifestError,
+        what: String,
     },
     /// Another version of the program planned the job.
     #[error("{}: planned by version {found} of the program, and this is {expected}; plan it anew", path.display())]
@@ -67,6 +72,17 @@ pub enum JobError {
     /// Another job is in the folder.
     #[error("{}: there is another job in the folder; name a new one, or remove it", .0.display())]
     OtherJob(PathBuf),
+    /// The work has another key than the job.
+    #[error("{}: the command and what it reads are not what they were when the job was planned", .0.display())]
+    OtherWork(PathBuf),
+    /// A file that the job reads has changed.
+    #[error("{}: the file is not what it was when the job in {} was planned", path.display(), folder.display())]
+    OtherInput {
+        /// The file.
+        path: PathBuf,
+        /// The folder of the job.
+        folder: PathBuf,
+    },
     /// The journal of a shard cannot be used.
     #[error(transparent)]
     State(Box<StateError>),
@@ -128,7 +144,7 @@ impl Job {
         }
         let parts = folder.join(PARTS);
         fs::create_dir_all(&parts).map_err(|source| WriteError { path: parts, source })?;
-        let key = manifest.check().map_err(|source| JobError::Manifest { path, source })?;
+        let key = manifest.check().map_err(|what| JobError::Manifest { path, what })?;
         let job = Self { folder: folder.to_owned(), manifest, key };
         job.save()?;
         Ok(job)
@@ -141,8 +157,7 @@ impl Job {
     pub fn open(folder: &Path, program: &str) -> Result<Self, JobError> {
         let path = folder.join(MANIFEST);
         let text = fs::read(&path).map_err(|source| JobError::Read { path: path.clone(), source })?;
-        let (manifest, key) =
-            Manifest::parse(&text).map_err(|source| JobError::Manifest { path: path.clone(), source })?;
+        let (manifest, key) = Manifest::parse(&text).map_err(|what| JobError::Manifest { path: path.clone(), what })?;
         if manifest.program != program {
             let (found, expected) = (manifest.program, program.to_owned());
             return Err(JobError::OtherProgram { path, found, expected });

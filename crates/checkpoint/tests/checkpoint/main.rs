@@ -2,6 +2,7 @@
 
 mod chains;
 mod damage;
+mod engines;
 mod jobs;
 mod journals;
 mod toy;

@@ -2,9 +2,8 @@
 
 use crate::command::{Done, Manner};
 use crate::error::Result;
-use crate::folder::cannot_be_made;
 use crate::glb::{self, save_glb};
-use crate::output::{self, bytes, count};
+use crate::output::{self, bytes, cannot_be_made, count};
 use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::geometry::Aabb;

@@ -193,10 +193,7 @@ pub fn axial_visibility(
 
 /// Runs something on this many threads and passes their number; 0 uses one for each core. Whoever is on so many already stays there.
 pub(crate) fn on_threads<T: Send>(threads: usize, run: impl FnOnce(usize) -> T + Send) -> T {
-    let threads = match threads {
-        0 => std::thread::available_parallelism().map_or(1, usize::from),
-        t => t,
-    };
+    let threads = sightlines_progress::memory::n_threads(threads);
     if rayon::current_thread_index().is_some() && rayon::current_num_threads() == threads {
         return run(threads);
     }

@@ -1,15 +1,16 @@
 //! A baked world: what is seen across tiles, and walking through it.
 
+use serde_json::json;
 use sightlines_bake::methods::OcclusionMethod;
-use sightlines_bake::tile::{NearTile, Tile, bake_tile, tile_extent};
-use sightlines_bake::{BakeRequest, Runtime, SceneMethod};
-use sightlines_formats::ViewCell;
+use sightlines_bake::world::{WorldBake, WorldBakeError, WorldRun, world_files};
+use sightlines_bake::{BakeRequest, SceneMethod};
+use sightlines_formats::scene::{SceneReadOptions, write_glb};
 use sightlines_geometry::{Aabb, Random};
 use sightlines_pvs::CellId;
-use sightlines_scenes::{CityOptions, CityTile, city_tiles};
+use sightlines_scenes::{CityOptions, city_tiles};
 use sightlines_tiles::{
-    INDEX_NAME, Seen, TileBounds, TileEntry, TileId, TilePart, TileScratch, TileTables, TileWalk, TileWalkOptions,
-    World, WorldError, WorldIndex, far_bytes, near_bytes, near_tiles, table_bytes,
+    INDEX_NAME, Seen, TileEntry, TileId, TilePlan, TileScratch, TileTables, TileWalk, TileWalkOptions, World,
+    WorldError, WorldIndex, WorldPlan,
 };
 use sightlines_walkthrough::Answer;
 use std::collections::BTreeSet;
@@ -31,55 +32,34 @@ fn folder() -> &'static Path {
     FOLDER.get().unwrap().path()
 }
 
+/// Bakes into a folder, from a plan and scenes in it.
 fn bake(folder: &Path) {
-    let tiles = city_tiles(CityOptions { blocks_x: N, blocks_z: N, ..CityOptions::default() }, 1).unwrap();
-    let cells_of = |tile: &CityTile| -> Vec<ViewCell> {
-        tile.cells.iter().step_by(7).map(|b| ViewCell { id: String::new(), bounds: *b }).collect()
-    };
-    let cells: Vec<Vec<ViewCell>> = tiles.iter().map(cells_of).collect();
-    let bounds: Vec<TileBounds> = tiles
-        .iter()
-        .zip(&cells)
-        .map(|(tile, cells)| TileBounds {
-            viewers: Aabb::around(cells.iter().flat_map(|cell| [cell.bounds.min, cell.bounds.max])),
-            extent: tile_extent(&tile.scene, cells),
-        })
-        .collect();
-    let near_of = near_tiles(&bounds, 20.0);
-    let options =
-        BakeRequest { method: Some(SceneMethod::FromRegion(OcclusionMethod::Shafts)), ..BakeRequest::default() };
-    let mut index = WorldIndex { border: 20.0, reach: None, tiles: Vec::new() };
-    for (k, tile) in tiles.iter().enumerate() {
-        let near: Vec<usize> = near_of[k].iter().map(|&near| near as usize).collect();
-        let far: Vec<usize> = (0..tiles.len()).filter(|other| *other != k && !near.contains(other)).collect();
-        let scenes: Vec<NearTile<'_>> =
-            near.iter().map(|&near| NearTile { scene: &tiles[near].scene, cells: &cells[near] }).collect();
-        let boxes: Vec<Aabb<3>> = far.iter().map(|&far| bounds[far].extent).collect();
-        let parts = Tile { scene: &tile.scene, file: None, cells: &cells[k], near: &scenes, far: &boxes };
-        let baked = bake_tile(&parts, &options, &Runtime::default()).unwrap();
-        let entry = TileEntry {
-            name: tile.name.clone(),
-            bounds: bounds[k],
-            key: [k as u8; 16],
-            far_key: [100 + k as u8; 16],
-            n_cells: cells[k].len() as u32,
-            n_objects: tile.scene.objects().len() as u32,
-        };
-        let sizes = near.iter().map(|&near| {
-            (tiles[near].name.clone(), [cells[near].len() as u32, tiles[near].scene.objects().len() as u32])
-        });
-        let names = far.iter().map(|&far| tiles[far].name.clone()).collect();
-        let files = [
-            (TilePart::Table, table_bytes(baked.table, entry.key).unwrap()),
-            (TilePart::Near, near_bytes(entry.key, sizes, &baked.near).unwrap()),
-            (TilePart::Far, far_bytes(entry.far_key, names, &baked.far).unwrap()),
-        ];
-        for (part, bytes) in files {
-            fs::write(folder.join(entry.file_name(part)), bytes).unwrap();
-        }
-        index.tiles.push(entry);
+    let mut plan = WorldPlan { border: 20.0, reach: None, tiles: Vec::new() };
+    for tile in city_tiles(CityOptions { blocks_x: N, blocks_z: N, ..CityOptions::default() }, 1).unwrap() {
+        let [scene, cells] = ["glb", "json"].map(|end| format!("{}.{end}", tile.name));
+        fs::write(folder.join(&scene), write_glb(&tile.scene).unwrap()).unwrap();
+        let boxes = tile.cells.iter().enumerate().step_by(7);
+        let boxes = boxes.map(|(k, b)| json!({"id": k.to_string(), "min": b.min, "max": b.max}));
+        fs::write(folder.join(&cells), json!({"cells": boxes.collect::<Vec<_>>()}).to_string()).unwrap();
+        plan.tiles.push(TilePlan { name: tile.name, scene, at: [0.0; 3], viewers: None, cells: Some(cells) });
     }
-    fs::write(folder.join(INDEX_NAME), index.to_json()).unwrap();
+    let path = folder.join("plan.json");
+    fs::write(&path, plan.to_json()).unwrap();
+    let request =
+        BakeRequest { method: Some(SceneMethod::FromRegion(OcclusionMethod::Shafts)), ..BakeRequest::default() };
+    let (run, reading, files) = (WorldRun::default(), SceneReadOptions::default(), world_files(&path).unwrap());
+    assert_eq!(files.len(), 1 + 2 * plan.tiles.len());
+    let read = |files| WorldBake::read((&path, files), (&request, &reading), ("1", 1), &run.runtime);
+    assert!(matches!(read(&files[1..]), Err(WorldBakeError::Changed(_))));
+    let bake = read(&files).unwrap();
+    assert_eq!(bake.n_missing(folder), plan.tiles.len());
+    let report = bake.run(folder, &run).unwrap();
+    assert_eq!((report.n_baked, report.n_tiles, bake.n_missing(folder)), (plan.tiles.len(), plan.tiles.len(), 0));
+    // Nothing is to be done once more, but for what is taken away.
+    let far = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    fs::remove_file(far.into_iter().find(|path| path.extension().is_some_and(|end| end == "far")).unwrap()).unwrap();
+    let again = bake.run(folder, &run).unwrap();
+    assert_eq!((again.n_baked, again.n_far_only, again.n_bytes), (0, 1, report.n_bytes));
 }
 
 /// What an eye sees, by a loop over all tiles and all of their cells; none if it is in none.

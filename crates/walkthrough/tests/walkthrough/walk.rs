@@ -6,7 +6,9 @@ use sightlines_pvs::{
     BitMatrix, CellId, CellRecord, DoorId, DoorRecord, Frame, Locator, MirrorId, MirrorRecord, ObjectId, ObjectRecord,
     PortalId, PortalRecord, Table, TableKind, TableParts,
 };
-use sightlines_walkthrough::{Answer, Prefetcher, Prepare, WalkOptions, Walkthrough};
+use sightlines_walkthrough::{
+    Answer, MeasureError, Prefetcher, Prepare, WalkMeasure, WalkOptions, Walkthrough, usual_step,
+};
 use std::collections::BTreeSet;
 use std::sync::{Arc, Condvar, Mutex};
 
@@ -456,4 +458,21 @@ fn frames_fall_back_and_say_so() {
     for ((_, _, fine), (_, _, wide)) in exact.iter().zip(&coarser) {
         assert!(fine.is_subset(wide));
     }
+}
+
+/// What is left to draw is counted on the frames inside, and methods in the wrong order are found out.
+#[test]
+fn walks_are_measured() {
+    let cells = TableCells::new(rooms(8));
+    let views: Vec<View> = (0..20).map(|k| looking_right(-0.7 + 0.4 * f64::from(k))).collect();
+    let walk =
+        WalkMeasure { cells: &cells, views: &views, polygons: &[2; 8], options: WalkOptions::default(), fps: None };
+    let measured = walk.run(&[Method::CellToCell, Method::Exact], &|_, _| {}).unwrap();
+    assert_eq!((measured.n_full, measured.n_outside, measured.n_starved), (18, 2, 0));
+    let [all, exact] = &measured.methods[..] else { panic!("{measured:?}") };
+    assert!(exact.left.cells < all.left.cells && exact.times.len() == 18 && measured.most_bytes > 0);
+    assert_eq!(all.left.polygons, 2 * all.left.objects);
+    let reversed = walk.run(&[Method::Exact, Method::CellToCell], &|_, _| {});
+    assert!(matches!(reversed, Err(MeasureError::NotNested { coarser: Method::Exact, .. })));
+    assert_eq!(usual_step(&cells), Ok(65f64.sqrt() / 400.0));
 }

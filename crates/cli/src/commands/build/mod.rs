@@ -7,7 +7,6 @@ mod certify;
 mod doors;
 mod framed;
 mod limit;
-pub(crate) mod needs;
 mod options;
 mod packed;
 pub(crate) mod plan;
@@ -27,9 +26,9 @@ use crate::command::{Done, Manner};
 use crate::doors::DoorBox;
 use crate::error::{Result, anyhow, bail};
 use crate::input::{self, refuse};
-use crate::kept::{Identity, Inputs, Keeping, Kept, ResumeArgs};
+use crate::kept::{self, Keeping, Kept, ResumeArgs};
 use crate::map_portals::{MADE, portal_file};
-use crate::memory::{self, MemoryArgs};
+use crate::memory::MemoryArgs;
 use crate::numbers::duration;
 use crate::output;
 use crate::plans::{self, PlanArgs};
@@ -40,7 +39,9 @@ use options::BakeArgs;
 use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::bake::{BakeInput, BakeRequest, Bakeable, Baked, Recipe, Report, Runtime, SceneMethod};
+use sightlines::checkpoint::{Identity, Inputs};
 use sightlines::formats::{Input, InputKind, SceneFile};
+use sightlines::progress::memory;
 use source::{Source, bake_announced};
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -137,7 +138,7 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
     } else {
         Vec::new()
     };
-    let inputs = Inputs::look(keeping, inputs)?;
+    let inputs = kept::look(keeping, inputs)?;
     let input = input::read(path, args.map.as_deref(), &args.surfaces.options(), &reading)?;
     args.refuse_meaningless(&input)?;
     let chosen = (args.map.as_deref(), args.prt.as_deref());
@@ -250,7 +251,7 @@ impl BuildArgs {
             input: _, map, prt: _, surfaces, plans, bake: _, region: _, time_limit: _, doors: _, memory: _, resume: _, output: _,
             class: _, stab_trees, certify, json: _,
         } = self;
-        let mut identity = Identity::new("build", inputs);
+        let mut identity = kept::identity("build", inputs);
         source.identify(&mut identity);
         identity.debug("reading", &(map, surfaces, plans));
         identity.debug("recipe", &recipe.key());
@@ -273,12 +274,12 @@ impl BuildArgs {
     fn fit(&self, source: &Source, recipe: &Recipe) -> Result<(Option<Class>, usize)> {
         let by_rows = |class| self.by_rows(source, recipe, class).is_some();
         let mut class = self.class;
-        let all = needs::of(source, recipe, by_rows(class));
+        let all = source.content.needs(recipe, by_rows(class));
         if class.is_none() && !self.memory.has_room(all) && by_rows(Some(Class::Large)) {
             class = Some(Class::Large);
             tracing::warn!("{}: written row by row, as --class large does, for --memory", self.output.display());
         }
-        let needs = needs::of(source, recipe, by_rows(class));
+        let needs = source.content.needs(recipe, by_rows(class));
         let threads = self.memory.threads(self.bake.threads, needs).map_err(|source| {
             let advice = if packed::is_packed(&self.output) { FEWER_CELLS } else { BY_ROWS };
             anyhow!("{}: {source}; {advice}", self.input.display())

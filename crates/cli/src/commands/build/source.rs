@@ -7,12 +7,12 @@ use crate::clusters::warn_of_repeats;
 use crate::error::{Result, anyhow};
 use crate::input;
 use crate::input::of_map;
-use crate::kept::Identity;
 use crate::map_portals::{portal_file, portals_for};
 use crate::output;
 use crate::progress::Bar;
 use crate::refuse::meaningless;
 use sightlines::bake::{BakeError, BakeInput, BakeRequest, Bakeable, Baked, Prepared, Report, Runtime};
+use sightlines::checkpoint::Identity;
 use sightlines::formats::{Input, SceneFile};
 use std::path::{Path, PathBuf};
 

@@ -5,12 +5,11 @@ pub(crate) mod tower;
 
 use crate::command::{Done, Manner};
 use crate::error::{ErrorAbout, Result};
-use crate::folder::cannot_be_made;
-use crate::memory;
-use crate::output::{self, bytes};
+use crate::output::{self, bytes, cannot_be_made};
 use crate::reasons::reasons;
 use schemars::JsonSchema;
 use serde::Serialize;
+use sightlines::progress::memory;
 use sightlines::pvs::Table;
 use sightlines::viewer::{Figure, Page};
 use std::fmt;

@@ -9,14 +9,8 @@ use crate::same_scene::difference;
 use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::isovist::{Estimate, Surroundings};
-use std::fmt::{self, Write};
-
-/// What is seen from one eye.
-struct Seen {
-    eye: [f64; 3],
-    volume: Estimate,
-    shares: Vec<Estimate>,
-}
+use sightlines::report::{SeenInSpace, seen_csv};
+use std::fmt;
 
 pub(super) fn run(args: &IsovistArgs, kind: Kind) -> Result<Done> {
     let path = &args.plan;
@@ -41,16 +35,17 @@ pub(super) fn run(args: &IsovistArgs, kind: Kind) -> Result<Done> {
         bail!("{} is not of {}: {difference}", table_path.display(), path.display());
     }
     let around = Surroundings::new(&file.scene);
+    let numbers = |Estimate { value, low, high }: Estimate| [value, low, high];
     let mut all = Vec::new();
     for (seed, point) in (1u64..).zip(&args.at) {
         let eye = point.coordinates(3, path)?;
         let eye = [eye[0], eye[1], eye[2]];
-        let volume = around.volume(eye, args.rays, seed);
+        let volume = numbers(around.volume(eye, args.rays, seed));
         let shares = around.visible_shares(eye, table.as_ref(), (args.rays / 16).max(64), seed);
-        all.push(Seen { eye, volume, shares });
+        all.push(SeenInSpace { eye, volume, shares: shares.into_iter().map(numbers).collect() });
     }
     let names: Vec<&str> = file.scene.objects().iter().map(|object| object.name.as_str()).collect();
-    let text = csv(&all, &names);
+    let text = seen_csv(&all, &names);
     output::save(&args.output, text.as_bytes())?;
     let n = all.len() as f64;
     let outcome = Outcome {
@@ -59,28 +54,12 @@ pub(super) fn run(args: &IsovistArgs, kind: Kind) -> Result<Done> {
         n_objects: names.len(),
         n_isovists: all.len(),
         n_rays: args.rays,
-        mean_volume: all.iter().map(|seen| seen.volume.value).sum::<f64>() / n,
-        mean_half_interval: all.iter().map(|seen| (seen.volume.high - seen.volume.low) / 2.0).sum::<f64>() / n,
-        n_seen: all.iter().map(|seen| seen.shares.iter().filter(|share| share.value > 0.0).count()).sum::<usize>()
-            as f64
+        mean_volume: all.iter().map(|seen| seen.volume[0]).sum::<f64>() / n,
+        mean_half_interval: all.iter().map(|seen| (seen.volume[2] - seen.volume[1]) / 2.0).sum::<f64>() / n,
+        n_seen: all.iter().map(|seen| seen.shares.iter().filter(|share| share[0] > 0.0).count()).sum::<usize>() as f64
             / n,
     };
     Ok(Done::new(args.json, outcome))
-}
-
-/// A row for each eye and object: what is seen of the object, and the volume of the eye.
-fn csv(all: &[Seen], names: &[&str]) -> String {
-    let mut out =
-        String::from("x,y,z,index,volume,volume_low,volume_high,object,visible_share,share_low,share_high,name\n");
-    for (index, Seen { eye: [x, y, z], volume, shares }) in all.iter().enumerate() {
-        for (object, (share, name)) in shares.iter().zip(names).enumerate() {
-            let Estimate { value: v, low: vl, high: vh } = volume;
-            let Estimate { value: s, low: sl, high: sh } = share;
-            let name = name.replace('"', "\"\"");
-            let _ = writeln!(out, "{x},{y},{z},{index},{v},{vl},{vh},{object},{s},{sl},{sh},\"{name}\"");
-        }
-    }
-    out
 }
 
 /// Isovists of a scene, by rays.

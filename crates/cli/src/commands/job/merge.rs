@@ -6,8 +6,8 @@ use super::{absolute, open, stopped};
 use crate::command::{Answer, Done, Manner};
 use crate::error::Result;
 use crate::interrupt;
-use crate::kept::{Identity, JobSlot, Keeping};
-use sightlines::checkpoint::{Job, JobStore, Outcome, Role};
+use crate::kept::Keeping;
+use sightlines::checkpoint::{Identity, Job, JobSlot, JobStore, Outcome, Role, ShardState};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -39,7 +39,7 @@ pub(super) enum Progress {
     /// The next phase is known, and its shards are to be done.
     Planned(Job, usize),
     /// Shards of a phase are not done.
-    Missing(Job, Missing),
+    Missing { job: Job, phase: usize, shards: Vec<(usize, ShardState)> },
 }
 
 /// Puts the parts of the job in a folder together, as far as there are any. Goes to the folder where the job was planned.
@@ -66,7 +66,7 @@ pub(super) fn through(
     let job = open(folder)?;
     let task = adjust(Task::of(&job)?);
     let slot = JobSlot::default();
-    let open = |identity: &Identity| slot.open(identity, || Ok(JobStore::new(job.clone(), role.clone(), after)?));
+    let open = |identity: &Identity| Ok(slot.open(identity, || JobStore::new(job.clone(), role.clone(), after))?);
     let made = task.make(Keeping::Job(&open), show_progress, verbose);
     let made = match made {
         Ok(made) => return Ok(Progress::Written(Box::new(made), task.output().to_owned())),
@@ -77,10 +77,7 @@ pub(super) fn through(
     }
     match slot.store().and_then(|store| Some((store.outcome()?, store.job()))) {
         Some((Outcome::Planned { phase, .. }, job)) => Ok(Progress::Planned(job, phase)),
-        Some((Outcome::Missing { phase, shards }, job)) => {
-            let missing = Missing::new(&job, phase, shards);
-            Ok(Progress::Missing(job, missing))
-        }
+        Some((Outcome::Missing { phase, shards }, job)) => Ok(Progress::Missing { job, phase, shards }),
         Some((Outcome::Done, _)) => Ok(Progress::Shared(task.output().to_owned())),
         _ => Err(made),
     }
@@ -100,7 +97,9 @@ pub(super) fn report(job: &Path, found: Progress, json: bool) -> Done {
         Progress::Elsewhere(out, said) => (Merged::elsewhere(name, &out, said), Answer::Yes),
         Progress::Shared(out) => (Merged::shared(name, &out), Answer::Yes),
         Progress::Planned(job, phase) => (Merged::planned(name, &job, phase), Answer::Incomplete),
-        Progress::Missing(_, missing) => (Merged::missing(name, missing), Answer::Incomplete),
+        Progress::Missing { job, phase, shards } => {
+            (Merged::missing(name, Missing::new(&job, phase, shards)), Answer::Incomplete)
+        }
     };
     Done::new(json, merged).answering(answer)
 }

@@ -1,8 +1,6 @@
 //! `job`: a build that processes share, on one machine or on many.
 
-mod engine;
 mod merge;
-mod numbers;
 pub(crate) mod outcome;
 mod plan;
 mod shard;

@@ -1,12 +1,11 @@
 //! What is printed about a job.
 
-use super::numbers::Run;
 use super::task::Made;
 use crate::output::{count, percent, seconds};
 use crate::progress::rough;
 use schemars::JsonSchema;
 use serde::Serialize;
-use sightlines::checkpoint::{Job, PhasePlan, ShardState};
+use sightlines::checkpoint::{Job, PhasePlan, ShardState, in_words};
 use std::fmt;
 use std::path::Path;
 use std::time::Duration;
@@ -44,7 +43,7 @@ impl PhaseFacts {
 impl fmt::Display for PhaseFacts {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { phase, n_units, first_shard, n_shards, largest_share } = self;
-        let shards = ranges(&(*first_shard..first_shard + n_shards).collect::<Vec<_>>());
+        let shards = in_words(&(*first_shard..first_shard + n_shards).collect::<Vec<_>>());
         let units = count(*n_units as u64, "unit");
         write!(f, "{shards}, of {units} of phase {phase}; the largest has {} of the cost", percent(*largest_share))
     }
@@ -149,19 +148,12 @@ impl Missing {
         }
         Self { phase: job.manifest().phases[phase].name.clone(), missing, broken }
     }
-
-    /// All of them.
-    pub(super) fn shards(&self) -> Vec<usize> {
-        let mut all: Vec<usize> = self.missing.iter().copied().chain(self.broken.iter().map(|b| b.shard)).collect();
-        all.sort_unstable();
-        all
-    }
 }
 
 impl fmt::Display for Missing {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if !self.missing.is_empty() {
-            writeln!(f, "missing        {}", ranges(&self.missing))?;
+            writeln!(f, "missing        {}", in_words(&self.missing))?;
         }
         self.broken
             .iter()
@@ -287,10 +279,10 @@ impl fmt::Display for Status {
                 writeln!(f, "               about {} left, at the pace since it was planned", rough(left))?;
             }
             if !undone.missing.is_empty() {
-                writeln!(f, "missing        {}", ranges(&undone.missing))?;
+                writeln!(f, "missing        {}", in_words(&undone.missing))?;
             }
             if !begun.is_empty() {
-                writeln!(f, "begun          {}", ranges(begun))?;
+                writeln!(f, "begun          {}", in_words(begun))?;
             }
             for Broken { shard, reason } in &undone.broken {
                 writeln!(f, "broken         shard {shard}: {reason}")?;
@@ -312,23 +304,5 @@ pub(crate) struct Submitted {
 impl fmt::Display for Submitted {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.files.iter().try_for_each(|file| writeln!(f, "wrote {file}"))
-    }
-}
-
-/// Numbers of shards in words: `shards 0 to 3, 7`.
-pub(super) fn ranges(shards: &[usize]) -> String {
-    let run = |Run { first, last }: Run| if first == last { format!("{first}") } else { format!("{first} to {last}") };
-    let noun = if shards.len() == 1 { "shard" } else { "shards" };
-    format!("{noun} {}", Run::all(shards).into_iter().map(run).collect::<Vec<_>>().join(", "))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn ranges_are_in_words() {
-        let texts = [&[3][..], &[0, 1, 2], &[0, 2, 3, 9]].map(ranges);
-        assert_eq!(texts, ["shard 3", "shards 0 to 2", "shards 0, 2 to 3, 9"]);
     }
 }

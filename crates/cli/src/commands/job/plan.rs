@@ -5,8 +5,8 @@ use super::outcome::Planned;
 use super::task::Task;
 use crate::command::{Done, Manner};
 use crate::error::Result;
-use crate::kept::{Identity, JobSlot, Keeping, PROGRAM};
-use sightlines::checkpoint::{Job, JobStore, Manifest, Outcome, Role};
+use crate::kept::{Keeping, PROGRAM};
+use sightlines::checkpoint::{Identity, Job, JobSlot, JobStore, Manifest, Outcome, Role};
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -46,13 +46,12 @@ pub(crate) fn run(args: &PlanArgs, Manner { show_progress, .. }: Manner) -> Resu
     let folder = absolute(&args.output)?;
     let slot = JobSlot::default();
     let open = |identity: &Identity| {
-        slot.open(identity, || {
+        Ok(slot.open(identity, || {
             let here = here.display().to_string();
             let mut manifest = Manifest::new(PROGRAM, identity.key(), args.command.clone(), here, args.shards);
             manifest.inputs.clone_from(&identity.inputs);
-            let job = Job::create(&folder, manifest)?;
-            Ok(JobStore::new(job, Role::Merge, Duration::ZERO)?)
-        })
+            JobStore::new(Job::create(&folder, manifest)?, Role::Merge, Duration::ZERO)
+        })?)
     };
     let made = task.make(Keeping::Job(&open), show_progress, false);
     let job = args.output.display().to_string();

@@ -1,15 +1,14 @@
 //! `job shard`: the parts of some shards.
 
-use super::numbers::Run;
-use super::outcome::{ShardDone, ShardsDone, ranges};
+use super::outcome::{ShardDone, ShardsDone};
 use super::task::Task;
 use super::{absolute, open, stopped};
 use crate::command::{Done, Manner};
 use crate::error::{Result, anyhow};
 use crate::interrupt;
-use crate::kept::{Identity, JobSlot, Keeping};
+use crate::kept::Keeping;
 use crate::memory::MemoryArgs;
-use sightlines::checkpoint::{Job, JobStore, Outcome, Role, ShardState};
+use sightlines::checkpoint::{Identity, Job, JobSlot, JobStore, Outcome, Role, ShardRun, ShardState, in_words};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -21,8 +20,8 @@ pub(crate) struct ShardArgs {
     #[arg(value_name = "JOB")]
     job: PathBuf,
     /// Numbers of shards, from 0 on, and runs of them such as 3-9; one process prepares once and then does one after the other
-    #[arg(value_name = "N", required = true, value_parser = Run::parse)]
-    shards: Vec<Run>,
+    #[arg(value_name = "N", required = true)]
+    shards: Vec<ShardRun>,
     /// Number of threads; 0 uses every core
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 1, value_parser = crate::numbers::threads)]
     threads: usize,
@@ -71,7 +70,7 @@ fn compute(job: &Job, name: &Path, shards: Vec<usize>, args: &ShardArgs, show_pr
     let slot = JobSlot::default();
     let after = Duration::from_secs(args.save_after);
     let open = |identity: &Identity| {
-        slot.open(identity, || Ok(JobStore::new(job.clone(), Role::Shards(shards.clone()), after)?))
+        Ok(slot.open(identity, || JobStore::new(job.clone(), Role::Shards(shards.clone()), after))?)
     };
     let made = task.make(Keeping::Job(&open), show_progress, false);
     match slot.store().and_then(JobStore::outcome) {
@@ -83,8 +82,8 @@ fn compute(job: &Job, name: &Path, shards: Vec<usize>, args: &ShardArgs, show_pr
             Err(anyhow!(
                 "{}: {} {verb} all of phase {phase} first: {} to be done",
                 name.display(),
-                ranges(&shards),
-                ranges(&missing)
+                in_words(&shards),
+                in_words(&missing)
             ))
         }
         _ if interrupt::requested() => Err(stopped()),

@@ -27,27 +27,14 @@ pub(crate) fn run(args: &StatusArgs, _: Manner) -> Result<Done> {
 }
 
 fn of_phase(job: &Job, phase: usize) -> Result<PhaseStatus> {
-    let shards = job.manifest().shards_of(phase);
-    let states: Vec<(usize, ShardState)> = shards.map(|shard| Ok((shard, job.state(shard)?))).collect::<Result<_>>()?;
-    let (mut all, mut done) = (0.0, 0.0);
-    for ((_, state), plan) in states.iter().zip(&job.manifest().phases[phase].shards) {
-        all += plan.cost;
-        done += if *state == ShardState::Done { plan.cost } else { 0.0 };
-    }
-    let begun = states.iter().filter(|(_, state)| matches!(state, ShardState::Partial(_))).map(|(shard, _)| *shard);
-    let n_done = states.iter().filter(|(_, state)| *state == ShardState::Done).count();
-    let is_done = n_done == states.len();
-    let done_share = if is_done { 1.0 } else { done / f64::max(all, f64::MIN_POSITIVE) };
-    // The manifest was written last when the last phase was planned.
-    let planned = std::fs::metadata(job.folder().join("job.json")).and_then(|found| found.modified()).ok();
-    let since = planned.and_then(|planned| planned.elapsed().ok()).map(|since| since.as_secs_f64());
-    let left = since.filter(|_| done > 0.0).map(|since| since * (all - done) / done);
+    let status = job.status(phase)?;
+    let begun = status.shards.iter().filter(|(_, state)| matches!(state, ShardState::Partial(_)));
     Ok(PhaseStatus {
         facts: PhaseFacts::new(job, phase),
-        n_done,
-        done_share,
-        begun: begun.collect(),
-        undone: Missing::new(job, phase, states).into(),
-        seconds_left: if is_done { Some(0.0) } else { left },
+        n_done: status.n_done,
+        done_share: status.done_share,
+        begun: begun.map(|(shard, _)| *shard).collect(),
+        undone: Missing::new(job, phase, status.shards).into(),
+        seconds_left: status.seconds_left,
     })
 }

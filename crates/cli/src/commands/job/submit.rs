@@ -1,44 +1,32 @@
 //! `job submit`: has all shards done, round by round, and merges them.
 
-use super::engine::{Command, Did, Engine, Local, Round, Slurm};
 use super::merge::{Progress, merge, report};
-use super::outcome::{Missing, Submitted};
+use super::outcome::Submitted;
 use super::task::Task;
-use super::{absolute, open};
+use super::{absolute, interrupted, open};
 use crate::command::{Done, Manner};
-use crate::commands::job::interrupted;
 use crate::error::{ErrorAbout, Result, bail};
 use crate::interrupt;
-use crate::named::one_of;
-use sightlines::checkpoint::{Job, ShardState};
+use crate::kept::PROGRAM;
+use crate::progress::Bar;
+use sightlines::checkpoint::engine::{
+    Did, Engine, EngineError, Host, Local, Merge, Round, Rounds, ShellCommand, Slurm, quoted, run_rounds,
+};
+use sightlines::checkpoint::{Job, ShardRun};
+use sightlines::progress::{Observer, memory::n_threads};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 /// Who does shards.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum Kind {
+    /// Workers on this machine
     Local,
+    /// An array job of Slurm for the shards, and a job that merges behind it
     Slurm,
+    /// A command of yours for each shard
     Command,
-}
-
-impl Kind {
-    const ALL: [Self; 3] = [Self::Local, Self::Slurm, Self::Command];
-
-    const fn name(self) -> &'static str {
-        match self {
-            Self::Local => "local",
-            Self::Slurm => "slurm",
-            Self::Command => "command",
-        }
-    }
-
-    const fn about(self) -> &'static str {
-        match self {
-            Self::Local => "Workers on this machine",
-            Self::Slurm => "An array job of Slurm for the shards, and a job that merges behind it",
-            Self::Command => "A command of yours for each shard",
-        }
-    }
 }
 
 /// Arguments of `job submit`.
@@ -48,7 +36,7 @@ pub(crate) struct SubmitArgs {
     #[arg(value_name = "JOB")]
     job: PathBuf,
     /// Who does the shards
-    #[arg(long, help_heading = "Method", value_name = "WHO", default_value = "local", value_parser = one_of(&Kind::ALL, Kind::name, Kind::about))]
+    #[arg(long, help_heading = "Method", value_name = "WHO", default_value = "local")]
     engine: Kind,
     /// local: workers; command: commands that run at once [default: as many as there are cores]
     #[arg(long, help_heading = "Method", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
@@ -81,8 +69,9 @@ pub(crate) fn run(args: &SubmitArgs, Manner { show_progress, verbose }: Manner) 
     let (folder, out) = (absolute(&args.job)?, args.output.as_deref().map(absolute).transpose()?);
     let program = std::env::current_exe().in_file(&folder)?;
     let job = open(&folder)?;
-    let (options, per_task) = (&args.sbatch[..], args.shards_per_task as usize);
-    let slurm = Slurm { program: &program, options, per_task, output: out.as_deref(), show_progress };
+    let [shards, merging] = slurm_lines(&program, &folder, out.as_deref());
+    let per_task = args.shards_per_task as usize;
+    let slurm = Slurm { shards: &shards, merge: &merging, options: &args.sbatch, per_task };
     if args.dry_run {
         let Some(phase) = job.manifest().phases.len().checked_sub(1) else {
             bail!("{}: the job has no shards", args.job.display());
@@ -92,94 +81,87 @@ pub(crate) fn run(args: &SubmitArgs, Manner { show_progress, verbose }: Manner) 
         let files = files.iter().map(|file| file.display().to_string()).collect();
         return Ok(Done::new(args.json, Submitted { job: args.job.display().to_string(), files }));
     }
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let workers = args.workers.map_or(cores, |n| n as usize);
+    let workers = n_threads(args.workers.unwrap_or(0) as usize);
+    let worker = || {
+        let mut command = Command::new(&program);
+        command.args(["job", "work"]).arg(&folder).args(["--workers", &workers.to_string(), "--threads", "1", "-q"]);
+        command.arg("--json").args(out.iter().flat_map(|out| [Path::new("-o"), out]));
+        command
+    };
+    let shards = |shards: &[usize]| {
+        let mut command = Command::new(&program);
+        command.args(["job", "shard"]).arg(&folder).args(ShardRun::texts(shards)).args(["--threads", "1", "-q"]);
+        command
+    };
     let engine: Box<dyn Engine + '_> = match (args.engine, &args.command) {
         (Kind::Slurm, _) => Box::new(slurm),
-        (Kind::Command, Some(template)) => Box::new(Command { program: &program, template, workers, show_progress }),
-        _ => Box::new(Local { program: &program, workers, output: out.as_deref(), show_progress }),
+        (Kind::Command, Some(template)) => Box::new(ShellCommand { template, program: &program, workers }),
+        _ => Box::new(Local { workers, worker: &worker, shards: &shards, told }),
     };
-    let mut tries = Tries { phase: None, n: 0 };
-    let found = loop {
-        let job = open(&folder)?;
-        // Parts of earlier tries count.
-        if let Some(round) = undone(&job)? {
-            if tries.count(round.0) > args.retries + 1 {
-                let missing = Missing::new(&job, round.0, states(&job, &round.1)?);
-                break Progress::Missing(job, missing);
-            }
-            if let Did::Output(said) = engine.run(&Round { job: &job, phase: round.0, shards: &round.1 }, tries.n)? {
-                let out = match &out {
-                    Some(out) => out.clone(),
-                    None => Path::new(&job.manifest().folder).join(Task::parse(&job.manifest().command)?.output()),
-                };
-                break Progress::Elsewhere(out, said);
-            }
-        }
-        if interrupt::requested() {
-            return Err(interrupted());
-        }
-        if undone(&open(&folder)?)?.is_some() {
-            continue;
-        }
-        match merge(&folder, out.as_deref(), None, show_progress, verbose)? {
-            Progress::Planned(..) => {}
-            // Broken parts, which look like parts: they are removed so that they are done again.
-            Progress::Missing(job, missing) => {
-                remove(&job, &missing);
-                if tries.n > args.retries {
-                    break Progress::Missing(job, missing);
-                }
-            }
-            written => break written,
-        }
+    let engine = Watched(&*engine);
+    let observe = || -> Box<dyn Observer> { Box::new(Bar::new("shards", show_progress)) };
+    let warn = |text: &str| tracing::warn!("{text}");
+    // Nothing is left to do if standard error is closed.
+    let said = |said: &[u8]| _ = io::stderr().write_all(said);
+    let host = Host { observe: &observe, stop: interrupt::requested, warn, said };
+    let merge = || -> Result<_> {
+        Ok(match merge(&folder, out.as_deref(), None, show_progress, verbose)? {
+            Progress::Planned(..) => Merge::Planned,
+            Progress::Missing { phase, shards, .. } => Merge::Missing { phase, shards },
+            written => Merge::Written(written),
+        })
+    };
+    let found = match run_rounds((&folder, PROGRAM), (&engine, args.retries), &host, merge) {
+        Ok(Rounds::Merged(written)) => written,
+        Ok(Rounds::Missing { phase, shards }) => Progress::Missing { job: open(&folder)?, phase, shards },
+        Ok(Rounds::Elsewhere(told)) => Progress::Elsewhere(output_of(&open(&folder)?, out.as_deref())?, told),
+        Err(error) if matches!(error.downcast_ref(), Some(EngineError::Stopped)) => return Err(interrupted()),
+        Err(error) => return Err(error),
     };
     Ok(report(&args.job, found, args.json))
 }
 
-/// How often the shards of a phase were tried.
-struct Tries {
-    phase: Option<usize>,
-    n: u32,
-}
+/// An engine whose rounds end by themselves when the program is interrupted.
+struct Watched<'a>(&'a dyn Engine);
 
-impl Tries {
-    /// Counts a try, and returns how many there were of this phase.
-    fn count(&mut self, phase: usize) -> u32 {
-        if self.phase.replace(phase) != Some(phase) {
-            self.n = 0;
-        }
-        self.n += 1;
-        self.n
+impl Engine for Watched<'_> {
+    fn run(&self, round: &Round<'_>, attempt: u32, host: &Host<'_>) -> Result<Did, EngineError> {
+        let _watch = interrupt::watch();
+        self.0.run(round, attempt, host)
     }
 }
 
-/// The first phase with shards that have no sound part, and these shards.
-fn undone(job: &Job) -> Result<Option<(usize, Vec<usize>)>> {
-    for phase in 0..job.manifest().phases.len() {
-        let mut shards = Vec::new();
-        for shard in job.manifest().shards_of(phase) {
-            if job.state(shard)? != ShardState::Done {
-                shards.push(shard);
-            }
-        }
-        if !shards.is_empty() {
-            return Ok(Some((phase, shards)));
-        }
-    }
-    Ok(None)
+/// What Slurm runs for shards, and to merge them.
+fn slurm_lines(program: &Path, job: &Path, output: Option<&Path>) -> [String; 2] {
+    let ([program, job], threads) = ([program, job].map(quoted), "\"${SLURM_CPUS_PER_TASK:-1}\"");
+    let out = output.map_or(String::new(), |out| format!(" -o {}", quoted(out)));
+    [
+        format!("{program} job shard {job} \"$first-$last\" --threads {threads}"),
+        format!("{program} job merge {job}{out} --threads {threads}"),
+    ]
 }
 
-fn states(job: &Job, shards: &[usize]) -> Result<Vec<(usize, ShardState)>> {
-    shards.iter().map(|&shard| Ok((shard, job.state(shard)?))).collect()
+/// What a worker has printed that has written the output.
+fn told(printed: &[u8]) -> Option<String> {
+    let found: serde_json::Value = serde_json::from_slice(printed).ok()?;
+    found["text"].as_str().filter(|_| found["status"] == "written").map(str::to_owned)
 }
 
-fn remove(job: &Job, missing: &Missing) {
-    // What cannot be read now may be sound, and what was not there may have been written meanwhile.
-    let damaged =
-        missing.shards().into_iter().filter(|&shard| job.has_damaged_part(shard).is_ok_and(|damaged| damaged));
-    for path in damaged.map(|shard| job.part_path(shard)) {
-        // If it cannot be removed, it is found to be broken again.
-        let _: Result<(), _> = std::fs::remove_file::<&Path>(&path);
+/// What the command of a job writes, or what was given in place of it.
+fn output_of(job: &Job, given: Option<&Path>) -> Result<PathBuf> {
+    let planned = || Ok(Path::new(&job.manifest().folder).join(Task::parse(&job.manifest().command)?.output()));
+    given.map_or_else(planned, |given| Ok(given.to_owned()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_worker_that_has_written_says_so() {
+        for other in [&b""[..], b"what?", br#"{"status": "shared", "text": "done"}"#, b"[]"] {
+            assert_eq!(told(other), None);
+        }
+        assert_eq!(told(br#"{"status": "written", "text": "wrote it"}"#).as_deref(), Some("wrote it"));
     }
 }

@@ -8,7 +8,6 @@ use crate::memory::MemoryArgs;
 use clap::{Parser, Subcommand};
 use sightlines::checkpoint::Job;
 use std::fmt;
-use std::fs::File;
 use std::path::{Path, PathBuf};
 
 /// A command line that a job can share. `-v` and `-q` may be in it, as in any other.
@@ -96,18 +95,7 @@ impl Task {
         let manifest = job.manifest();
         let folder = PathBuf::from(&manifest.folder);
         std::env::set_current_dir(&folder).in_file(&folder)?;
-        for input in &manifest.inputs {
-            let path = Path::new(&input.path);
-            let n_bytes = File::open(path).and_then(|file| file.metadata()).map(|found| found.len());
-            let n_bytes = n_bytes.in_file(path)?;
-            let mut hasher = sightlines::checkpoint::KeyHasher::new("");
-            let is_same =
-                n_bytes == input.n_bytes && hasher.file("", path).is_ok_and(|(_, key)| key.to_string() == input.key);
-            if !is_same {
-                let job = job.folder().to_owned();
-                bail!("{}: the file is not what it was when the job in {} was planned", path.display(), job.display());
-            }
-        }
+        job.check_inputs()?;
         Self::parse(&manifest.command)
     }
 

@@ -4,17 +4,18 @@ pub(crate) mod outcome;
 
 use crate::command::{Done, Manner};
 use crate::error::{Result, anyhow};
-use crate::folder::NewFolder;
 use crate::input;
-use crate::kept::{Identity, Inputs, Keeping, Kept, ResumeArgs};
-use crate::memory::{MemoryArgs, Needs, Size};
+use crate::kept::{self, Keeping, Kept, ResumeArgs};
+use crate::memory::{MemoryArgs, Size};
 use crate::progress::Bar;
 use crate::simplification::{self, HowArgs, OutFormat, ReadScene, read, written};
 use outcome::Outcome;
 use sightlines::cells::Scene;
+use sightlines::checkpoint::{Identity, Inputs};
 use sightlines::formats::levels::{INDEX_NAME, LevelFile, LevelsIndex, write_levels_index};
-use sightlines::formats::{GltfSource, SceneFile};
+use sightlines::formats::{FolderError, GltfSource, NewFolder, SceneFile};
 use sightlines::multifocal::FromRegion;
+use sightlines::progress::memory::Needs;
 use sightlines::simplify::{
     Effort, HiddenBy, LevelOptions, Levels, MakeMethod, SimplifyError, SimplifyOptions, levels_with,
 };
@@ -67,11 +68,16 @@ pub(crate) fn run(args: &LevelsArgs, Manner { show_progress, .. }: Manner) -> Re
     let work_memory = MemoryArgs::of(args.work_memory);
     work_memory.watch();
     // Outputs that cannot be written are reported before the work is done.
-    let folder = NewFolder::new(&args.output, is_ours)?;
+    let folder = NewFolder::new(&args.output, is_ours).map_err(|error| match error {
+        FolderError::Other { .. } => {
+            anyhow!("{error}, which is no level: name a new folder, or one that only holds levels")
+        }
+        error => error.into(),
+    })?;
     let keeping = Keeping::File(&args.resume);
     let is_there = args.table.exists() && args.scene.exists();
     let inputs = [&args.scene, &args.table].map(PathBuf::as_path);
-    let inputs = Inputs::look(keeping, inputs.into_iter().filter(|_| is_there))?;
+    let inputs = kept::look(keeping, inputs.into_iter().filter(|_| is_there))?;
     let table = input::table(&args.table)?;
     // What was see-through for the table must not count as a wall here.
     let ReadScene { file, source } = read(&args.scene, &args.how.surfaces.options_with(table.info()))?;
@@ -118,7 +124,7 @@ impl LevelsArgs {
         let Self { scene: _, table: _, how, memory: _, work_memory: _, resume: _, output: _, json: _ } = self;
         let LevelOptions { simplify, memory, bytes_per_triangle } = *options;
         let simplify = SimplifyOptions { threads: 0, ..simplify };
-        let mut identity = Identity::new("levels", inputs);
+        let mut identity = kept::identity("levels", inputs);
         // Files that a scene names are part of it.
         identity.debug("content", &file.scene.checksum());
         identity.debug("how", &how.for_any_threads());
@@ -159,6 +165,8 @@ fn write(
     }
     folder.save(INDEX_NAME, write_levels_index(&index).as_bytes())?;
     let outcome = Outcome::new(args, (scene, method), &index, (n_bytes, roundings), start.elapsed());
-    folder.finish()?;
+    if let Some((old, error)) = folder.finish()? {
+        tracing::warn!("{}: what the folder was before cannot be removed: {error}", old.display());
+    }
     Ok(outcome)
 }

@@ -1,7 +1,6 @@
 //! What levels were made, in numbers.
 
 use super::LevelsArgs;
-use crate::memory;
 use crate::output::{bytes, count, percent, seconds};
 use crate::simplification::{Rounded, SingleSided};
 use schemars::JsonSchema;
@@ -9,6 +8,7 @@ use serde::Serialize;
 use sightlines::cells::Scene;
 use sightlines::formats::LevelsIndex;
 use sightlines::formats::scene::Rounding;
+use sightlines::progress::memory;
 use std::fmt;
 use std::time::Duration;
 

@@ -3,14 +3,14 @@
 use super::outcome::{FileOutcome, FileStatus, FolderOutcome};
 use super::{BAR, Map, RejectArgs, finish, warn};
 use crate::error::{Result, anyhow, bail};
-use crate::folder::cannot_be_made;
 use crate::interrupt;
-use crate::kept::{Inputs, Keeping, Kept};
-use crate::memory;
-use crate::output;
+use crate::kept::{self, Keeping, Kept};
+use crate::output::{self, cannot_be_made};
 use crate::progress::Bar;
 use sightlines::bake::{RejectError, RejectMaps, RejectTables, RejectWadsError, reject_wads};
+use sightlines::checkpoint::Inputs;
 use sightlines::formats::{ReadErrorKind, Wad};
+use sightlines::progress::memory;
 use sightlines::progress::{Cancelled, Halt};
 use std::collections::BTreeSet;
 use std::ffi::OsStr;
@@ -32,7 +32,7 @@ pub(super) fn make(args: &RejectArgs, keeping: Keeping<'_>, show_progress: bool)
     let names: Vec<&OsStr> = paths.iter().filter_map(|path| path.file_name()).collect();
     let outs: Vec<PathBuf> = names.iter().map(|name| args.output.join(name)).collect();
     check_outputs(args, &paths, &outs)?;
-    let inputs = Inputs::look(keeping, paths.iter().map(PathBuf::as_path))?;
+    let inputs = kept::look(keeping, paths.iter().map(PathBuf::as_path))?;
     let mut folder = Folder { args, paths: &paths, outs: &outs, inputs: &inputs, files: Vec::new(), todo: Vec::new() };
     let maps = folder.find()?;
     let outputs: Vec<&Path> = std::iter::once(&args.output).chain(&outs).map(PathBuf::as_path).collect();

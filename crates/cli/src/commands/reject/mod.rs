@@ -7,14 +7,16 @@ pub(crate) use outcome::Outcome;
 
 use crate::command::{Done, Manner};
 use crate::error::{Result, anyhow};
-use crate::kept::{Identity, Inputs, Keeping, Kept, ResumeArgs};
-use crate::memory::{self, MemoryArgs};
+use crate::kept::{self, Keeping, Kept, ResumeArgs};
+use crate::memory::MemoryArgs;
 use crate::output::{self, count};
 use crate::progress::Bar;
 use outcome::{Map, WadOutcome};
 use sightlines::bake::{MapOutcome, MapStatus, RejectError, RejectOptions, RejectSummary, reject_wad};
+use sightlines::checkpoint::{Identity, Inputs};
 use sightlines::formats::Wad;
 use sightlines::formats::doom::RmbFile;
+use sightlines::progress::memory;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
@@ -75,7 +77,7 @@ fn make_wad(args: &RejectArgs, keeping: Keeping<'_>, show_progress: bool) -> Res
     // It may be the WAD that is read.
     output::check(&[], &[&args.output])?;
     let files = std::iter::once(&args.input).chain(&args.rmb).map(PathBuf::as_path);
-    let inputs = Inputs::look(keeping, files)?;
+    let inputs = kept::look(keeping, files)?;
     let wad = Wad::read(&args.input)?;
     let rmb = args.rmb.as_ref().map(RmbFile::read).transpose()?;
     let kept = Kept::open(keeping, &inputs, &[&args.output], || args.identity(&inputs, &[]))?;
@@ -131,7 +133,7 @@ impl RejectArgs {
     /// * `names`: those of the WADs of a folder
     fn identity(&self, inputs: &Inputs, names: &[&OsStr]) -> Identity {
         let Self { input: _, map, force, rmb: _, strict, threads: _, memory: _, resume: _, output: _, json: _ } = self;
-        let mut identity = Identity::new("reject", inputs);
+        let mut identity = kept::identity("reject", inputs);
         identity.debug("options", &(map, force, strict));
         names.iter().for_each(|name| identity.debug("name", name));
         identity

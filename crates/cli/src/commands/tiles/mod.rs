@@ -1,12 +1,9 @@
 //! `tiles`: a world that is too large for one table.
 
-mod bake;
 mod build;
 pub(crate) mod check;
-mod input;
 pub(crate) mod outcome;
 pub(crate) mod query;
-mod scenes;
 
 pub(crate) use build::{TilesBuildArgs, make};
 pub(crate) use outcome::Outcome;

@@ -3,6 +3,7 @@
 use crate::output::{bytes, count, seconds};
 use schemars::JsonSchema;
 use serde::Serialize;
+use sightlines::bake::world::WorldReport;
 use std::fmt;
 use std::path::Path;
 use std::time::Duration;
@@ -23,46 +24,23 @@ pub(crate) struct Outcome {
     /// Tiles that were kept from an earlier bake.
     n_kept: usize,
     /// Tables of earlier bakes that were removed.
-    pub(super) n_removed: usize,
+    n_removed: usize,
     /// Cells of all tiles.
     n_cells: usize,
     /// Objects of all tiles.
     n_objects: usize,
     /// Bytes of all files of tiles.
-    pub(super) n_bytes: u64,
+    n_bytes: u64,
     /// Seconds in all.
-    pub(super) seconds: f64,
+    seconds: f64,
 }
 
 impl Outcome {
-    pub(super) fn new(world: &Path, out: &Path) -> Self {
-        Self {
-            world: world.display().to_string(),
-            out: out.display().to_string(),
-            n_tiles: 0,
-            n_baked: 0,
-            n_far_only: 0,
-            n_kept: 0,
-            n_removed: 0,
-            n_cells: 0,
-            n_objects: 0,
-            n_bytes: 0,
-            seconds: 0.0,
-        }
-    }
-
-    /// Counts a tile.
-    ///
-    /// * `made`: whether all of it was made; `None` if nothing was
-    pub(super) fn count(&mut self, made: Option<bool>, (n_cells, n_objects): (usize, usize)) {
-        self.n_tiles += 1;
-        self.n_cells += n_cells;
-        self.n_objects += n_objects;
-        match made {
-            Some(true) => self.n_baked += 1,
-            Some(false) => self.n_far_only += 1,
-            None => self.n_kept += 1,
-        }
+    pub(super) fn new(world: &Path, out: &Path, report: WorldReport, time: Duration) -> Self {
+        let WorldReport { n_tiles, n_baked, n_far_only, n_kept, n_removed, n_cells, n_objects, n_bytes } = report;
+        let [world, out] = [world, out].map(|path| path.display().to_string());
+        let seconds = time.as_secs_f64();
+        Self { world, out, n_tiles, n_baked, n_far_only, n_kept, n_removed, n_cells, n_objects, n_bytes, seconds }
     }
 }
 

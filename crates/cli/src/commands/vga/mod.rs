@@ -7,8 +7,8 @@ mod points;
 use crate::command::{Done, Manner};
 use crate::error::{ErrorAbout, Result, anyhow, bail};
 use crate::input;
-use crate::kept::{Identity, Inputs, Keeping, Kept, ResumeArgs};
-use crate::memory::{self, MemoryArgs, Needs};
+use crate::kept::{self, Keeping, Kept, ResumeArgs};
+use crate::memory::MemoryArgs;
 use crate::named::one_of;
 use crate::output;
 use crate::place::Point;
@@ -18,10 +18,12 @@ use kind::Kind;
 use outcome::{Outcome, Range};
 use sightlines::bake::Bakeable;
 use sightlines::cells::Plan;
+use sightlines::checkpoint::{Identity, Inputs};
 use sightlines::formats::InputKind;
 use sightlines::formats::scene::SceneReadOptions;
 use sightlines::geometry::{Point2, Segment2};
 use sightlines::isovist::{Touch, WallMesh};
+use sightlines::progress::memory::{self, Needs};
 use sightlines::report::{Field, MAX_SIZE, MIN_SIZE, PointColumn, field_png, field_svg, points_csv, points_geojson};
 use sightlines::visibility_graph::{
     Analysis, AnalysisOptions, Effort, Group, Measure, Points, Turns, UNDEFINED, VisibilityGraph,
@@ -187,7 +189,7 @@ pub(crate) fn run(args: &VgaArgs, Manner { show_progress, .. }: Manner) -> Resul
         bail!("{}: --measure is for pictures, and this is a table of all --measures", args.output.display());
     }
     let keeping = Keeping::File(&args.resume);
-    let looked = Inputs::look(keeping, inputs)?;
+    let looked = kept::look(keeping, inputs)?;
     let plan = plan_of(args)?;
     let (points, grid) = match (&args.points, args.spacing) {
         (None, Some(spacing)) => {
@@ -287,7 +289,7 @@ impl VgaArgs {
             plan: _, map, plans, spacing, seed, points: _, measures, radius, metric_radius, angular_radius, turns, touch,
             threads: _, memory: _, resume: _, measure, size: _, output: _, json: _,
         } = self;
-        let mut identity = Identity::new("vga", inputs);
+        let mut identity = kept::identity("vga", inputs);
         identity.debug("points", &(map, plans, spacing, seed));
         identity.debug("measures", &(measures, measure, radius, metric_radius, angular_radius, turns, touch));
         identity

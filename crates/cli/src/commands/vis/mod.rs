@@ -10,15 +10,15 @@ pub(crate) use outcome::Outcome;
 pub(crate) use sounds::Sound;
 
 use crate::clusters::warn_of_repeats;
-use crate::commands::build::needs::of_clusters;
 use crate::input;
-use crate::kept::{Identity, Inputs, Keeping, Kept, ResumeArgs};
+use crate::kept::{self, Keeping, Kept, ResumeArgs};
 use crate::map_portals::{MapPortals, do_not_fit, portal_file, portals_for};
 use crate::memory::MemoryArgs;
 use crate::output;
 use crate::progress::Bar;
 use certify::certify;
-use sightlines::bake::{PrtBakeError, PrtOptions, vis_map};
+use sightlines::bake::{PrtBakeError, PrtOptions, portals_need, vis_map};
+use sightlines::checkpoint::{Identity, Inputs};
 use sightlines::formats::InputKind;
 use sightlines::formats::quake::visibility::check_portals;
 use sightlines::formats::quake::{Bsp, Prt, VisibilityError, read_bsp};
@@ -127,7 +127,7 @@ pub(crate) fn compute(args: &VisArgs, manner: VisManner<'_, '_>) -> Result<Outco
     // The map may be replaced.
     output::check(&file.iter().map(PathBuf::as_path).collect::<Vec<_>>(), &[out])?;
     let inputs =
-        Inputs::look(manner.keeping, [Some(&args.map), file.as_ref()].into_iter().flatten().map(PathBuf::as_path))?;
+        kept::look(manner.keeping, [Some(&args.map), file.as_ref()].into_iter().flatten().map(PathBuf::as_path))?;
     let bsp = read_bsp(&args.map)?;
     let portals = portals_for(&bsp, &args.map, args.prt.as_deref())?;
     let format = portals.format();
@@ -139,7 +139,7 @@ pub(crate) fn compute(args: &VisArgs, manner: VisManner<'_, '_>) -> Result<Outco
     warn_of_repeats(&prt_path, &prt);
 
     let too_large = |source| anyhow!("{}: {source}; allow more", args.map.display());
-    let threads = args.memory.threads(args.threads, of_clusters(&prt)).map_err(too_large)?;
+    let threads = args.memory.threads(args.threads, portals_need(&prt)).map_err(too_large)?;
     let kept = Kept::open(manner.keeping, &inputs, &[out], || args.identity(&text, &inputs, manner.keeping))?;
     drop(text);
     let resumed = kept.n_taken_up() > 0;
@@ -191,8 +191,10 @@ impl VisArgs {
         } = self;
         // The search is of the portals alone: a map that was compiled again, or got its visibility, may have the same. A job is of its files.
         let mut identity = match keeping {
-            Keeping::Job(_) => Identity::new("vis", inputs),
-            Keeping::File(_) | Keeping::FileIfItFits(_) | Keeping::Nowhere => Identity::apart_from("vis", inputs),
+            Keeping::Job(_) => kept::identity("vis", inputs),
+            Keeping::File(_) | Keeping::FileIfItFits(_) | Keeping::Nowhere => {
+                Identity::apart_from((kept::PROGRAM, kept::UNITS), "vis", inputs)
+            }
         };
         identity.debug("portals", &portals);
         identity.debug("options", fast);

@@ -2,12 +2,12 @@
 
 use super::certify::Certified;
 use crate::clusters::Clusters;
-use crate::memory;
 use crate::output::{bytes, count, seconds};
 use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::bake::VisMap;
 use sightlines::formats::quake::Bsp;
+use sightlines::progress::memory;
 use std::fmt;
 use std::path::Path;
 use std::time::Duration;

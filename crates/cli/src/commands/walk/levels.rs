@@ -7,8 +7,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::eye_to_cell::View;
 use sightlines::formats::levels::{INDEX_NAME, read_levels_index};
-use sightlines::pvs::{Place, PlaceBuffer};
-use sightlines::walkthrough::{LevelIndex, LevelSize};
+use sightlines::walkthrough::{LevelIndex, LevelSize, LevelsDrawn};
 use std::fmt;
 use std::path::Path;
 
@@ -47,25 +46,16 @@ pub(super) fn drawn<C: Cells>(folder: &Path, cells: &C, file: &Path, views: &[Vi
     let sizes = index.levels.iter().map(|level| LevelSize { bytes: level.n_bytes, n_triangles: level.n_triangles });
     let sizes: Vec<LevelSize> = sizes.collect();
     let levels = LevelIndex::new(index.cells, sizes).in_file(&path)?;
-    let mut buffer = PlaceBuffer::new();
-    let (mut n_frames, mut n_with_level, mut sum, mut most) = (0, 0, 0, 0);
-    for view in views {
-        let place = cells.cells_at(view.eye(), &mut buffer).in_file(file)?;
-        if let Place::Inside(at) = place {
-            let n = levels.n_triangles_at(at, index.n_triangles);
-            n_frames += 1;
-            n_with_level += usize::from(levels.level_at(at).is_some());
-            sum += n;
-            most = most.max(n);
-        }
-    }
+    let eyes = views.iter().map(View::eye);
+    let LevelsDrawn { n_frames, n_with_level, n_triangles, most } =
+        levels.drawn_by(index.n_triangles, cells, eyes).in_file(file)?;
     Ok(Drawn {
         folder: folder.display().to_string(),
         n_levels: levels.levels().len(),
         n_frames,
         n_with_level,
         without: index.n_triangles,
-        with_mean: if n_frames > 0 { sum as f64 / n_frames as f64 } else { 0.0 },
+        with_mean: if n_frames > 0 { n_triangles as f64 / n_frames as f64 } else { 0.0 },
         with_most: most,
     })
 }

@@ -1,8 +1,6 @@
 //! `walk`: what each method leaves to draw along a walk, and what it costs.
 
 mod levels;
-mod measure;
-mod nesting;
 pub(crate) mod outcome;
 
 use crate::command::{Done, Manner};
@@ -12,11 +10,10 @@ use crate::progress::Bar;
 use crate::tables::{self, Cells, Opened};
 use crate::view::{LensArgs, Methods, method_help};
 use crate::walk_path;
-use measure::Walk;
 use outcome::Outcome;
 use sightlines::eye_to_cell::{Budget, CellSource, Method, View};
 use sightlines::report::walk_svg;
-use sightlines::walkthrough::{CameraPose, WalkOptions, wander};
+use sightlines::walkthrough::{CameraPose, MeasureError, WalkMeasure, WalkOptions, usual_step, wander};
 use std::path::{Path, PathBuf};
 
 /// Arguments of `walk`.
@@ -132,8 +129,11 @@ fn walk<C: Cells>(cells: &C, args: &WalkArgs, show_progress: bool) -> Result<Don
     let options =
         WalkOptions { budget: args.budget, bounces: args.bounces, steps: args.steps, ..WalkOptions::default() };
     let bar = Bar::new("frames", show_progress);
-    let walk = Walk { cells, file, views: &views, polygons: &polygons, options, fps: args.fps };
-    let measured = walk.measure(&methods, &|done, all| bar.set(done, all))?;
+    let walk = WalkMeasure { cells, views: &views, polygons: &polygons, options, fps: args.fps };
+    let measured = walk.run(&methods, &|done, all| bar.set(done, all)).map_err(|error| match error {
+        MeasureError::Source(error) => anyhow!("{}: {error}", file.display()),
+        error => anyhow!("{}: {error}; this is a defect of the program", file.display()),
+    })?;
     drop(bar);
     let outcome = Outcome::new(args, lens.fov, step, cells, &polygons, &measured).with_levels(drawn);
     if let Some(out) = &args.output {
@@ -148,20 +148,4 @@ fn walk<C: Cells>(cells: &C, args: &WalkArgs, show_progress: bool) -> Result<Don
 /// The error of an invalid view in a frame.
 fn refused(path: &Path, frame: usize, source: sightlines::eye_to_cell::ViewError) -> anyhow::Error {
     anyhow!("{}: {source}", path.display(), source = anyhow!("frame {frame}: {source}"))
-}
-
-/// A 400th of the diagonal of the box around all cells.
-fn usual_step<C: Cells>(cells: &C) -> Result<f64> {
-    let (mut min, mut max) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    for cell in (0..CellSource::n_cells(cells) as u32).map(sightlines::pvs::CellId) {
-        let bounds = cells.cell_box(cell)?;
-        for k in 0..3 {
-            if bounds.min[k] <= bounds.max[k] {
-                (min[k], max[k]) = (min[k].min(bounds.min[k]), max[k].max(bounds.max[k]));
-            }
-        }
-    }
-    let diagonal = (0..3).map(|k| (max[k] - min[k]).powi(2)).sum::<f64>().sqrt();
-    // Without cells there is no walk, whatever the step is.
-    Ok(if diagonal.is_finite() && diagonal > 0.0 { diagonal / 400.0 } else { 1.0 })
 }

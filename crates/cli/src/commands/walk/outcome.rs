@@ -2,13 +2,13 @@
 
 use super::WalkArgs;
 use super::levels::Drawn;
-use super::measure::{Measured, MethodSums};
 use crate::output::{bytes, count};
 use crate::tables::Cells;
 use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::eye_to_cell::Budget;
 use sightlines::report::WalkBar;
+use sightlines::walkthrough::{LeftToDraw, MethodSums, WalkMeasured};
 use std::fmt;
 use std::fmt::Write;
 use std::time::Duration;
@@ -117,24 +117,24 @@ impl Outcome {
         step: Option<f64>,
         cells: &impl Cells,
         polygons: &[u32],
-        measured: &Measured,
+        measured: &WalkMeasured,
     ) -> Self {
         let [n_cells, n_objects] = cells.counts();
         let n_polygons = polygons.iter().map(|&n| u64::from(n)).sum();
-        let Measured { methods, n_full, n_outside, n_starved, most_bytes, n_prepared, n_dropped } = measured;
+        let WalkMeasured { methods, n_full, n_outside, n_starved, most_bytes, n_prepared, n_dropped } = measured;
         let mean = |sum: u64| share(sum as f64, *n_full as f64);
-        let kept = |sums: &MethodSums, of: fn(&MethodSums) -> u64, all: u64| Kept {
-            mean: mean(of(sums)),
-            share_of_cell_to_cell: share(of(sums) as f64, of(&methods[0]) as f64),
-            share_of_all: share(mean(of(sums)), all as f64),
+        let kept = |sums: &MethodSums, of: fn(&LeftToDraw) -> u64, all: u64| Kept {
+            mean: mean(of(&sums.left)),
+            share_of_cell_to_cell: share(of(&sums.left) as f64, of(&methods[0].left) as f64),
+            share_of_all: share(mean(of(&sums.left)), all as f64),
         };
         let line = |sums: &MethodSums| MethodLine {
             method: sums.method.name(),
             cells: kept(sums, |s| s.cells, n_cells as u64),
             objects: kept(sums, |s| s.objects, n_objects as u64),
             polygons: kept(sums, |s| s.polygons, n_polygons),
-            images: mean(sums.images),
-            image_polygons: mean(sums.image_polygons),
+            images: mean(sums.left.images),
+            image_polygons: mean(sums.left.image_polygons),
             mean_us: share(micros(sums.times.iter().sum()), *n_full as f64),
             median_us: quantile(&sums.times, 0.5),
             p99_us: quantile(&sums.times, 0.99),

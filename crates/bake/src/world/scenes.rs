@@ -1,10 +1,10 @@
 //! Scenes of tiles with their cells, read when they are needed, and kept while there is room.
 
+use super::WorldBakeError;
 use super::input::{Loaded, TileInput};
-use crate::error::Result;
-use sightlines::bake::{BakeRequest, Runtime};
-use sightlines::formats::ViewCell;
-use sightlines::formats::scene::SceneReadOptions;
+use crate::request::{BakeRequest, Runtime};
+use sightlines_formats::ViewCell;
+use sightlines_formats::scene::SceneReadOptions;
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -45,7 +45,7 @@ impl<'a> Scenes<'a> {
     }
 
     /// A tile, read if it is not there.
-    pub(super) fn get(&self, tile: usize) -> Result<Arc<Ready>> {
+    pub(super) fn get(&self, tile: usize) -> Result<Arc<Ready>, WorldBakeError> {
         let slot = {
             let (slots, order) = &mut *lock(&self.kept);
             order.retain(|&other| other != tile);

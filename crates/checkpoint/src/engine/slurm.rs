@@ -2,16 +2,12 @@
 
 mod queue;
 
-use super::{Did, Engine, Round, Shown, quoted};
-use crate::commands::job::interrupted;
-use crate::commands::job::numbers::Run;
-use crate::commands::job::outcome::ranges;
-use crate::error::{ErrorAbout, Result, bail};
-use crate::interrupt;
-use crate::output;
+use super::{Did, Engine, EngineError, Host, Round, Shown, quoted};
+use crate::job::{JobError, ShardRun, in_words};
 use queue::{Watch, cancel, is_gone, is_pending, sbatch};
+use sightlines_formats::{atomic_write, process_mark};
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Duration;
 
 /// How often Slurm is asked for news.
@@ -21,15 +17,17 @@ const GONE: usize = 4;
 /// How often all parts have to be there while the merge still waits before nobody waits for it: a node that died may keep tasks that are over.
 const WHOLE: usize = 20;
 
-/// Slurm, as the environment configures it.
-pub(in crate::commands::job) struct Slurm<'a> {
-    pub(in crate::commands::job) program: &'a Path,
-    pub(in crate::commands::job) options: &'a [String],
+/// Slurm, as the environment configures it. Command lines are for a shell; in both, `$SLURM_CPUS_PER_TASK` is the number of threads, if it is set.
+#[derive(Debug, Clone, Copy)]
+pub struct Slurm<'a> {
+    /// The command line that does the shards `"$first-$last"`, and ends with exit code 2 if it would fail again.
+    pub shards: &'a str,
+    /// The command line that merges and writes the output.
+    pub merge: &'a str,
+    /// Options for `sbatch`.
+    pub options: &'a [String],
     /// Shards of a task.
-    pub(in crate::commands::job) per_task: usize,
-    /// What merges write, if not what was planned.
-    pub(in crate::commands::job) output: Option<&'a Path>,
-    pub(in crate::commands::job) show_progress: bool,
+    pub per_task: usize,
 }
 
 /// The files of an attempt. Another submission of the same job has others.
@@ -44,7 +42,7 @@ impl Files {
         let mark = match attempt {
             // Scripts to be read, which are not run.
             0 => String::new(),
-            _ => format!("-{}", sightlines::formats::process_mark()),
+            _ => format!("-{}", process_mark()),
         };
         Self { folder: round.job.folder().join("slurm"), name: format!("{}-{attempt}{mark}", round.phase) }
     }
@@ -95,16 +93,17 @@ impl Slurm<'_> {
         (first..all.end).take(self.per_task).collect()
     }
 
-    /// Writes the scripts of an attempt into the folder of the job.
-    pub(in crate::commands::job) fn write(&self, round: &Round<'_>, attempt: u32) -> Result<Vec<PathBuf>> {
+    /// Writes the scripts of an attempt into the folder of the job, and starts nothing; their paths. Attempt 0 is for scripts that are only to be read.
+    ///
+    /// # Errors
+    /// [`EngineError::Job`].
+    pub fn write(&self, round: &Round<'_>, attempt: u32) -> Result<[PathBuf; 2], EngineError> {
         let files = Files::of(round, attempt);
         let folder = &files.folder;
-        fs::create_dir_all(folder).in_file(folder)?;
-        let (program, job) = (quoted(self.program), quoted(round.job.folder()));
+        fs::create_dir_all(folder).map_err(|source| JobError::Read { path: folder.clone(), source })?;
         let options: String = self.options.iter().map(|option| format!("#SBATCH {option}\n")).collect();
         let name = &round.job.manifest().phases[round.phase].name;
-        let array: Vec<String> = Run::all(&self.tasks(round)).into_iter().map(Run::text).collect();
-        let array = array.join(",");
+        let array = ShardRun::texts(&self.tasks(round)).join(",");
         let all = round.job.manifest().shards_of(round.phase);
         let (first, last, n) = (all.start, all.end.saturating_sub(1), self.per_task);
         // Slurm has no quotes here; what it cannot take has to be given by --chdir.
@@ -115,35 +114,34 @@ impl Slurm<'_> {
              #SBATCH --output={logs}/shards-%A-%a.log\n#SBATCH --open-mode=append\n{options}\
              first=$(({first} + SLURM_ARRAY_TASK_ID * {n}))\nlast=$((first + {n} - 1))\n\
              if [ \"$last\" -gt {last} ]; then last={last}; fi\nsaid={end}\n\
-             {program} job shard {job} \"$first-$last\" --threads \"${{SLURM_CPUS_PER_TASK:-1}}\" 2> \"$said.new\"\n\
+             {command} 2> \"$said.new\"\n\
              code=$?\ncat \"$said.new\" >&2\n\
-             if [ $code -eq 2 ]; then mv \"$said.new\" \"$said\"; else rm -f \"$said.new\"; fi\nexit $code\n"
+             if [ $code -eq 2 ]; then mv \"$said.new\" \"$said\"; else rm -f \"$said.new\"; fi\nexit $code\n",
+            command = self.shards
         );
-        let out = self.output.map_or(String::new(), |out| format!(" -o {}", quoted(out)));
         let end = files.end_in_shell("merge", "SLURM_JOB_ID");
         let merge = format!(
             "#!/bin/sh\n#SBATCH --job-name=sightlines-merge\n#SBATCH --requeue\n\
              #SBATCH --output={logs}/merge-%j.log\n#SBATCH --open-mode=append\n{options}\
-             {program} job merge {job}{out} --threads \"${{SLURM_CPUS_PER_TASK:-1}}\"\n\
-             code=$?\nend={end}\necho $code > \"$end.new\" && mv \"$end.new\" \"$end\"\nexit $code\n"
+             {command}\ncode=$?\nend={end}\necho $code > \"$end.new\" && mv \"$end.new\" \"$end\"\nexit $code\n",
+            command = self.merge
         );
-        let scripts = [(files.script("shards"), shards), (files.script("merge"), merge)];
-        for (path, text) in &scripts {
-            output::save(path, text.as_bytes())?;
+        let paths = ["shards", "merge"].map(|what| files.script(what));
+        for (path, text) in paths.iter().zip([shards, merge]) {
+            atomic_write(path, text.as_bytes()).map_err(JobError::from)?;
         }
-        Ok(scripts.map(|(path, _)| path).into())
+        Ok(paths)
     }
 }
 
 impl Engine for Slurm<'_> {
-    fn run(&self, round: &Round<'_>, attempt: u32) -> Result<Did> {
-        let _watch = interrupt::watch();
-        self.write(round, attempt)?;
+    fn run(&self, round: &Round<'_>, attempt: u32, host: &Host<'_>) -> Result<Did, EngineError> {
+        let shown = Shown::new(*round, host);
+        let [shards, merge] = self.write(round, attempt)?;
         let files = Files::of(round, attempt);
-        let shards = sbatch(&files.script("shards"), None)?;
-        let merge = sbatch(&files.script("merge"), Some(&shards))?;
+        let shards = sbatch(&shards, None, host.stop)?;
+        let merge = sbatch(&merge, Some(&shards), host.stop)?;
         let end = files.end("merge", &merge);
-        let shown = Shown::new(round, self.show_progress);
         let (mut n_gone, mut n_whole, mut watch) = (0, 0, Watch::default());
         while n_gone < GONE && !end.exists() {
             let is_whole = round.shards.iter().all(|&shard| round.job.part_path(shard).exists());
@@ -154,17 +152,16 @@ impl Engine for Slurm<'_> {
             }
             if let Some((task, message)) = files.hopeless(&shards) {
                 cancel(&[&shards, &merge]);
-                let message = message.trim();
-                let message = message.strip_prefix("error: ").unwrap_or(message).to_owned();
-                bail!("{name}: {message}", name = ranges(&self.shards_of(round, task)));
+                return Err(EngineError::failed(in_words(&self.shards_of(round, task)), &message));
             }
-            if interrupt::requested() {
+            if (host.stop)() {
                 // Otherwise the cluster would go on with what nobody waits for.
                 cancel(&[&shards, &merge]);
-                return Err(interrupted());
+                return Err(EngineError::Stopped);
             }
             if let Some(stuck) = watch.look(&shards) {
-                tracing::warn!("Slurm keeps what will never end: {}; it is cancelled and sent again", stuck.join(", "));
+                let stuck = stuck.join(", ");
+                (host.warn)(&format!("Slurm keeps what will never end: {stuck}; it is cancelled and sent again"));
                 cancel(&[&shards, &merge]);
                 return Ok(Did::Shards);
             }

@@ -1,14 +1,14 @@
 //! One tile of a world: what decides it, and its files.
 
+use super::WorldBakeError;
 use super::input::TileInput;
 use super::scenes::{Ready, Scenes};
-use crate::buffers::method_failed;
-use crate::error::{Result, anyhow};
-use sightlines::bake::tile::{NearTile, Tile, bake_far, bake_tile};
-use sightlines::bake::{BakeError, BakeRequest, Runtime};
-use sightlines::checkpoint::KeyHasher;
-use sightlines::geometry::Aabb;
-use sightlines::tiles::{TileFileError, TilePart, far_bytes, near_bytes, table_bytes};
+use crate::request::{BakeRequest, Runtime};
+use crate::tile::{NearTile, Tile, bake_far, bake_tile};
+use sightlines_checkpoint::KeyHasher;
+use sightlines_geometry::Aabb;
+use sightlines_tiles::{TilePart, far_bytes, near_bytes, table_bytes};
+use std::path::Path;
 use std::sync::Arc;
 
 /// The keys of a tile, and what they are of.
@@ -93,7 +93,7 @@ pub(super) fn bake(
     scenes: &Scenes<'_>,
     (request, runtime): (&BakeRequest, &Runtime<'_>),
     only_far: bool,
-) -> Result<Files> {
+) -> Result<Files, WorldBakeError> {
     let input = &inputs[tile];
     let own = scenes.get(tile)?;
     let near: Vec<Arc<Ready>> = keys.near.iter().map(|&k| scenes.get(k as usize)).collect::<Result<_, _>>()?;
@@ -102,16 +102,12 @@ pub(super) fn bake(
     let of_far: Vec<Aabb<3>> = keys.far.iter().map(|&k| inputs[k as usize].bounds.extent).collect();
     let (scene, file) = (&own.loaded.scene, Some(&own.loaded.info));
     let parts = Tile { scene, file, cells: &own.cells, near: &of_near, far: &of_far };
-    let failed = |source: BakeError| match source {
-        BakeError::Cancelled(cancelled) => cancelled.into(),
-        BakeError::Method(source) => method_failed(&input.scene, source),
-        source => anyhow!("{}: {source}", input.scene.display()),
-    };
-    let names = || keys.far.iter().map(|&k| inputs[k as usize].plan.name.clone()).collect();
-    let write = |source: TileFileError| anyhow!("tile {tile:?}: {source}", tile = input.plan.name);
+    let failed = |source| WorldBakeError::scene(&input.scene, source);
+    let names = keys.far.iter().map(|&k| inputs[k as usize].plan.name.clone()).collect();
+    let write = |error| WorldBakeError::file(Path::new(&format!("tile {:?}", input.plan.name)), error);
     if only_far {
         let rows = bake_far(&parts, request, runtime).map_err(failed)?;
-        return Ok(Files(vec![(TilePart::Far, far_bytes(keys.far_key, names(), &rows).map_err(write)?)]));
+        return Ok(Files(vec![(TilePart::Far, far_bytes(keys.far_key, names, &rows).map_err(write)?)]));
     }
     let baked = bake_tile(&parts, request, runtime).map_err(failed)?;
     let sizes = keys.near.iter().zip(&near).map(|(&k, near)| {
@@ -121,6 +117,6 @@ pub(super) fn bake(
     Ok(Files(vec![
         (TilePart::Table, table_bytes(baked.table, keys.key).map_err(write)?),
         (TilePart::Near, near_bytes(keys.key, sizes, &baked.near).map_err(write)?),
-        (TilePart::Far, far_bytes(keys.far_key, names(), &baked.far).map_err(write)?),
+        (TilePart::Far, far_bytes(keys.far_key, names, &baked.far).map_err(write)?),
     ]))
 }

@@ -1,16 +1,16 @@
 //! What a world consists of: its plan, and what is known of each tile before any is baked.
 
-use crate::error::{ErrorAbout, Result, anyhow, bail};
-use crate::surfaces;
-use sightlines::bake::tile::{tile_cells, tile_extent};
-use sightlines::bake::{BakeError, BakeRequest, CellsFrom, Runtime};
-use sightlines::cells::Scene;
-use sightlines::checkpoint::{Key, KeyHasher};
-use sightlines::formats::scene::{SceneReadOptions, read_scene_with};
-use sightlines::formats::view_cells::read_view_cells;
-use sightlines::formats::{SceneInfo, ViewCell, ViewCells};
-use sightlines::geometry::Aabb;
-use sightlines::tiles::{TileBounds, TilePlan, WorldError, WorldPlan};
+use super::WorldBakeError;
+use crate::region::CellsFrom;
+use crate::request::{BakeRequest, Runtime};
+use crate::tile::{tile_cells, tile_extent, upright_cells};
+use sightlines_cells::Scene;
+use sightlines_checkpoint::{Key, KeyHasher};
+use sightlines_formats::scene::{SceneReadOptions, read_scene_with};
+use sightlines_formats::view_cells::read_view_cells;
+use sightlines_formats::{SceneInfo, Simplified, ViewCell, ViewCells};
+use sightlines_geometry::Aabb;
+use sightlines_tiles::{TileBounds, TilePlan, WorldError, WorldPlan};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 pub(super) struct TileInput {
     pub(super) plan: TilePlan,
     pub(super) scene: PathBuf,
-    pub(super) cells: Option<PathBuf>,
+    cells: Option<PathBuf>,
     pub(super) bounds: TileBounds,
     /// Of all that it is: what it contains in the world, and where eyes can be.
     pub(super) key: Key,
@@ -40,9 +40,9 @@ pub(super) struct Loaded {
 }
 
 /// The plan of a world.
-pub(super) fn plan(path: &Path) -> Result<WorldPlan> {
-    let text = fs::read(path).in_file(path)?;
-    WorldPlan::parse(&text).in_file(path)
+pub(super) fn plan(path: &Path) -> Result<WorldPlan, WorldBakeError> {
+    let text = fs::read(path).map_err(|error| WorldBakeError::file(path, error))?;
+    WorldPlan::parse(&text).map_err(|error| WorldBakeError::file(path, error))
 }
 
 /// The plan, and all files that it names.
@@ -56,48 +56,49 @@ fn beside(world: &Path, name: &str) -> PathBuf {
 }
 
 /// The tile of a plan, `tile` in it; warns of what a user should hear of its file.
-pub(super) fn look(world: &Path, (tile, plan): (usize, TilePlan), reading: &SceneReadOptions) -> Result<TileInput> {
+pub(super) fn look(
+    world: &Path,
+    (tile, plan): (usize, &TilePlan),
+    reading: &SceneReadOptions,
+    warn: fn(&str),
+) -> Result<TileInput, WorldBakeError> {
     let (scene, cells) = (beside(world, &plan.scene), plan.cells.as_deref().map(|name| beside(world, name)));
-    let loaded = load(&scene, cells.as_deref(), &plan, reading, true)?;
+    let loaded = load(&scene, cells.as_deref(), plan, reading, warn)?;
     let extent = tile_extent(&loaded.scene, &[ViewCell { id: String::new(), bounds: loaded.viewers }]);
-    let is_flat = (0..3).any(|k| loaded.viewers.min[k] >= loaded.viewers.max[k]);
-    if is_flat {
+    if (0..3).any(|k| loaded.viewers.min[k] >= loaded.viewers.max[k]) {
         let what =
             format!("{}: there is no room for viewers in the box of the scene; name \"viewers\"", scene.display());
-        bail!("{}: {source}", world.display(), source = WorldError::Tile { tile, what });
+        return Err(WorldBakeError::file(world, WorldError::Tile { tile, what }));
     }
     let bounds = TileBounds { viewers: loaded.viewers, extent };
     let axes = format!("{:?}, {:?}", loaded.info.up, loaded.info.unit);
     let (key, n_triangles) = (loaded.key(), loaded.scene.n_triangles());
-    Ok(TileInput { plan, scene, cells, bounds, key, n_triangles, axes })
+    Ok(TileInput { plan: plan.clone(), scene, cells, bounds, key, n_triangles, axes })
 }
 
 impl TileInput {
     /// Reads it again. Refuses what has changed meanwhile.
-    pub(super) fn load(&self, reading: &SceneReadOptions) -> Result<Loaded> {
-        let loaded = load(&self.scene, self.cells.as_deref(), &self.plan, reading, false)?;
-        if loaded.key() == self.key {
-            Ok(loaded)
-        } else {
-            Err(anyhow!("{}: the file was changed while the world was baked; bake it again", self.scene.display()))
-        }
+    pub(super) fn load(&self, reading: &SceneReadOptions) -> Result<Loaded, WorldBakeError> {
+        let loaded = load(&self.scene, self.cells.as_deref(), &self.plan, reading, |_| {})?;
+        if loaded.key() == self.key { Ok(loaded) } else { Err(WorldBakeError::Changed(self.scene.clone())) }
     }
 
     /// Its cells: those that its plan gives, or cut as the request says.
-    pub(super) fn cut(&self, loaded: &Loaded, request: &BakeRequest, runtime: &Runtime<'_>) -> Result<Vec<ViewCell>> {
+    pub(super) fn cut(
+        &self,
+        loaded: &Loaded,
+        request: &BakeRequest,
+        runtime: &Runtime<'_>,
+    ) -> Result<Vec<ViewCell>, WorldBakeError> {
         let cells = loaded.given.clone().map(CellsFrom::Boxes).or_else(|| request.cells.clone());
-        let failed = |source: BakeError| match source {
-            BakeError::Cancelled(cancelled) => cancelled.into(),
-            source => anyhow!("{}: {source}", self.scene.display()),
-        };
         let request = BakeRequest { cells, ..request.clone() };
-        let cells = tile_cells(&loaded.scene, &loaded.viewers, &request, runtime).map_err(failed)?;
+        let cells = tile_cells(&loaded.scene, &loaded.viewers, &request, runtime);
+        let cells = cells.map_err(|source| WorldBakeError::scene(&self.scene, source))?;
         if cells.is_empty() {
-            bail!(
-                "{}: the tile {tile:?} has no cells: no eye can be in it; leave it out, or give it \"viewers\"",
-                self.scene.display(),
-                tile = self.plan.name
-            );
+            let tile = &self.plan.name;
+            let why =
+                format!("the tile {tile:?} has no cells: no eye can be in it; leave it out, or give it \"viewers\"");
+            return Err(WorldBakeError::file(&self.scene, why));
         }
         Ok(cells)
     }
@@ -112,17 +113,25 @@ impl Loaded {
     }
 }
 
-fn load(scene: &Path, cells: Option<&Path>, plan: &TilePlan, reading: &SceneReadOptions, warn: bool) -> Result<Loaded> {
-    let file = read_scene_with(scene, reading)?;
-    crate::input::check_occluder(scene, &file)?;
-    if warn {
-        surfaces::warn(scene, &file);
+fn load(
+    path: &Path,
+    cells: Option<&Path>,
+    plan: &TilePlan,
+    reading: &SceneReadOptions,
+    warn: fn(&str),
+) -> Result<Loaded, WorldBakeError> {
+    let file = read_scene_with(path, reading)?;
+    if matches!(file.info.simplified, Some(Simplified { occluder: false })) {
+        return Err(WorldBakeError::Occluder(path.to_owned()));
     }
-    let moved = |source| anyhow!("{}: moved to its place in the world: {source}", scene.display());
-    let (scene, info) = (file.scene.translated(plan.at).map_err(moved)?, file.info);
+    file.info.warnings.iter().for_each(|warning| warn(&format!("{}: {warning}", path.display())));
+    let moved = file.scene.translated(plan.at);
+    let scene =
+        moved.map_err(|error| WorldBakeError::file(path, format!("moved to its place in the world: {error}")))?;
+    let info = file.info;
     let given = cells.map(read_view_cells).transpose()?.map(|given| moved_cells(given, plan.at));
     let of_cells = |given: &ViewCells| {
-        let boxes = sightlines::bake::tile::upright_cells(given);
+        let boxes = upright_cells(given);
         Aabb::around(boxes.iter().flat_map(|cell| [cell.bounds.min, cell.bounds.max]))
     };
     let viewers = given.as_ref().map(of_cells).or(plan.viewers).unwrap_or_else(|| {
@@ -142,7 +151,7 @@ fn moved_cells(given: ViewCells, by: [f64; 3]) -> ViewCells {
     if by == [0.0; 3] {
         return given;
     }
-    let boxes = sightlines::bake::tile::upright_cells(&given);
+    let boxes = upright_cells(&given);
     let cells = boxes.into_iter().map(|cell| ViewCell { bounds: moved_box(cell.bounds, by), id: cell.id });
     ViewCells { cells: cells.collect(), axes: None }
 }

@@ -1,11 +1,12 @@
 //! Whether what a method finds is among what a coarser one finds.
 
-use sightlines::walkthrough::Frame;
+use crate::walkthrough::Frame;
+use sightlines_eye_to_cell::Image;
 use std::fmt;
 
-/// Something that was found.
+/// Something that a method found: a cell, an object or an image, by way of some mirrors.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Found {
+pub struct Found {
     mirrors: Vec<u32>,
     what: What,
 }
@@ -62,7 +63,7 @@ impl Sets {
             cells: sorted(frame.seen.cells().iter().map(|c| c.0)),
             objects: sorted(frame.seen.objects().iter().map(|o| o.0)),
         };
-        let image = |image: &sightlines::eye_to_cell::Image| Set {
+        let image = |image: &Image| Set {
             mirrors: image.mirrors.iter().map(|mirror| mirror.0).collect(),
             cells: image.cells.iter().map(|cell| cell.0).collect(),
             objects: image.objects.iter().map(|object| object.0).collect(),

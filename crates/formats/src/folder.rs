@@ -1,15 +1,39 @@
 //! A folder of results that appears whole or not at all.
 
-use crate::error::{Result, anyhow, bail};
-use sightlines::formats::{Hidden, atomic_write, remove_left};
+use crate::debris::{Hidden, remove_left};
+use crate::files::{WriteError, atomic_write};
 use std::cell::OnceCell;
-use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
+use std::{fs, io};
+
+/// Why a folder is not replaced. What was there before is untouched.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum FolderError {
+    /// It cannot be made.
+    #[error("{}: cannot be made: {source}", path.display())]
+    Make {
+        /// The folder.
+        path: PathBuf,
+        /// The error of the system.
+        source: io::Error,
+    },
+    /// It has something in it that is not of its kind.
+    #[error("{}: the folder has {name:?} in it", path.display())]
+    Other {
+        /// The folder.
+        path: PathBuf,
+        /// What is in it.
+        name: String,
+    },
+    /// A file in it cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+}
 
 /// A folder that is filled beside its place, and removed unless it is finished.
 #[derive(Debug)]
-pub(crate) struct NewFolder {
+pub struct NewFolder {
     target: PathBuf,
     /// None before anything is written: what stands empty for long would be taken for something that a killed process left.
     beside: OnceCell<PathBuf>,
@@ -17,7 +41,10 @@ pub(crate) struct NewFolder {
 
 impl NewFolder {
     /// Expects a folder that will replace `target`, which must not exist or contain only files whose names are `ours`.
-    pub(crate) fn new(target: &Path, ours: impl Fn(&str) -> bool) -> Result<Self> {
+    ///
+    /// # Errors
+    /// [`FolderError::Make`] for a place where no folder can be made, and [`FolderError::Other`].
+    pub fn new(target: &Path, ours: impl Fn(&str) -> bool) -> Result<Self, FolderError> {
         let failed = |error| cannot_be_made(target, error);
         // Resolves names that end in a dot or a slash.
         let target = match target.canonicalize() {
@@ -32,10 +59,7 @@ impl NewFolder {
                 let entry = entry.map_err(failed)?;
                 let name = entry.file_name().to_string_lossy().into_owned();
                 if !ours(&name) || !entry.file_type().map_err(failed)?.is_file() {
-                    bail!(
-                        "{}: the folder has {name:?} in it, which is no level: name a new folder, or one that only holds levels",
-                        target.display()
-                    );
+                    return Err(FolderError::Other { path: target, name });
                 }
             }
         }
@@ -44,7 +68,7 @@ impl NewFolder {
         Ok(Self { target, beside: OnceCell::new() })
     }
 
-    fn beside(&self) -> Result<&Path> {
+    fn beside(&self) -> Result<&Path, FolderError> {
         if self.beside.get().is_none() {
             let made = create_beside(&self.target);
             let made = made.map_err(|error| cannot_be_made(&self.target, error))?;
@@ -54,16 +78,22 @@ impl NewFolder {
     }
 
     /// Writes a file into it.
-    pub(crate) fn save(&self, name: &str, bytes: &[u8]) -> Result<()> {
+    ///
+    /// # Errors
+    /// [`FolderError::Make`], and [`FolderError::Write`].
+    pub fn save(&self, name: &str, bytes: &[u8]) -> Result<(), FolderError> {
         Ok(atomic_write(self.beside()?.join(name), bytes)?)
     }
 
-    /// Puts it in its place.
-    pub(crate) fn finish(self) -> Result<()> {
+    /// Puts it in its place. Returns what the folder was before, if that cannot be removed, and why.
+    ///
+    /// # Errors
+    /// [`FolderError::Make`].
+    pub fn finish(self) -> Result<Option<(PathBuf, io::Error)>, FolderError> {
         let failed = |error| cannot_be_made(&self.target, error);
         let beside = self.beside()?;
         if !self.target.exists() {
-            return fs::rename(beside, &self.target).map_err(failed);
+            return fs::rename(beside, &self.target).map(|()| None).map_err(failed);
         }
         let old = free_beside(&self.target, Hidden::Old).map_err(failed)?;
         fs::rename(&self.target, &old).map_err(failed)?;
@@ -72,16 +102,12 @@ impl NewFolder {
             let _ = fs::rename(&old, &self.target);
             return Err(failed(error));
         }
-        if let Err(error) = fs::remove_dir_all(&old) {
-            tracing::warn!("{}: what the folder was before cannot be removed: {error}", old.display());
-        }
-        Ok(())
+        Ok(fs::remove_dir_all(&old).err().map(|error| (old, error)))
     }
 }
 
-/// A folder that cannot be made.
-pub(crate) fn cannot_be_made(path: &Path, error: io::Error) -> anyhow::Error {
-    anyhow!("{}: cannot be made: {error}", path.display())
+fn cannot_be_made(path: &Path, source: io::Error) -> FolderError {
+    FolderError::Make { path: path.to_owned(), source }
 }
 
 /// What a link leads to that leads nowhere; anything else as it is.

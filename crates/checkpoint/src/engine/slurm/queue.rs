@@ -1,8 +1,6 @@
 //! What Slurm says of its queue and its nodes, and what it is told.
 
-use super::POLL;
-use crate::error::{Result, anyhow};
-use crate::interrupt;
+use super::{EngineError, POLL};
 use std::collections::HashSet;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
@@ -15,13 +13,13 @@ const TICKS: usize = 10;
 const STUCK: usize = 8;
 
 /// Asks a program of Slurm.
-fn ask(program: &str, words: &[&str]) -> Result<Output> {
+fn ask(program: &str, words: &[&str]) -> Result<Output, EngineError> {
     let asked = Command::new(program).args(words).stdin(Stdio::null()).output();
-    asked.map_err(|source| anyhow!("{program}: cannot be started: {source}"))
+    asked.map_err(|source| EngineError::start(program, source))
 }
 
 /// Queues a script; the number of the job. Tries for a while: the controller may be starting again.
-pub(super) fn sbatch(script: &Path, after: Option<&str>) -> Result<String> {
+pub(super) fn sbatch(script: &Path, after: Option<&str>, stop: fn() -> bool) -> Result<String, EngineError> {
     let mut last = String::new();
     for _ in 0..PATIENCE {
         let mut command = Command::new("sbatch");
@@ -30,31 +28,28 @@ pub(super) fn sbatch(script: &Path, after: Option<&str>) -> Result<String> {
             // Whatever became of the shards: the merge finds out what is missing.
             command.arg(format!("--dependency=afterany:{after}"));
         }
-        let program = "sbatch".to_owned();
-        let done = command.arg(script).output().map_err(|source| anyhow!("{program}: cannot be started: {source}"))?;
+        let done = command.arg(script).output().map_err(|source| EngineError::start("sbatch", source))?;
         let text = String::from_utf8_lossy(&done.stdout);
         if done.status.success() {
-            let id = text.trim().split(';').next().unwrap_or_default().to_owned();
-            return Ok(id);
+            return Ok(text.trim().split(';').next().unwrap_or_default().to_owned());
         }
         last = String::from_utf8_lossy(&done.stderr).trim().to_owned();
-        if !is_of_controller(&last) || interrupt::requested() {
+        if !is_of_controller(&last) || stop() {
             break;
         }
         std::thread::sleep(POLL);
     }
-    Err(anyhow!("{program}: {last}", program = "sbatch"))
+    Err(EngineError::Failed { name: "sbatch".to_owned(), message: last })
 }
 
 /// Cancels jobs, as far as Slurm can.
 pub(super) fn cancel(jobs: &[&str]) {
-    if ask("scancel", jobs).is_err() {
-        tracing::debug!("scancel cannot be started");
-    }
+    // If it cannot be asked, the jobs end by themselves.
+    let _ = ask("scancel", jobs);
 }
 
 /// Whether Slurm knows, and knows nothing of these jobs any more. Nothing follows from silence.
-pub(super) fn is_gone(jobs: &[&str]) -> Result<bool> {
+pub(super) fn is_gone(jobs: &[&str]) -> Result<bool, EngineError> {
     let asked = ask("squeue", &["-h", "-o", "%i", "-j", &jobs.join(",")])?;
     let said = String::from_utf8_lossy(&asked.stderr);
     Ok(match asked.status.success() {
@@ -64,7 +59,7 @@ pub(super) fn is_gone(jobs: &[&str]) -> Result<bool> {
 }
 
 /// Whether Slurm says that a job waits.
-pub(super) fn is_pending(job: &str) -> Result<bool> {
+pub(super) fn is_pending(job: &str) -> Result<bool, EngineError> {
     let asked = ask("squeue", &["-h", "-o", "%T", "-j", job])?;
     Ok(asked.status.success() && asked.stdout.trim_ascii() == b"PENDING")
 }
