@@ -277,11 +277,13 @@ pub struct Choice {
 
 /// Chooses the method of a scene whose cells are decided, and puts it into the recipe.
 ///
-/// Cells that are given are few, and worth more work: line space takes the place of sheets for them. An observer receives a report of each
+/// Cells that are given are few, and worth more work: line space takes the place of sheets for them; and where something hides from its front
+/// only, of which sheets do not know. An observer receives a report of each
 /// measurement, and cannot cancel.
 pub(crate) fn choose_for(scene: &Scene, recipe: &mut Recipe, progress: Option<&dyn Observer>) -> Choice {
     let (facts, mut choice) = choose_observed(scene, progress);
-    if choice.sheets && matches!(recipe.cells, CellsFrom::Grid(_) | CellsFrom::Boxes(_)) {
+    let are_given = matches!(recipe.cells, CellsFrom::Grid(_) | CellsFrom::Boxes(_));
+    if choice.sheets && (are_given || !scene.front_occluders().is_empty()) {
         choice.use_line_space();
     }
     recipe.method = if choice.uses_region_method() { SceneMethod::Both } else { SceneMethod::Sightlines };

@@ -210,15 +210,19 @@ impl Scene {
         &self.mirrors
     }
 
-    /// The same scene, in which these objects are seen and hide nothing; and those that move, but no others.
+    /// The same scene, in which these objects are seen and hide nothing; and those that move, and those that hide from the front, but no others.
     ///
     /// # Errors
     /// [`SceneError::SeeThrough`] for an object that does not exist.
     pub fn with_see_through(mut self, mut see_through: Vec<u32>) -> Result<Self, SceneError> {
+        let moves = |object: u32| self.moving.binary_search_by_key(&object, |moving| moving.object).is_ok();
+        let mut front_occluders = std::mem::take(&mut self.front_occluders);
+        front_occluders.retain(|&object| !moves(object));
         see_through.extend(self.moving.iter().map(|moving| moving.object));
+        see_through.extend(&front_occluders);
         self.see_through = self.ascending(see_through, |object| SceneError::SeeThrough { object })?;
-        let front_occluders = std::mem::take(&mut self.front_occluders);
-        self.with_front_occluders(front_occluders)
+        self.front_occluders = front_occluders;
+        Ok(self)
     }
 
     /// The same scene, in which these objects move, and no others. They hide nothing. Boxes are widened to what the objects
@@ -257,20 +261,16 @@ impl Scene {
         Ok(self)
     }
 
-    /// The same scene, in which the triangles of these objects hide what is behind them from eyes in front of them, and no others do. The front
-    /// is where the corners go around counterclockwise. They are [see-through](Self::see_through) for who knows of two sides only; what
-    /// hides from both sides, or moves, is left out.
+    /// The same scene, in which these objects hide from eyes in front of their triangles only, and no others do; but for those that
+    /// [move](Self::moving). The front is where the corners go around counterclockwise. They are [see-through](Self::see_through), for who knows
+    /// of two sides only.
     ///
     /// # Errors
     /// [`SceneError::SingleSided`] for an object that does not exist.
     pub fn with_front_occluders(mut self, front_occluders: Vec<u32>) -> Result<Self, SceneError> {
-        let list = self.ascending(front_occluders, |object| SceneError::SingleSided { object })?;
-        self.front_occluders = list.into_iter().filter(|&object| self.may_hide_from_front(object)).collect();
-        Ok(self)
-    }
-
-    fn may_hide_from_front(&self, object: u32) -> bool {
-        !self.is_opaque(object) && self.moving.binary_search_by_key(&object, |moving| moving.object).is_err()
+        self.front_occluders = self.ascending(front_occluders, |object| SceneError::SingleSided { object })?;
+        let see_through = std::mem::take(&mut self.see_through);
+        self.with_see_through(see_through)
     }
 
     /// The objects that hide from eyes in front of their triangles only, ascending.
@@ -334,7 +334,7 @@ impl Scene {
             && self.moving.binary_search_by_key(&object, |moving| moving.object).is_err()
     }
 
-    /// The objects that are seen and hide nothing, ascending.
+    /// The objects that are seen and hide nothing, but for those that hide [from the front](Self::front_occluders), ascending.
     pub fn see_through(&self) -> &[u32] {
         &self.see_through
     }
@@ -476,14 +476,15 @@ mod tests {
         assert_eq!(scene.clone().with_sources(vec![source]).unwrap().sources(), [source]);
         let door = scene.clone().with_doors(vec![0, 0]).unwrap();
         assert!(door.doors() == [0] && door.is_opaque(0) && scene.doors().is_empty());
-        // What hides from both sides, or moves, does not hide from the front alone.
+        // What hides from the front alone does not hide from both sides; what moves hides nothing.
         let fronts = |scene: &Scene| scene.clone().with_front_occluders(vec![0]).unwrap();
         let seen = fronts(&scene.clone().with_see_through(vec![0]).unwrap());
         assert!(seen.hides_from_front(0) && seen.front_occluding_triangles().count() == 1);
-        assert!(seen.occluding_triangles().count() == 0 && fronts(&scene).front_occluders().is_empty());
+        assert!(seen.occluding_triangles().count() == 0 && !fronts(&scene).is_opaque(0));
         let moving = |scene: Scene| scene.with_moving(vec![MovingObject { object: 0, within: None }]).unwrap();
         assert!(!moving(seen.clone()).hides_from_front(0) && !fronts(&moving(scene.clone())).hides_from_front(0));
-        assert!(!seen.with_see_through(Vec::new()).unwrap().hides_from_front(0));
+        let still = seen.with_see_through(Vec::new()).unwrap();
+        assert!(still.hides_from_front(0) && !still.is_opaque(0));
         let single = scene.clone().with_single_sided(vec![0]).unwrap();
         assert!(single.is_single_sided(0) && !scene.is_single_sided(0));
         let moving = single.with_moving(vec![MovingObject { object: 0, within: None }]).unwrap();

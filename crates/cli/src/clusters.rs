@@ -28,7 +28,7 @@ pub(crate) struct Clusters {
     n_portals: usize,
     /// Unordered pairs of different clusters that may see each other.
     n_visible_pairs: u64,
-    /// The same as a share of all unordered pairs of different clusters.
+    /// `n_visible_pairs` as a share of all unordered pairs of different clusters.
     visible_share: f64,
     /// Pairs of clusters that count as visible though no line was found, the lower number first.
     undecided: Vec<[u32; 2]>,

@@ -37,9 +37,18 @@ impl Done {
         Self { answer: Answer::Yes, print: Box::new(move || output::print(json, &result, &result)) }
     }
 
-    /// The same where people and programs get different forms of it.
-    pub(crate) fn in_two_forms(json: bool, fields: impl Serialize + 'static, text: String) -> Self {
-        Self { answer: Answer::Yes, print: Box::new(move || output::print(json, &fields, &text)) }
+    /// The same where people and programs get different forms of it, of which one is made.
+    pub(crate) fn in_two_forms<T: Serialize + 'static>(
+        json: bool,
+        fields: impl FnOnce() -> T,
+        text: impl FnOnce() -> String,
+    ) -> Self {
+        let form = if json { Ok(fields()) } else { Err(text()) };
+        let print = move || match form {
+            Ok(fields) => output::print(true, &fields, &""),
+            Err(text) => output::print(false, &(), &text),
+        };
+        Self { answer: Answer::Yes, print: Box::new(print) }
     }
 
     /// With nothing to print.
@@ -57,6 +66,13 @@ impl Done {
     #[must_use]
     pub(crate) fn answering_whether(self, is_so: bool) -> Self {
         self.answering(if is_so { Answer::Yes } else { Answer::No })
+    }
+
+    /// The same with something to do once the result is printed.
+    #[must_use]
+    pub(crate) fn then(self, last: impl FnOnce() -> Result<()> + 'static) -> Self {
+        let Self { answer, print } = self;
+        Self { answer, print: Box::new(move || print().and_then(|()| last())) }
     }
 
     /// Prints, and returns the answer.

@@ -92,6 +92,7 @@ impl Page {
         let defs = schema["$defs"].as_object().cloned().unwrap_or_default();
         let variants = schema["anyOf"].as_array().cloned().unwrap_or_else(|| vec![schema.clone()]);
         let is_shared = schema["anyOf"].is_array() && schema["properties"].is_object();
+        assert_eq!(titles.len() % variants.len(), 0, "a title for each variant: {titles:?}");
         let shared = if is_shared { link_row(&self.part(&schema, &defs)) } else { String::new() };
         for (title, variant) in titles.iter().zip(variants.iter().cycle()) {
             let variant = resolve(variant, &defs);
@@ -102,8 +103,7 @@ impl Page {
     }
 
     fn text(self) -> String {
-        let parts: String =
-            self.parts.iter().map(|(title, rows)| format!("\n## Part: {title}\n\n{HEADER}{rows}")).collect();
+        let parts: String = self.parts.iter().map(|(title, rows)| format!("\n## Part: {title}\n\n{rows}")).collect();
         format!("{HEAD}{}{parts}", self.sections)
     }
 
@@ -114,7 +114,8 @@ impl Page {
             // Before its rows, which may lead back to it.
             self.parts.insert(title.clone(), String::new());
             let rows = self.rows(schema, defs);
-            self.parts.insert(title.clone(), rows);
+            let text = one_line(schema["description"].as_str().unwrap_or_default());
+            self.parts.insert(title.clone(), format!("{text}\n\n{HEADER}{rows}"));
         }
         title
     }
@@ -147,6 +148,9 @@ impl Page {
             Some("string") => kind("text"),
             Some("array") if found["prefixItems"].is_array() => kind("list"),
             Some("array") => {
+                if found["items"].as_object().is_none_or(serde_json::Map::is_empty) {
+                    return kind("list of trees, free keys");
+                }
                 let of = self.kind(&found["items"], defs);
                 let length = found["maxItems"].as_u64().filter(|n| found["minItems"].as_u64() == Some(*n));
                 let length = length.map(|n| format!("{n} ")).unwrap_or_default();
@@ -231,8 +235,6 @@ fn one_line(text: &str) -> String {
 
 /// Several of a kind of values.
 fn plural(kind: &str) -> String {
-    match kind.split_once([',', ' ']) {
-        Some((first, rest)) => format!("{first}s {rest}"),
-        None => format!("{kind}s"),
-    }
+    let end = kind.find([',', ' ']).unwrap_or(kind.len());
+    format!("{}s{}", &kind[..end], &kind[end..])
 }

@@ -13,7 +13,7 @@ use std::time::Duration;
 pub(crate) const PROGRAM: &str = env!("CARGO_PKG_VERSION");
 
 /// What units are, and what their results mean: to be raised when a bake is divided otherwise, or decides otherwise, between two versions of the program.
-pub(crate) const UNITS: u32 = 3;
+pub(crate) const UNITS: u32 = 4;
 
 /// Seconds after which a file of results is made, unless an option says otherwise.
 pub(crate) const SAVE_AFTER: u64 = 10;

@@ -55,10 +55,7 @@ pub(crate) fn refuse_same(input: &Path, output: &Path) -> Result<()> {
         (Ok(a), Ok(b)) => a == b && a.is_file(),
         _ => false,
     };
-    if same {
-        bail!("{}: the output would replace the input", output.display());
-    }
-    Ok(())
+    if same { Err(same_file(output)) } else { Ok(()) }
 }
 
 /// Refuses, before anything is read or computed, outputs that would fail at the end: one that is an input, two that are the same file,
@@ -77,6 +74,11 @@ pub(crate) fn check(inputs: &[&Path], outputs: &[&Path]) -> Result<()> {
 /// A folder that cannot be made.
 pub(crate) fn cannot_be_made(path: &Path, error: io::Error) -> anyhow::Error {
     anyhow!("{}: cannot be made: {error}", path.display())
+}
+
+/// An output that is an input.
+pub(crate) fn same_file(path: &Path) -> anyhow::Error {
+    anyhow!("{}: the output would replace the input", path.display())
 }
 
 /// Two outputs for one file.

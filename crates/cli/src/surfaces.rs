@@ -115,11 +115,11 @@ pub(crate) struct Surfaces {
     surfaces: Vec<ClassGroup>,
     /// Objects with the role `view-volume` that are ignored: those without a triangle that has an area, and all if the box around them is flat.
     n_ignored_view_volumes: usize,
-    /// Names of the first few.
+    /// Names of the first few view volumes that are ignored.
     ignored_view_volumes: Vec<String>,
     /// Triangles that hide, from both sides, of which engines draw the fronts only.
     n_single_sided_triangles: usize,
-    /// Of these, what viewers in the cells of a table can see from behind.
+    /// If triangles that hide have one side: how many of them viewers in the cells of the table can see from behind.
     #[serde(skip_serializing_if = "Option::is_none")]
     backs: Option<SeenBacks>,
 }

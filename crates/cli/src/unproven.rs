@@ -13,7 +13,7 @@ use std::fmt;
 pub(crate) struct Unproven {
     /// Unordered pairs of different cells that the table hides.
     n_hidden: u64,
-    /// Of these, pairs that a line through portals joins: only a from-region method hides them.
+    /// Of the hidden pairs of cells, those that a line through portals joins: only a from-region method hides them.
     n_hidden_past_portals: u64,
     /// Unordered pairs of different cells that the table shows.
     n_visible: u64,

@@ -100,7 +100,8 @@ impl Surface {
     /// Whether no point of a box is behind a triangle. Exact.
     pub(crate) fn is_in_front(&self, triangle: u32, volume: &Aabb<3>) -> bool {
         let [a, b, c] = self.corners(triangle);
-        volume.corners().into_iter().all(|eye| orient3d(a, b, c, eye) >= 0.0)
+        let sides = volume.corners().map(|eye| orient3d(a, b, c, eye));
+        sides.iter().all(|&side| side >= 0.0) && sides.iter().any(|&side| side > 0.0)
     }
 
     /// The largest magnitudes of coordinates.

@@ -38,6 +38,10 @@ fn aimed(table: &Table, scene: &Scene, [a, b]: [CellId; 2], tries: u32) -> Optio
     if let Some(sight) = aim(a, b) {
         return Some(sight.segment);
     }
+    // What one way only shows is no line in the other.
+    if world.has_one_way() {
+        return None;
+    }
     aim(b, a).map(|sight| {
         let [from, to] = sight.segment;
         [to, from]

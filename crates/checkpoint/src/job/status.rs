@@ -51,7 +51,8 @@ impl Job {
     pub fn check_inputs(&self) -> Result<(), JobError> {
         for input in &self.manifest.inputs {
             let path = PathBuf::from(&input.path);
-            let n_bytes = match fs::metadata(&path) {
+            // Opened, so that what cannot be read is told as that.
+            let n_bytes = match fs::File::open(&path).and_then(|file| file.metadata()) {
                 Ok(found) => found.len(),
                 Err(source) => return Err(JobError::Read { path, source }),
             };

@@ -71,8 +71,7 @@ pub(crate) fn pack(args: &PackArgs, _: Manner) -> Result<Done> {
         over_estimation: 1.0,
     };
     if report.n_merges > 0 {
-        let fail = |source| anyhow!("{}: {source}", args.output.display());
-        let back: Table = Packed::open(packed.clone(), CACHE).and_then(|p| p.to_table()).map_err(fail)?;
+        let back: Table = Packed::open(packed.clone(), CACHE).and_then(|p| p.to_table()).in_file(&args.output)?;
         outcome.over_estimation = back.parts().rows.count_ones() as f64 / n_visible.max(1) as f64;
     }
     output::save(&args.output, &packed)?;

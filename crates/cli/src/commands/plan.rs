@@ -74,8 +74,8 @@ fn cut(path: &Path, file: &SceneFile, height: Option<f64>) -> Result<FloorCut> {
         anyhow!(
             "{}: --height is missing: at which height is the scene cut? It is from {} to {}",
             path.display(),
-            [bounds.min, bounds.max].map(|corner| corner[up])[0],
-            [bounds.min, bounds.max].map(|corner| corner[up])[1]
+            bounds.min[up],
+            bounds.max[up]
         )
     })?;
     floor_cut(&file.scene, file.info.up, height).in_file(path)
@@ -88,7 +88,7 @@ pub(crate) struct Outcome {
     out: String,
     /// Lines that block sight.
     n_walls: usize,
-    /// Lines that do not.
+    /// Lines that do not block sight.
     n_transparent: usize,
     /// Of the walls, those that are mirrors.
     n_mirrors: usize,

@@ -55,7 +55,7 @@ pub(crate) struct Outcome {
     n_clusters: usize,
     /// Portals.
     n_portals: usize,
-    /// Clusters behind these, for what is solid and can be seen through.
+    /// Clusters behind those of the map, for what is solid and can be seen through.
     n_passages: usize,
     /// Bytes of the portal file.
     n_bytes: usize,

@@ -217,7 +217,7 @@ pub(super) fn place_nodes<'a>(
                     if placed.len() + all.len() > MAX_OBJECTS {
                         return Err(at(world, None).fail(0, too_many("objects", MAX_OBJECTS)));
                     }
-                    placed.extend(all.iter().enumerate().map(|(k, own)| at(world.after(own), Some(k))));
+                    placed.extend(all.iter().enumerate().map(|(k, own)| at(world.of_instance(own), Some(k))));
                 }
             }
         }

@@ -15,10 +15,13 @@ pub(super) struct Transform {
     rows: [[f64; 4]; 3],
     /// The sign of its determinant: -1 if it makes right hands of left hands, 0 if it flattens space.
     hand: i8,
+    /// Whether engines agree on the sides of what is placed.
+    is_certain: bool,
 }
 
 impl Transform {
-    pub(super) const IDENTITY: Self = Self { rows: [[1., 0., 0., 0.], [0., 1., 0., 0.], [0., 0., 1., 0.]], hand: 1 };
+    pub(super) const IDENTITY: Self =
+        Self { rows: [[1., 0., 0., 0.], [0., 1., 0., 0.], [0., 0., 1., 0.]], hand: 1, is_certain: true };
 
     /// What `node` does to its mesh and its children.
     pub(super) fn of_node(node: &Node) -> Result<Self, Malformed> {
@@ -48,7 +51,7 @@ impl Transform {
         let rows = [0, 1, 2].map(|r| [m[r], m[4 + r], m[8 + r], m[12 + r]]);
         // Rounding can mistake the sign only of a map that flattens space by fifteen digits, where fronts
         // and backs are the same to the eye.
-        Ok(Self { rows, hand: sign(determinant(&rows)) })
+        Ok(Self { rows, hand: sign(determinant(&rows)), is_certain: true })
     }
 
     /// First the scale, then the rotation, then the translation.
@@ -59,7 +62,7 @@ impl Transform {
             [x * scale[0], y * scale[1], z * scale[2], translation[r]]
         };
         let hand = scale.iter().map(|&s| sign(s)).product();
-        Ok(Self { rows: [row(0), row(1), row(2)], hand })
+        Ok(Self { rows: [row(0), row(1), row(2)], hand, is_certain: true })
     }
 
     /// Whether it is certain which sides of triangles are their fronts: not if it mirrors, which engines treat differently for instances,
@@ -71,12 +74,20 @@ impl Transform {
     pub(super) fn keeps_sides(&self) -> bool {
         let det = determinant(&self.rows);
         let size: f64 = self.rows.iter().map(|r| r[..3].iter().map(|x| x * x).sum::<f64>().sqrt()).product();
-        self.hand > 0 && det > size * 8.0 * f64::from(f32::EPSILON)
+        self.is_certain && self.hand > 0 && det > size * 8.0 * f64::from(f32::EPSILON)
     }
 
     /// Whether fronts become backs.
     pub(super) fn mirrors(&self) -> bool {
         self.hand < 0
+    }
+
+    /// First the transform of an instance, then this. Which sides are fronts is certain only if neither mirrors: engines treat two mirrors of an
+    /// instance differently.
+    pub(super) fn of_instance(&self, own: &Self) -> Self {
+        let both = self.after(own);
+        let is_twice = self.hand < 0 && own.hand < 0;
+        Self { is_certain: both.is_certain && !is_twice, ..both }
     }
 
     /// First `inner`, then this.
@@ -85,7 +96,11 @@ impl Transform {
             row[0] * inner.rows[0][c] + row[1] * inner.rows[1][c] + row[2] * inner.rows[2][c]
         };
         let row = |row: &[f64; 4]| [entry(row, 0), entry(row, 1), entry(row, 2), entry(row, 3) + row[3]];
-        Self { rows: [row(&self.rows[0]), row(&self.rows[1]), row(&self.rows[2])], hand: self.hand * inner.hand }
+        Self {
+            rows: [row(&self.rows[0]), row(&self.rows[1]), row(&self.rows[2])],
+            hand: self.hand * inner.hand,
+            is_certain: self.is_certain && inner.is_certain,
+        }
     }
 
     /// Where it puts `p`.

@@ -97,6 +97,8 @@ struct Near<'w> {
     alone: Vec<u32>,
     /// Whether a segment may be outside of all cells on its way: then neighbours tell nothing.
     has_gaps: bool,
+    /// Whether one cell may see another that does not see it.
+    has_one_way: bool,
 }
 
 impl<'w> Near<'w> {
@@ -109,10 +111,11 @@ impl<'w> Near<'w> {
         }
         let cells = world.neighbours();
         let alone = (0u32..).zip(cells).filter(|(_, next)| next.is_empty()).map(|(cell, _)| cell).collect();
-        Self { cells, touched, alone, has_gaps: table.kind().leaves_gaps() }
+        Self { cells, touched, alone, has_gaps: table.kind().leaves_gaps(), has_one_way: world.has_one_way() }
     }
 
-    /// What is hidden from a cell although it sees something next to it, and something next to the cell sees it; cells with larger numbers only, each pair once.
+    /// What is hidden from a cell although it sees something next to it, and something next to the cell sees it; cells with larger numbers only, each pair once, unless the one may see
+    /// the other that does not see it.
     /// What nothing is next to is looked at as well; where cells leave gaps, all that is hidden.
     fn candidates(&self, table: &Table, seen: &Seen, cell: CellId) -> Vec<Target> {
         let own = &self.cells[cell.idx()];
@@ -121,12 +124,14 @@ impl<'w> Near<'w> {
         };
         // By what is visible, so that large tables cost no more than they show.
         let mut others: Vec<u32> = if own.is_empty() || self.has_gaps {
-            (cell.0 + 1..table.n_cells() as u32).collect()
+            (0..table.n_cells() as u32).collect()
         } else {
             let next = table.visible(cell).flat_map(|c| self.cells[c.idx()].iter().copied());
             next.chain(self.alone.iter().copied()).collect()
         };
-        others.retain(|&other| other > cell.0 && !table.sees(cell, CellId(other)));
+        others.retain(|&other| {
+            (other > cell.0 || other < cell.0 && self.has_one_way) && !table.sees(cell, CellId(other))
+        });
         others.sort_unstable();
         others.dedup();
         others.retain(|&other| {

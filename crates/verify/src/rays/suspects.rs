@@ -60,10 +60,12 @@ pub(super) fn most<R: RayOracle>(world: &R, table: &Table, seen: &Seen, n: u64) 
     };
     for a in 0..n_cells as u32 {
         let sees = |c: u32| table.sees(CellId(a), CellId(c));
+        // Each pair once, unless the one may see the other that does not see it.
+        let counts = |b: &u32| *b > a || *b < a && world.has_one_way();
         let mut candidates: Vec<u32> = if all {
-            (a + 1..n_cells as u32).collect()
+            (0..n_cells as u32).filter(counts).collect()
         } else {
-            table.visible(CellId(a)).flat_map(|c| next[c.idx()].iter().copied()).filter(|&b| b > a).collect()
+            table.visible(CellId(a)).flat_map(|c| next[c.idx()].iter().copied()).filter(counts).collect()
         };
         candidates.sort_unstable();
         candidates.dedup();

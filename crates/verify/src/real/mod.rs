@@ -40,6 +40,11 @@ pub(crate) trait RayOracle: Sync {
     /// * `may_lead`: rules out segments that cannot be free
     fn sample(&self, from: u32, target: Target, random: &mut Random, may_lead: &dyn Fn(&Sight) -> bool) -> Sample;
 
+    /// Whether one cell may see another that does not see it.
+    fn has_one_way(&self) -> bool {
+        false
+    }
+
     /// The cells next to each cell, ascending.
     fn neighbours(&self) -> &[Vec<u32>];
 

@@ -185,12 +185,14 @@ impl SolidWorld {
         const DIRECTIONS: [Point3; 4] =
             [[0.62, 0.53, 0.58], [-0.71, 0.41, 0.57], [0.33, -0.82, -0.47], [-0.51, -0.45, -0.73]];
         !self.only_in_air
-            || DIRECTIONS.iter().all(|&d| match self.hit(p, d, 2.0 * self.size) {
-                (_, Some(i)) => {
-                    let [a, b, c] = self.triangles[i as usize];
-                    sightlines_geometry::orient3d(a, b, c, p) > 0.0
+            || DIRECTIONS.iter().all(|&d| {
+                match self.first(p, d, 2.0 * self.size, |i| self.is_opaque[self.object_of[i as usize] as usize]) {
+                    (_, Some(i)) => {
+                        let [a, b, c] = self.triangles[i as usize];
+                        sightlines_geometry::orient3d(a, b, c, p) > 0.0
+                    }
+                    _ => true,
                 }
-                _ => true,
             })
     }
 
@@ -233,7 +235,7 @@ impl SolidWorld {
     fn sight_of_object(&self, from: u32, object: u32, p: Point3, q: Point3) -> Option<Sight> {
         let d = sub(q, p);
         // What is see-through is no obstacle, but may be the aim.
-        let counts = |i: u32| self.stops_sight(i, p) || self.object_of[i as usize] == object;
+        let counts = |i: u32| self.stops_sight(i, p) || self.object_of[i as usize] == object && self.shows(i, p);
         let (t, first) = self.first(p, d, 1.0 + 2f64.powi(-20), counts);
         first.filter(|&i| self.object_of[i as usize] == object)?;
         let sight = Self::sight(from, Target::Object(object), Self::just_behind(p, d, t));
@@ -429,6 +431,10 @@ impl RayOracle for SolidWorld {
                 Sample::of((may_lead(&sight) && is_free() && self.proves(&sight)).then_some(sight))
             }
         }
+    }
+
+    fn has_one_way(&self) -> bool {
+        self.hides_from_front.contains(&true)
     }
 
     fn neighbours(&self) -> &[Vec<u32>] {

@@ -36,7 +36,7 @@ impl CertifyArgs {
     pub(super) fn check(&self, input: &Path, table: &Path) -> Result<()> {
         let Some(file) = self.file(table) else { return Ok(()) };
         output::check(&[input], &[&file])?;
-        if file == table { Err(anyhow!("{}: the output would replace the input", file.display())) } else { Ok(()) }
+        if file == table { Err(output::same_file(&file)) } else { Ok(()) }
     }
 
     /// The file of proofs, if they are wanted.
@@ -94,7 +94,7 @@ pub(super) struct Certified {
     /// None for cells without portals.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     file: Option<ProofFile>,
-    /// Of a table of cells without portals, which can have no proofs.
+    /// What none of the proofs speaks of.
     unproven: Unproven,
 }
 
@@ -102,12 +102,12 @@ pub(super) struct Certified {
 struct ProofFile {
     /// The file of proofs that was written.
     proofs: String,
-    /// Its size.
+    /// Size of the file of proofs.
     n_proof_bytes: usize,
     /// Seconds to find the proofs.
     certify_seconds: f64,
-    /// Pairs listed as visible and proven to be hidden; only in tables of scenes in space. This and the three before are absent for cells without
-    /// portals, about which there are no proofs.
+    /// Pairs listed as visible and proven to be hidden; only in tables of scenes in space. This, `proofs`, `n_proof_bytes` and `certify_seconds`
+    /// are absent for cells without portals, about which there are no proofs.
     n_excess: u64,
 }
 

@@ -62,7 +62,7 @@ fn record(path: &Path, door: &DoorBox, table: &Table) -> DoorRecord {
 pub(super) struct GivenDoor {
     /// Its name; names may repeat.
     name: String,
-    /// The portals that it closes when it is shut; the table takes it to be open.
+    /// The portals that it closes.
     portals: Vec<u32>,
 }
 

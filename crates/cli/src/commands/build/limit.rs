@@ -57,7 +57,7 @@ pub(crate) struct Undecided {
     n_cells_undecided: usize,
     /// Pairs of cells that count as visible for that reason, at most.
     n_cell_pairs: u64,
-    /// The same of a cell and an object.
+    /// Pairs of a cell and an object that count as visible for that reason, at most.
     n_object_pairs: u64,
     #[serde(skip)]
     report: LimitReport,

@@ -370,7 +370,7 @@ pub(crate) struct Built {
     auto: Option<auto::Chosen>,
     #[serde(flatten)]
     outcome: Outcome,
-    /// The region of viewers that a scene states.
+    /// Where viewers can be, if the file states it and the options do not.
     #[serde(skip_serializing_if = "Option::is_none")]
     viewers: Option<viewers::Viewers>,
     #[serde(flatten)]

@@ -66,8 +66,7 @@ pub(super) fn write_rows(
     drop(bar);
     let (bytes, report, packed) = made.map_err(|error| match error {
         PackRegionsError::Bake(BakeError::Method(source)) => method_failed(path, source),
-        PackRegionsError::Bake(source) => anyhow!("{}: {source}", path.display()),
-        source => anyhow!("{}: {source}", path.display()),
+        error => anyhow!("{}: {error}", path.display()),
     })?;
     kept.before_writing()?;
     output::save(out, &bytes)?;

@@ -122,7 +122,7 @@ pub(super) struct Outcome {
     /// If there was a time limit and it was reached.
     #[serde(skip_serializing_if = "Option::is_none")]
     time_limit: Option<Undecided>,
-    /// Of these, seconds to cut cells, which a time limit does not shorten.
+    /// Of `seconds`, those to cut cells, which a time limit does not shorten.
     cut_seconds: f64,
     /// Seconds to find what is visible.
     seconds: f64,

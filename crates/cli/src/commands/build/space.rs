@@ -29,11 +29,11 @@ pub(super) fn warn(path: &Path, report: &SceneReport) {
 /// Door of a scene, and the portals that it closes while it stands as it does in the file.
 #[derive(Debug, Serialize, JsonSchema)]
 pub(super) struct Door {
-    /// The object that it is; null for a door that was given as a box.
+    /// The object, counted from 0.
     object: u32,
     /// Its name; names may repeat.
     name: String,
-    /// The portals that it closes when it is shut; the table takes it to be open.
+    /// The portals that it closes while it stands as it does in the file; the table takes it to be open.
     portals: Vec<u32>,
 }
 
@@ -63,7 +63,7 @@ pub(crate) struct Outcome {
     n_other_triangles: usize,
     /// Triangles without area, which were left out.
     n_degenerate_triangles: usize,
-    /// Triangles of detail objects; also counted in one of the two fields before the last.
+    /// Triangles of detail objects; also counted in `n_axial_triangles` or `n_other_triangles`.
     n_detail_triangles: usize,
     /// Detail objects: too small to be used as occluders.
     n_detail_objects: usize,
@@ -71,7 +71,7 @@ pub(crate) struct Outcome {
     detail_below: f64,
     /// Rectangles that the scene was cut along.
     n_faces: usize,
-    /// Pieces of them that hide nothing because of `--tau`.
+    /// Pieces of these rectangles (`n_faces`) that hide nothing because of `--tau`.
     n_unfollowed: usize,
     /// Cells left out because they are inside solids.
     n_solid: usize,
@@ -88,7 +88,7 @@ pub(crate) struct Outcome {
     doors: Vec<Door>,
     /// Rectangles that the walls were merged into.
     n_blockers: usize,
-    /// Tests whether two boxes see each other; this and the next three may vary from run to run with several threads.
+    /// Tests whether two boxes see each other; this, `n_programs`, `n_exact` and `n_assumed` may vary from run to run with several threads.
     n_asked: u64,
     /// Linear programs solved in doubles.
     n_programs: u64,

@@ -88,7 +88,7 @@ pub(crate) fn run(args: &DrawArgs, _: Manner) -> Result<Done> {
             let viewer = Viewer::new(args, eye, &table)?;
             if viewer.is_outside() {
                 let told = format!("the point {eye} is outside every cell\n");
-                return Ok(Done::in_two_forms(false, (), told).answering(Answer::No));
+                return Ok(Done::in_two_forms(false, || (), || told).answering(Answer::No));
             }
             Some(viewer)
         }

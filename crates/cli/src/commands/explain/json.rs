@@ -57,7 +57,7 @@ pub(crate) struct InPlan {
     /// Hidden: sequences of portals that lead that way, all of them blocked.
     #[serde(skip_serializing_if = "Option::is_none")]
     n_blocked: Option<u64>,
-    /// Hidden: some of these.
+    /// Hidden: some of the blocked sequences.
     #[serde(skip_serializing_if = "Option::is_none")]
     blocked: Option<Vec<BlockedInPlan>>,
     /// Unknown: the limit of entered cells.
@@ -68,18 +68,18 @@ pub(crate) struct InPlan {
 /// Line in a plan
 #[derive(Debug, Serialize, JsonSchema)]
 struct PlanLine {
-    /// A, as a fraction.
+    /// The coefficient a, as a fraction.
     a: String,
-    /// B, as a fraction.
+    /// The coefficient b, as a fraction.
     b: String,
-    /// C, as a fraction.
+    /// The coefficient c, as a fraction.
     c: String,
 }
 
 /// Blocked sequence of portals in a plan
 #[derive(Debug, Serialize, JsonSchema)]
 struct BlockedInPlan {
-    /// Visible: the portals that the line passes, in order.
+    /// The portals, in order.
     portals: Vec<u32>,
     /// Left ends of portals: a line would have to pass on their right.
     lefts: Vec<End>,
@@ -117,7 +117,8 @@ pub(crate) struct InScene {
     /// Visible: the line, exactly.
     #[serde(skip_serializing_if = "Option::is_none")]
     line: Option<Ray>,
-    /// Hidden: whether any way through portals joins the cells; if not, the fields below are absent.
+    /// Hidden: whether any way through portals joins the cells; if not, `n_blockers`, `n_nodes`, `n_contradictions`, `depth`, `walls` and `proof`
+    /// are absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     connected: Option<bool>,
     #[serde(flatten)]
@@ -163,7 +164,7 @@ struct Wall {
     min: [f64; 3],
     /// Upper corner.
     max: [f64; 3],
-    /// Hidden: rectangles passed in the proof, each as often as it is passed.
+    /// How often the proof passes it.
     n_nodes: usize,
 }
 
@@ -203,7 +204,7 @@ pub(crate) struct OfClusters {
     /// Hidden: sequences of portals, all of them blocked.
     #[serde(skip_serializing_if = "Option::is_none")]
     n_blocked: Option<u64>,
-    /// Hidden: all of these.
+    /// Hidden: all of the blocked sequences.
     #[serde(skip_serializing_if = "Option::is_none")]
     blocked: Option<Vec<BlockedClusters>>,
     /// Unknown: the limit of tested sequences.
@@ -226,7 +227,7 @@ struct Passed {
 /// Blocked sequence of portals between clusters
 #[derive(Debug, Serialize, JsonSchema)]
 struct BlockedClusters {
-    /// Visible: the portals that the line passes, in order. Undecided: a sequence that was not decided.
+    /// The portals, in order.
     portals: Vec<Passed>,
     /// Why no line passes: `behind` (one of the portals is not ahead of another); or `plane`, with the `edge`, `corner` and `stops` that give it; or
     /// `boxes`, with `portals`, `blocks` (`corner`, `edges`) and `nodes`, each a split (`axis`, `at`, `parts`) or a list of terms (`portal`, `edge`,

@@ -1,6 +1,6 @@
 //! The picture of an explanation: in a plan, and in space from above and as an isometric view.
 
-use crate::error::{Result, anyhow};
+use crate::error::{ErrorAbout, Result, anyhow};
 use crate::picture::{draw_plan, middle, up_of};
 use sightlines::bake::GraphKind;
 use sightlines::bake::explain::{Answer, Explanation, Reason};
@@ -58,7 +58,6 @@ fn in_space(path: &Path, table: &Table, [a, b]: [CellId; 2], explanation: &Expla
         }
         _ => Vec::new(),
     };
-    let failed = |source| anyhow!("{}: {source}", path.display());
     let view = View::Cell(a);
     let options = SliceOptions {
         view,
@@ -71,7 +70,7 @@ fn in_space(path: &Path, table: &Table, [a, b]: [CellId; 2], explanation: &Expla
         size: SIZE,
         ..SliceOptions::default()
     };
-    let above = slice_drawing(table, &options).map_err(failed)?;
+    let above = slice_drawing(table, &options).in_file(path)?;
     let below = Some(highest(table, [a, b], line, up));
     let options = IsometricOptions {
         view,
@@ -84,7 +83,7 @@ fn in_space(path: &Path, table: &Table, [a, b]: [CellId; 2], explanation: &Expla
         size: SIZE,
         ..IsometricOptions::default()
     };
-    let isometric = isometric_drawing(table, &options).map_err(failed)?;
+    let isometric = isometric_drawing(table, &options).in_file(path)?;
     let title = match (line, explanation.answer.verdict()) {
         (Some(_), _) => format!("Cell {} sees cell {} along this line", a.0, b.0),
         (None, Some(true)) => format!("Cell {} sees cell {}", a.0, b.0),

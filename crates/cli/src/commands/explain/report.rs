@@ -35,7 +35,7 @@ impl<'a> Report<'a> {
         // A table may hide what portals let through, past walls that are no borders of cells.
         let is_hidden_by_region = self.has_regions && verdict == Some(true) && self.listed == Some(false);
         let is_visible = verdict.filter(|_| !is_hidden_by_region).or(self.listed).unwrap_or(true);
-        Done::in_two_forms(json, self.fields(), self.to_string()).answering_whether(is_visible)
+        Done::in_two_forms(json, || self.fields(), || self.to_string()).answering_whether(is_visible)
     }
 }
 

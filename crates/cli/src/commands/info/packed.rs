@@ -1,7 +1,7 @@
 //! What a packed table holds, without unpacking it.
 
 use super::{Object, as_map, write_sources};
-use crate::error::{Result, anyhow};
+use crate::error::{ErrorAbout, Result, anyhow};
 use crate::facts::{DigestFacts, DoorFacts, FrameFacts, Source, write_doors};
 use crate::output::{bytes, percent};
 use crate::tables::{self, Class};
@@ -69,7 +69,7 @@ struct Part {
     name: String,
     /// What it is, for people.
     what: &'static str,
-    /// Bytes of the file.
+    /// Its size.
     n_bytes: u64,
     /// Whether it stays in memory.
     resident: bool,
@@ -108,13 +108,12 @@ const PARTS: [(&str, &str); 26] = [
 impl PackedInfo {
     pub(super) fn read(path: &Path, with_objects: bool) -> Result<Self> {
         let packed = tables::packed(path, if with_objects { CACHE } else { 0 })?;
-        let failed = |source| anyhow!("{}: {source}", path.display());
         let (mut n_objects_with_source, mut objects) = (0, Vec::new());
         for id in (0..packed.n_objects() as u32).map(ObjectId) {
-            let source = packed.source_of(id).map_err(failed)?.map(Source::from);
+            let source = packed.source_of(id).in_file(path)?.map(Source::from);
             n_objects_with_source += usize::from(source.is_some());
             if with_objects {
-                objects.push(Object { id: id.0, name: packed.object_name(id).map_err(failed)?, source });
+                objects.push(Object { id: id.0, name: packed.object_name(id).in_file(path)?, source });
             }
         }
         let part = |part: sightlines::packed::PartSize| {
@@ -122,13 +121,12 @@ impl PackedInfo {
             let what = PARTS.iter().find(|(known, _)| *known == name).map_or("unknown", |(_, what)| what);
             Part { name, what, n_bytes: part.bytes, resident: part.resident }
         };
-        let open = |source| anyhow!("{}: {source}", path.display());
         Ok(Self {
             file: path.display().to_string(),
             kind: "packed",
             class: Class::of(packed.size_class()),
             dimension: packed.dimension(),
-            n_bytes: std::fs::metadata(path).map_err(open)?.len(),
+            n_bytes: std::fs::metadata(path).in_file(path)?.len(),
             n_cells: packed.n_cells(),
             has_cell_names: packed.has_cell_names(),
             n_portals: packed.n_portals(),

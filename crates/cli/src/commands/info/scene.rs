@@ -49,16 +49,16 @@ struct Mover {
     object: u32,
     /// Its name.
     name: String,
-    /// Lower corner of the scene.
+    /// Lower corner of the box that it never leaves; null if it may be anywhere.
     min: Option<[f64; 3]>,
-    /// Upper corner of the scene.
+    /// Upper corner of that box; null if it may be anywhere.
     max: Option<[f64; 3]>,
 }
 
 /// A box where viewers can be.
 #[derive(Debug, Serialize, JsonSchema)]
 struct Volume {
-    /// Lower corner of the box around them.
+    /// Lower corner of the box.
     min: [f64; 3],
     /// Upper corner.
     max: [f64; 3],

@@ -30,7 +30,7 @@ struct MapInfo {
     name: String,
     /// Format of the map.
     format: String,
-    /// Sectors; this and the next two are null if the map is damaged.
+    /// Sectors; this, `n_lines` and `n_things` are null if the map is damaged.
     n_sectors: Option<u32>,
     /// Lines.
     n_lines: Option<usize>,

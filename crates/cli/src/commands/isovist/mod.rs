@@ -216,9 +216,9 @@ fn areas(mesh: &WallMesh, eyes: &[Eye], limits: &Limits) -> Result<Vec<Area>> {
     let mut isovist = Isovist::default();
     let is_limited = *limits != Limits::default();
     let mut area = |eye: &Eye| {
-        viewer.look(eye.at, &mut isovist).map_err(|source| anyhow!("{from}: {source}", from = eye.from))?;
+        viewer.look(eye.at, &mut isovist).about(&eye.from)?;
         if is_limited {
-            isovist = isovist.limited(limits).map_err(|source| anyhow!("{option}: {source}", option = "--radius"))?;
+            isovist = isovist.limited(limits).about("--radius")?;
         }
         let measures = isovist.measures();
         let edge = |boundary: &Boundary| match *boundary {

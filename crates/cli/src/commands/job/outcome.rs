@@ -57,7 +57,7 @@ pub(crate) struct Planned {
     /// None if the work has nothing that can be shared.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     phase: Option<PhaseFacts>,
-    /// What was written.
+    /// What was written, if there was nothing to share.
     #[serde(skip_serializing_if = "Option::is_none")]
     out: Option<String>,
 }
@@ -119,7 +119,7 @@ impl fmt::Display for ShardsDone {
 /// Shards of a phase that are not done.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub(super) struct Missing {
-    /// The phase of the job.
+    /// Their phase.
     phase: String,
     /// Numbers of shards without a part.
     missing: Vec<usize>,
@@ -166,7 +166,8 @@ impl fmt::Display for Missing {
 pub(crate) struct Merged {
     /// The folder of the job.
     job: String,
-    /// `written`, `planned` (the shards of the next phase are to be done) or `missing` (shards are to be done, or done again).
+    /// `written`, `shared` (of `job work`: all is done, and another worker has written the output), `planned` (the shards of the next phase are to
+    /// be done) or `missing` (shards are to be done, or done again).
     status: &'static str,
     /// What was written.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -177,7 +178,7 @@ pub(crate) struct Merged {
     /// With `missing`: which shards.
     #[serde(skip_serializing_if = "Option::is_none")]
     undone: Option<Missing>,
-    /// With `written`: what the command prints.
+    /// With `written`: what the command prints; with `shared`: that another worker has written it.
     #[serde(skip_serializing_if = "Option::is_none")]
     text: Option<String>,
 }
@@ -227,7 +228,7 @@ pub(super) struct PhaseStatus {
     pub(super) facts: PhaseFacts,
     /// Shards with a part that can be used.
     pub(super) n_done: usize,
-    /// The share of the phase's predicted cost that they have.
+    /// The share of the phase's predicted cost that is done.
     pub(super) done_share: f64,
     /// Numbers of shards without a part that were begun.
     pub(super) begun: Vec<usize>,

@@ -89,14 +89,15 @@ pub(crate) fn run(args: &LightArgs, _: Manner) -> Result<Done> {
     let file = input::occluders(&args.scene, &args.surfaces.options())?;
     let faces = Faces::of_scene(&file.scene.opaque_part()).in_file(&args.scene)?;
     surfaces::warn_not_drawn(&args.scene, &file);
-    let light = Volume::new(args.light.0)?;
+    let light = Volume::new(args.light.0).about("--light")?;
     let camera = args.eye.camera(args.eye.up(Up::axis(file.info.up)))?;
     let shot = RenderInput { faces: &faces, camera: &camera, mask: &FaceMask::all(&faces) };
     let image = ZBuffer::new(DepthFormat::Exact).picture(&shot).0;
     let chosen = shown(&faces, &image);
 
     let start = Instant::now();
-    let mut method = union(&args.method, &file.scene).map_err(|error| method_failed(&args.scene, error))?;
+    let mut method =
+        union(&args.method, &file.scene.opaque_part()).map_err(|error| method_failed(&args.scene, error))?;
     let options = Options { sides: Sides::Towards(camera.eye()), max_depth: args.depth, min_size: args.min_size };
     let shadows = Shadows::new(&faces);
     let lighting = shadows.classify(&chosen, &light, &mut method, &options).in_file(&args.scene)?;

@@ -24,9 +24,9 @@ pub(crate) struct Outcome {
     pub(super) area_umbra: f64,
     /// Area proven to be fully lit.
     pub(super) area_lit: f64,
-    /// The rest.
+    /// The rest of the area: neither proven to be lit nor to be in umbra.
     pub(super) area_in_doubt: f64,
-    /// Of the rest, area of pieces where some rays arrive and others do not: an estimate of what no method can decide at this size of pieces.
+    /// Of the area in doubt, that of pieces with rays that arrive and rays that do not.
     pub(super) area_mixed: f64,
     /// Width and height in pixels.
     pub(super) size: [u32; 2],

@@ -85,7 +85,7 @@ pub(crate) fn run(args: &MultifocalArgs, _: Manner) -> Result<Done> {
     let file = input::occluders(&args.scene, &args.surfaces.options())?;
     let (up, scene) = (file.info.up, file.scene);
     let triangles: Vec<[Point3; 3]> = scene.occluding_triangles().collect();
-    let volume = Volume::new(args.volume.0)?;
+    let volume = Volume::new(args.volume.0).about("--volume")?;
     let plane = args.plane.plane(&volume, &scene.bounds(), args.texels)?;
     let occluders = occluders(&triangles, args.triangles);
     let job = Job::new(volume, vec![plane], &occluders, args.measure, false)

@@ -91,11 +91,11 @@ fn answer<C: Cells>(viewer: &mut Viewer<C>, method: Method, view: &View, bounces
 pub(crate) struct Seen {
     #[serde(flatten)]
     place: Place,
-    /// Outside of every cell everything may be seen.
+    /// Whether the eye is outside every cell, where everything may be visible.
     outside: bool,
-    /// Null for all round.
+    /// Direction of view; null for all directions.
     dir: Option<Vec<f64>>,
-    /// In degrees.
+    /// Angle of view in degrees; null for all directions.
     fov: Option<f64>,
     /// The answer, if one method was requested.
     #[serde(flatten)]
@@ -130,7 +130,7 @@ struct ImageSeen {
     mirrors: Vec<u32>,
     /// Cells that may be visible in them.
     cells: Vec<u32>,
-    /// Objects that may be visible; all of them outside every cell.
+    /// Objects that may be visible in them.
     objects: Vec<u32>,
     /// Whether the lists are known to be complete.
     complete: bool,

@@ -73,7 +73,7 @@ fn check_outputs(args: &RejectArgs, paths: &[PathBuf], outs: &[PathBuf]) -> Resu
         Err(error) => return Err(failed(error)),
     }
     if output::is_one_place(&args.input, &args.output) {
-        bail!("{}: the output would replace the input", args.output.display());
+        return Err(output::same_file(&args.output));
     }
     let read: BTreeSet<PathBuf> = paths.iter().filter_map(|path| path.canonicalize().ok()).collect();
     let mut written = BTreeSet::new();
@@ -81,7 +81,7 @@ fn check_outputs(args: &RejectArgs, paths: &[PathBuf], outs: &[PathBuf]) -> Resu
         // Names may be links.
         if let Ok(found) = out.canonicalize() {
             if read.contains(&found) {
-                bail!("{}: the output would replace the input", out.display());
+                return Err(output::same_file(out));
             }
             if !written.insert(found) {
                 return Err(output::two_outputs(out));

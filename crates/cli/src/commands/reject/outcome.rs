@@ -31,7 +31,7 @@ pub(crate) struct FolderOutcome {
 pub(super) struct FileOutcome {
     /// Name of the file.
     pub(super) name: String,
-    /// The folder that was written.
+    /// The WAD that was written; null unless it was.
     pub(super) out: Option<String>,
     /// `written`, `skipped` (it has no maps, or none of those that were named) or `failed` (it cannot be done, or is no WAD; the others are).
     pub(super) status: FileStatus,
@@ -73,7 +73,7 @@ pub(super) struct Map {
     reason: Option<String>,
     /// Sectors.
     n_sectors: u32,
-    /// Ordered pairs of sectors that are rejected; this and the next five are null unless written.
+    /// Ordered pairs of sectors that are rejected; this, `n_effects` and the numbers of cells, lines, crossings and pieces are null unless written.
     n_rejected: Option<u64>,
     /// Ordered pairs whose answer the option file of `--rmb` has changed.
     n_effects: Option<u64>,

@@ -44,7 +44,7 @@ impl Cull {
 pub(super) struct Gone {
     /// The way of culling.
     pub(super) by: &'static str,
-    /// Its faces.
+    /// Faces that it removed of those that were left.
     pub(super) n_faces: u64,
     /// Seconds it took.
     pub(super) seconds: f64,

@@ -83,6 +83,12 @@ pub(crate) fn run(args: &RenderArgs, Manner { show_progress, .. }: Manner) -> Re
     let file = input::scene(&args.scene, &options)?;
     if args.cull.contains(&Cull::Pvs) {
         input::check_occluder(&args.scene, &file)?;
+        if !file.scene.front_occluders().is_empty() {
+            bail!(
+                "{}: --cull pvs: the table takes walls with one side to hide from their front (--single-sided), and this picture does not show them",
+                args.scene.display()
+            );
+        }
     }
     let faces = Faces::of_scene(&file.scene.opaque_part()).in_file(&args.scene)?;
     surfaces::warn_not_drawn(&args.scene, &file);

@@ -38,7 +38,12 @@ impl EyesArgs {
     /// The places: cells of `table`, which is the one that was read, along its axes.
     pub(super) fn views(&self, table: Option<&Table>) -> Result<Views> {
         let (Some(path), Some(table)) = (&self.table, table) else {
-            let volumes = self.volume.iter().map(|region| Volume::new(region.0)).collect::<Result<Vec<_>, _>>()?;
+            let volumes = self
+                .volume
+                .iter()
+                .map(|region| Volume::new(region.0))
+                .collect::<Result<Vec<_>, _>>()
+                .about("--volume")?;
             return Ok(Views::new(volumes).expect("the arguments have a volume"));
         };
         let cells: Vec<CellId> = self.cell.iter().copied().map(CellId).collect();

@@ -21,7 +21,7 @@ pub(crate) struct Outcome {
     scene: String,
     /// The scene that was written.
     out: String,
-    /// Its size.
+    /// Size of the scene that was written.
     n_bytes: usize,
     /// View volumes: boxes where eyes may be.
     n_volumes: usize,
@@ -41,7 +41,7 @@ pub(crate) struct Outcome {
     n_deleted: usize,
     /// Triangles removed or replaced by collapsing edges.
     n_collapsed: usize,
-    /// Triangles that replace these.
+    /// Triangles that replace collapsed ones.
     n_new: usize,
     /// Triangles saved by merging coplanar ones.
     n_merged_away: usize,

@@ -56,7 +56,7 @@ pub(crate) struct Outcome {
     /// Hidden pairs at which random segments were shot, everywhere alike: those of which each is next to something visible from the other, as any
     /// free segment of a hidden pair passes such a pair; where cells leave gaps all, or some chosen at random.
     n_sampled_pairs: u64,
-    /// Random segments for each of them.
+    /// Random segments for each sampled pair.
     n_segments_each: u64,
     /// The share of free segments from which on such a pair is found in 99 of 100 runs, unless a nearer pair is wrong as well; 1 if none were shot.
     share_found: f64,
@@ -107,7 +107,7 @@ struct Checked {
     random_segments: bool,
     /// Whether rays were aimed at hidden pairs.
     aimed_rays: bool,
-    /// What the proofs show, if there are any.
+    /// Whether proofs were checked.
     proofs: bool,
 }
 
@@ -126,13 +126,13 @@ impl Checked {
 struct Pairs {
     /// Pairs that the table lists as visible.
     n_visible: u64,
-    /// Of these, pairs that a ray joined.
+    /// Of the visible pairs, those that a ray joined.
     n_confirmed: u64,
     /// `n_confirmed` by `n_visible`; 1 if there are none.
     confirmed_share: f64,
     /// Pairs that the table lists as hidden.
     n_hidden: u64,
-    /// Of these, pairs that rays were aimed at.
+    /// Of the hidden pairs, those that rays were aimed at.
     n_aimed_at: u64,
 }
 
@@ -356,10 +356,10 @@ impl fmt::Display for Outcome {
 pub(crate) struct With {
     #[serde(flatten)]
     pub(super) outcome: Outcome,
-    /// The file of proofs that was written.
+    /// What the proofs show, if there are any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) proofs: Option<ProofOutcome>,
-    /// What none of the proofs speaks of.
+    /// Of a table of cells without portals, which can have no proofs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) unproven: Option<Unproven>,
 }

@@ -19,18 +19,18 @@ use std::path::{Path, PathBuf};
 pub(super) struct About {
     /// Name of the lump.
     lump: &'static str,
-    /// Its size.
+    /// Size of the lump.
     n_bytes: usize,
     /// Leafs of a Quake map.
     #[serde(skip_serializing_if = "Option::is_none")]
     n_leafs: Option<usize>,
     /// What is hidden from each other: clusters of leafs, or sectors.
     sides: &'static str,
-    /// How many of these there are.
+    /// How many clusters or sectors there are.
     n_sides: usize,
-    /// Unordered pairs of them of which at least one is hidden from the other.
+    /// Unordered pairs of sides of which at least one is hidden from the other.
     n_hidden_pairs: u64,
-    /// Of these, pairs of which only one is hidden from the other.
+    /// Of the hidden pairs, those of which only one is hidden from the other.
     n_hidden_one_way: u64,
     /// Clusters whose leafs have different rows; what is visible from one leaf counts for all.
     n_uneven_clusters: usize,
@@ -75,7 +75,7 @@ impl fmt::Display for About {
 /// The own visibility of a map, if `path` is one; `scene` is what it will be checked against.
 ///
 /// # Errors
-/// [`Error`] for a map without visibility of its own, for files that cannot be read, and for those that do not go together.
+/// For a map without visibility of its own, for files that cannot be read, and for those that do not go together.
 pub(super) fn read(path: &Path, scene: &Path, map: Option<&str>, prt: Option<&Path>) -> Result<Option<OwnVisibility>> {
     match input::kind_of(path)? {
         Some(InputKind::Bsp) => of_bsp(path, scene, prt).map(Some),
@@ -97,7 +97,6 @@ fn of_bsp(path: &Path, scene: &Path, prt: Option<&Path>) -> Result<OwnVisibility
 /// Reads the lump of a Doom map, for the cells that the lines of the scene make.
 fn of_wad(path: &Path, scene: &Path, name: Option<&str>) -> Result<OwnVisibility> {
     if input::kind_of(scene)? != Some(InputKind::Wad) {
-        let (path, scene) = (path.to_owned(), scene.to_owned());
         bail!(
             "{}: is a map, whose own visibility is checked against a WAD with the map; {} is none",
             path.display(),

@@ -53,7 +53,7 @@ pub(super) struct ProofOutcome {
     n_bytes: usize,
     /// Whether the file was found beside the table but belongs to another one; then nothing of it was checked.
     pub(super) is_stale: bool,
-    /// Whether no violation was found, by rays, structure or proofs. Rays find violations; they do not prove that there are none.
+    /// Whether nothing contradicts the table and, with `--strict`, everything hidden is proven.
     pub(super) is_true: bool,
     /// Pairs that the table lists as visible and that a line joins.
     n_visible: u64,
@@ -65,32 +65,32 @@ pub(super) struct ProofOutcome {
     n_unproven_visible: u64,
     /// Pairs listed as hidden without a proof.
     n_unproven_hidden: u64,
-    /// Of these, pairs that a line through portals joins: only a from-region method hides them.
+    /// Of the pairs listed as hidden without a proof, those that a line through portals joins: only a from-region method hides them.
     n_hidden_past_portals: u64,
-    /// Some of these, by their cells.
+    /// Some of the pairs hidden without a proof, by their cells.
     unproven_hidden: Vec<[u32; 2]>,
     /// Pairs of a cell and an object listed as hidden, with a proof.
     n_hidden_objects: u64,
-    /// The same, without a proof.
+    /// Pairs of a cell and an object listed as hidden, without a proof.
     n_unproven_hidden_objects: u64,
-    /// Violations found, including those that are not listed.
+    /// Violations.
     n_violations: u64,
-    /// Violations, a limited number of each kind.
+    /// Some of the violations, a sentence each.
     violations: Vec<String>,
     /// Parts of borders of cells that are not portals: the proofs rely on them as walls.
     n_walls: u64,
-    /// Of these, parts that nothing in the scene covers exactly.
+    /// Of `n_walls`, parts that nothing in the scene covers exactly.
     n_bare_walls: u64,
-    /// Some of these: the cell, and a point with three coordinates.
+    /// Some of the bare parts: the cell, and a point with three coordinates.
     bare_walls: Vec<(u32, [f64; 3])>,
-    /// Seconds in all.
+    /// Seconds to check them.
     seconds: f64,
 }
 
 /// Checks the proofs of a table; `None` if none are given and none are beside it.
 ///
 /// # Errors
-/// [`Error`] if `--strict` has nothing to be strict about, for files that cannot be read, and for proofs of another kind of table.
+/// An error if `--strict` has nothing to be strict about, for files that cannot be read, and for proofs of another kind of table.
 pub(super) fn check(args: &ProofArgs, path: &Path, table: &Table, truth: &Truth<'_>) -> Result<Option<ProofOutcome>> {
     let beside = path.with_extension("cert");
     let is_asked_for = args.proofs.is_some();

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 pub(super) struct ReportedViolation {
     /// The kind, such as `hidden-cell`.
     pub(super) kind: &'static str,
-    /// Of unordered pairs of different cells.
+    /// The cells concerned.
     cells: Vec<u32>,
     /// What the cells are in the map, of a map's own visibility.
     #[serde(skip_serializing_if = "Vec::is_empty")]

@@ -183,7 +183,7 @@ pub(crate) fn run(args: &VgaArgs, Manner { show_progress, .. }: Manner) -> Resul
     let inputs: Vec<&Path> = std::iter::once(&args.plan).chain(&args.points).map(PathBuf::as_path).collect();
     output::check(&inputs, &[&args.output])?;
     if kind.is_picture() && args.spacing.is_none() {
-        bail!("{}: a picture of points needs --spacing, the side of the square around each", args.output.display());
+        return Err(needs_spacing(args));
     }
     if args.measure.is_some() && !kind.is_picture() {
         bail!("{}: --measure is for pictures, and this is a table of all --measures", args.output.display());
@@ -198,10 +198,7 @@ pub(crate) fn run(args: &VgaArgs, Manner { show_progress, .. }: Manner) -> Resul
         }
         (Some(path), _) => (points::of_file(path)?, None),
         (None, None) => {
-            return Err(anyhow!(
-                "{}: a picture of points needs --spacing, the side of the square around each",
-                args.output.display()
-            ));
+            return Err(needs_spacing(args));
         }
     };
     let measures = measures(args, kind);
@@ -296,6 +293,10 @@ impl VgaArgs {
     }
 }
 
+fn needs_spacing(args: &VgaArgs) -> anyhow::Error {
+    anyhow!("{}: a picture of points needs --spacing, the side of the square around each", args.output.display())
+}
+
 /// The plan of a file.
 fn plan_of(args: &VgaArgs) -> Result<Plan> {
     let (path, map) = (&args.plan, args.map.as_deref());
@@ -351,9 +352,8 @@ fn shown(args: &VgaArgs, measures: &[Measure]) -> Measure {
 
 /// What sees what, decided on a mesh of the walls.
 fn graph(args: &VgaArgs, plan: &Plan, points: &Points, effort: &Effort<'_>) -> Result<VisibilityGraph> {
-    let failed = |source| anyhow!("{}: {source}", args.plan.display());
     let at = points.coordinates();
-    let mesh = WallMesh::around(plan, at.iter().copied()).map_err(failed)?;
+    let mesh = WallMesh::around(plan, at.iter().copied()).in_file(&args.plan)?;
     let from = args.points.as_ref().unwrap_or(&args.plan);
     let index = mesh.index(at).in_file(from)?;
     let seen = |eye: u32, list: &mut Vec<u32>| mesh.points_seen(eye, &index, args.touch, list);

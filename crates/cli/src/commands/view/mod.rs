@@ -94,20 +94,23 @@ pub(crate) fn run(args: &ViewArgs, Manner { show_progress, .. }: Manner) -> Resu
         n_pairs: reasons.as_ref().map_or(0, |reasons| reasons.n_pairs),
         n_joined: reasons.as_ref().map_or(0, |reasons| reasons.n_joined),
     };
-    if args.open {
-        open(&args.output).map_err(|error| {
-            anyhow!("{}: was written, but no browser could be started: {error}", args.output.display())
-        })?;
+    let done = Done::new(args.json, outcome);
+    if !args.open {
+        return Ok(done);
     }
-    Ok(Done::new(args.json, outcome))
+    let page = args.output.clone();
+    let show = move || {
+        open(&page)
+            .map_err(|error| anyhow!("{}: was written, but no browser could be started: {error}", page.display()))
+    };
+    Ok(done.then(show))
 }
 
 /// Reads a table of either kind.
 fn read(path: &Path) -> Result<Table> {
     if input::kind_of(path)? == Some(InputKind::Packed) {
         let packed = tables::packed(path, CACHE)?;
-        let failed = |source| anyhow!("{}: {source}", path.display());
-        return packed.to_table().map_err(failed);
+        return packed.to_table().in_file(path);
     }
     input::table(path)
 }
@@ -145,7 +148,7 @@ pub(crate) struct Outcome {
     n_lines: usize,
     /// Visible pairs of two cells; 0 if no lines were looked for, or the table has no portals.
     n_pairs: usize,
-    /// Those that a line was found for.
+    /// Of these pairs (`n_pairs`), those that a line was found for.
     n_joined: usize,
 }
 

@@ -115,11 +115,10 @@ pub(crate) fn compute(args: &VisArgs, manner: VisManner<'_, '_>) -> Result<Outco
     args.memory.watch();
     if args.prt.is_none() && args.map.is_file() && input::kind_of(&args.map)? == Some(InputKind::Prt) {
         bail!(
-            "{}: these are the portals of a map, and the map itself is needed: {command} {} --prt {}",
+            "{}: these are the portals of a map, and the map itself is needed: sightlines vis {} --prt {}",
             args.map.display(),
             args.map.with_extension("bsp").display(),
-            args.map.display(),
-            command = "sightlines vis"
+            args.map.display()
         );
     }
     let file = portal_file(&args.map, args.prt.as_deref());

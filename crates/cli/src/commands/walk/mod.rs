@@ -147,5 +147,5 @@ fn walk<C: Cells>(cells: &C, args: &WalkArgs, show_progress: bool) -> Result<Don
 
 /// The error of an invalid view in a frame.
 fn refused(path: &Path, frame: usize, source: sightlines::eye_to_cell::ViewError) -> anyhow::Error {
-    anyhow!("{}: {source}", path.display(), source = anyhow!("frame {frame}: {source}"))
+    anyhow!("{}: frame {frame}: {source}", path.display())
 }
