@@ -1,6 +1,6 @@
 //! Results: standard output, and files that are written as a whole.
 
-use crate::error::{Result, StdoutError, anyhow, bail};
+use crate::error::{Result, StdoutError, anyhow};
 use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::formats::{Hidden, WriteError, atomic_write, remove_left};

@@ -1,7 +1,7 @@
 //! `pack` and `unpack`: tables as small files for programs that read them piece by piece, and back.
 
 use crate::command::{Done, Manner};
-use crate::error::{ErrorAbout, Result, anyhow};
+use crate::error::{ErrorAbout, Result};
 use crate::output::{self, bytes, count, percent};
 use crate::tables::Class;
 use crate::{input, tables};

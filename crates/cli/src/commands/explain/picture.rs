@@ -1,6 +1,6 @@
 //! The picture of an explanation: in a plan, and in space from above and as an isometric view.
 
-use crate::error::{ErrorAbout, Result, anyhow};
+use crate::error::{ErrorAbout, Result};
 use crate::picture::{draw_plan, middle, up_of};
 use sightlines::bake::GraphKind;
 use sightlines::bake::explain::{Answer, Explanation, Reason};

@@ -1,7 +1,7 @@
 //! What a packed table holds, without unpacking it.
 
 use super::{Object, as_map, write_sources};
-use crate::error::{ErrorAbout, Result, anyhow};
+use crate::error::{ErrorAbout, Result};
 use crate::facts::{DigestFacts, DoorFacts, FrameFacts, Source, write_doors};
 use crate::output::{bytes, percent};
 use crate::tables::{self, Class};

@@ -1,6 +1,6 @@
 //! The methods that find umbrae, as arguments: sheets alone, and each from-region method.
 
-use crate::error::{ErrorAbout, Result};
+use crate::error::Result;
 use sightlines::bake::methods::{BufferOptions, MethodError, OcclusionMethod, OcclusionMethodFactory};
 use sightlines::cells::Scene;
 use sightlines::multifocal::UnionMethod;

@@ -5,7 +5,7 @@ mod method;
 pub(crate) mod outcome;
 
 use crate::command::{Done, Manner};
-use crate::error::{ErrorAbout, Result, anyhow};
+use crate::error::{ErrorAbout, Result, anyhow, bail};
 use crate::eye::EyeArgs;
 use crate::input;
 use crate::named::one_of;
