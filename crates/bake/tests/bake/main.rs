@@ -5,6 +5,7 @@ mod bakeable;
 mod doubled;
 mod explain;
 mod floor;
+mod fronts;
 mod limit;
 mod line_space;
 mod live;

@@ -17,14 +17,14 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 const QUADS: [[u32; 4]; 6] = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
 
 /// A box with its fronts outwards, turned about z by a rotation with rational cosine or not.
-fn block(b: &Aabb<3>, turned: bool) -> SceneObject {
+pub(crate) fn block(b: &Aabb<3>, turned: bool) -> SceneObject {
     let corner = |i: usize| -> Point3 { std::array::from_fn(|k| if i >> k & 1 == 0 { b.min[k] } else { b.max[k] }) };
     let turn = |p: Point3| if turned { [0.8 * p[0] - 0.6 * p[1], 0.6 * p[0] + 0.8 * p[1], p[2]] } else { p };
     let triangles = QUADS.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
     SceneObject { name: String::new(), vertices: (0..8).map(|i| turn(corner(i))).collect(), triangles }
 }
 
-fn scene(objects: Vec<SceneObject>) -> Scene {
+pub(crate) fn scene(objects: Vec<SceneObject>) -> Scene {
     Scene::new(objects).expect("a scene")
 }
 

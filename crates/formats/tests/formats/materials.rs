@@ -286,10 +286,12 @@ fn single_sides_hide_by_default_and_not_if_asked() {
     let asked = SceneReadOptions { single_sided: true, ..options(&[], &[]) };
     let file = read_with(&doc, &asked);
     assert_eq!(classified(&file), [(0, Role::SeeThrough, "single sides")]);
-    assert_eq!(file.info.n_single_sided_triangles, 4);
+    assert_eq!((file.info.n_single_sided_triangles, file.scene.front_occluders()), (4, &[0][..]));
+    let both = SceneReadOptions { both_sides: true, ..asked.clone() };
+    assert_eq!(read_with(&doc, &both).scene.front_occluders(), [0], "seen from behind, and hides nothing there");
     let file = read_with(&doc, &SceneReadOptions { opaque: options(&["a"], &[]).opaque, ..asked });
     assert_eq!(classified(&file), [(0, Role::Occluder, "the pattern a")]);
-    assert!(file.scene.see_through().is_empty());
+    assert!(file.scene.see_through().is_empty() && file.scene.front_occluders().is_empty());
 }
 
 #[test]
@@ -316,6 +318,10 @@ fn sides_are_left_out_only_where_that_is_certain() {
     assert_eq!(single, [0], "volumes, unknown extensions, what cannot be read, mirrored, flat, and what physics move");
     assert_eq!(file.scene.moving().len(), 1);
     assert!(!file.scene.is_opaque(6));
+    // Of what is mirrored, flattened or moved nobody knows the front.
+    let asked = SceneReadOptions { single_sided: true, ..options(&[], &[]) };
+    let fronts = read_with(&doc(&nodes, &materials), &asked).scene.front_occluders().to_vec();
+    assert!(fronts.contains(&0) && [4, 5, 6].iter().all(|object| !fronts.contains(object)), "{fronts:?}");
 }
 
 /// Files beside an OBJ.
