@@ -5,6 +5,7 @@ use sightlines_bake::methods::{BufferOptions, OcclusionMethod, OcclusionMethodFa
 use sightlines_bake::region::pack_regions;
 use sightlines_bake::{BakeRequest, CellsFrom, RegionBakeOptions, Runtime, SceneMethod, bake_regions};
 use sightlines_cells::{CellId, Scene, SceneObject};
+use sightlines_formats::{ViewCell, ViewCells};
 use sightlines_geometry::Aabb;
 use sightlines_packed::{PackOptions, SizeClass, pack};
 use sightlines_progress::Budget;
@@ -45,8 +46,14 @@ fn sees(fronts: &Fronts, from: usize, to: usize) -> bool {
     between.iter().all(|&is_towards_low| is_towards_low != (from < to))
 }
 
+/// A cell in each room, away from its walls: what lies on a wall is seen from both of its sides.
 fn cells() -> CellsFrom {
-    CellsFrom::Grid([N as u32, 1, 1])
+    let cell = |room: usize| {
+        let x = 2.0 * room as f64;
+        let bounds = Aabb { min: [x + 0.25, 0.5, 0.25], max: [x + 1.75, 3.5, 2.75] };
+        ViewCell { id: room.to_string(), bounds }
+    };
+    CellsFrom::Boxes(ViewCells { cells: (0..N).map(cell).collect(), axes: None })
 }
 
 fn by_line_space(scene: &Scene, budget: Option<&dyn Budget>) -> Table {
