@@ -1,11 +1,22 @@
 //! What decides the results of a work: files as they were before they were read, and values.
 
 use crate::error::StateError;
-use crate::job::InputFile;
 use crate::key::{Key, KeyHasher};
+use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 use std::{fmt, fs, io};
+
+/// A file that a job reads.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct InputFile {
+    /// Its path, as the command names it.
+    pub path: String,
+    /// Its length.
+    pub n_bytes: u64,
+    /// The key of its content.
+    pub key: String,
+}
 
 /// The times of files are as coarse as this on some systems.
 const COARSE: Duration = Duration::from_secs(3);

@@ -20,10 +20,10 @@ mod lock;
 mod records;
 
 pub use error::StateError;
-pub use inputs::{Identity, Inputs};
+pub use inputs::{Identity, InputFile, Inputs};
 pub use job::{
-    InputFile, Job, JobError, JobSlot, JobStore, Manifest, Outcome, ParseShardRunError, PhasePlan, PhaseStatus, Role,
-    ShardPlan, ShardRun, ShardState, batch, cut, in_words,
+    Job, JobError, JobSlot, JobStore, Manifest, Outcome, ParseShardRunError, PhasePlan, PhaseStatus, Role, ShardPlan,
+    ShardRun, ShardState, batch, cut, in_words,
 };
 pub use journal::{Journal, Opening};
 pub use key::{Key, KeyHasher, ParseKeyError};

@@ -1,22 +1,12 @@
 //! The manifest of a job, as JSON.
 
+use crate::inputs::InputFile;
 use crate::key::Key;
 use serde::{Deserialize, Serialize};
 
 /// What the field `format` says.
 const FORMAT: &str = "sightlines-job";
 const VERSION: u32 = 1;
-
-/// A file that a job reads.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct InputFile {
-    /// Its path, as the command names it.
-    pub path: String,
-    /// Its length.
-    pub n_bytes: u64,
-    /// The key of its content.
-    pub key: String,
-}
 
 /// Units of a phase that one process does.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

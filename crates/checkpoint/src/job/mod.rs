@@ -15,7 +15,7 @@ mod store;
 
 pub use claims::batch;
 pub use cut::cut;
-pub use manifest::{InputFile, Manifest, PhasePlan, ShardPlan};
+pub use manifest::{Manifest, PhasePlan, ShardPlan};
 pub use runs::{ParseShardRunError, ShardRun, in_words};
 pub use slot::JobSlot;
 pub use status::PhaseStatus;
