@@ -4,7 +4,7 @@ use crate::conform::conform;
 use sightlines_geometry::vector::{add, length, normal, scale, sub};
 use sightlines_geometry::{Aabb, BoxTree, Point3, orient3d, ray_box, ray_triangle};
 use sightlines_multifocal::mesh::Mesh;
-use std::collections::HashSet;
+use std::collections::HashMap;
 
 /// A mesh with what is looked up for every line. Can be shared by threads.
 #[derive(Debug)]
@@ -162,10 +162,11 @@ fn with_both_fronts(triangles: &[[Point3; 3]]) -> Vec<usize> {
         let turns = [[p, q, r], [q, r, p], [r, p, q]];
         turns.into_iter().min().unwrap_or([p, q, r])
     };
-    let known: HashSet<[[u64; 3]; 3]> = triangles.iter().map(key).collect();
-    let is_first = |t: &[Point3; 3]| {
-        let [p, q, r] = key(t);
-        q < r && known.contains(&[p, r, q])
+    let mut first: HashMap<[[u64; 3]; 3], usize> = HashMap::new();
+    (0..).zip(triangles).for_each(|(k, t)| _ = first.entry(key(t)).or_insert(k));
+    let is_first = |k: usize| {
+        let [p, q, r] = key(&triangles[k]);
+        first[&[p, q, r]] == k && first.get(&[p, r, q]).is_some_and(|&opposite| k < opposite)
     };
-    (0..triangles.len()).filter(|&k| is_first(&triangles[k])).collect()
+    (0..triangles.len()).filter(|&k| is_first(k)).collect()
 }
