@@ -36,9 +36,10 @@ pub(crate) fn conform(mesh: &Mesh, front_only: &[bool]) -> Option<Vec<([Point3; 
         }
         if let Some(triangles) = cut(mesh, &region, &own, &on_it) {
             region.iter().for_each(|&t| done[t as usize] = true);
-            let seed_corners = mesh.corners(seed);
-            let turned = |t: [Point3; 3]| if has_front_of(&t, &seed_corners) { t } else { [t[0], t[2], t[1]] };
-            all.extend(triangles.into_iter().map(|t| (turned(t), is_front_only(seed))));
+            let (front_only, seed_corners) = (is_front_only(seed), mesh.corners(seed));
+            let keeps_front = |t: &[Point3; 3]| !front_only || has_front_of(t, &seed_corners);
+            let turned = |t: [Point3; 3]| if keeps_front(&t) { t } else { [t[0], t[2], t[1]] };
+            all.extend(triangles.into_iter().map(|t| (turned(t), front_only)));
         }
     }
     if !done.contains(&true) {
