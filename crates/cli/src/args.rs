@@ -1,6 +1,6 @@
 //! The arguments common to all commands.
 
-use crate::command::{Done, Manner};
+use crate::command::{Done, Verbosity};
 use crate::commands::*;
 use crate::error::Result;
 use clap::{Parser, Subcommand};
@@ -38,9 +38,9 @@ macro_rules! commands {
 
         impl Command {
             /// Does it.
-            pub(crate) fn run(&self, manner: Manner) -> Result<Done> {
+            pub(crate) fn run(&self, verbosity: Verbosity) -> Result<Done> {
                 match self {
-                    $(Self::$name(args) => $run(args, manner),)*
+                    $(Self::$name(args) => $run(args, verbosity),)*
                 }
             }
         }

@@ -1,13 +1,13 @@
-//! What all commands have in common: they get their arguments and a manner, and return what is printed at their end.
+//! What all commands have in common: they get their arguments and a verbosity, and return what is printed at their end.
 
 use crate::error::Result;
 use crate::output;
 use serde::Serialize;
 use std::fmt;
 
-/// How a command behaves while it runs.
+/// How much a command says.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Manner {
+pub(crate) struct Verbosity {
     /// Whether progress goes to standard error.
     pub(crate) show_progress: bool,
     /// Whether people get all facts in place of a few lines.

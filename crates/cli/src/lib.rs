@@ -48,7 +48,7 @@ mod walk_path;
 
 use args::Arguments;
 use clap::{CommandFactory, Parser};
-use command::{Answer, Manner};
+use command::{Answer, Verbosity};
 use error::{Result, StdoutError};
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::process::ExitCode;
@@ -104,8 +104,8 @@ fn exit_code(result: Result<Answer>) -> ExitCode {
 
 /// Runs a command, and prints its result.
 fn run(arguments: &Arguments) -> Result<Answer> {
-    let manner = Manner { show_progress: !arguments.quiet, verbose: arguments.verbose > 0 };
-    arguments.command.run(manner)?.print()
+    let verbosity = Verbosity { show_progress: !arguments.quiet, verbose: arguments.verbose > 0 };
+    arguments.command.run(verbosity)?.print()
 }
 
 /// Whether standard output was closed by its reader, which has read enough.

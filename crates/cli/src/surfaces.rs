@@ -30,7 +30,7 @@ pub(crate) struct SurfaceArgs {
     /// move them; by the same names. Does not hold for skins and morph targets
     #[arg(long, help_heading = "Input", value_name = "PATTERN")]
     still: Vec<NamePattern>,
-    /// glTF: viewers can get behind walls with one side (materials that are not doubleSided), where engines draw nothing
+    /// glTF: viewers can get behind single-sided walls (materials that are not doubleSided), where engines draw nothing
     /// of them. Such walls then hide from their front only, and only by the method line-space, which auto takes;
     /// sightlines and multifocal look past them. Closed objects hide from both sides. Without this option all such walls
     /// do, which is right if no viewer ever gets behind one

@@ -1,6 +1,6 @@
 //! `export`: a table as JSON.
 
-use crate::command::{Done, Manner};
+use crate::command::{Done, Verbosity};
 use crate::error::Result;
 use crate::{input, output};
 use sightlines::report::{export_json, write_json};
@@ -18,7 +18,7 @@ pub(crate) struct ExportArgs {
     output: Option<PathBuf>,
 }
 
-pub(crate) fn run(args: &ExportArgs, _: Manner) -> Result<Done> {
+pub(crate) fn run(args: &ExportArgs, _: Verbosity) -> Result<Done> {
     if let Some(path) = &args.output {
         output::check(&[&args.table], &[path])?;
     }

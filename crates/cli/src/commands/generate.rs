@@ -1,6 +1,6 @@
 //! `generate`: scenes to try things on.
 
-use crate::command::{Done, Manner};
+use crate::command::{Done, Verbosity};
 use crate::error::Result;
 use crate::glb::{self, save_glb};
 use crate::output::{self, bytes, cannot_be_made, count};
@@ -88,7 +88,7 @@ struct TowerArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &GenerateArgs, _: Manner) -> Result<Done> {
+pub(crate) fn run(args: &GenerateArgs, _: Verbosity) -> Result<Done> {
     match &args.what {
         What::Tower(args) => write_tower(args),
         What::World(args) => write_world(args),

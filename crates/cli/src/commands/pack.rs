@@ -1,6 +1,6 @@
 //! `pack` and `unpack`: tables as small files for programs that read them piece by piece, and back.
 
-use crate::command::{Done, Manner};
+use crate::command::{Done, Verbosity};
 use crate::error::{ErrorAbout, Result};
 use crate::output::{self, bytes, count, percent};
 use crate::tables::Class;
@@ -51,7 +51,7 @@ pub(crate) struct UnpackArgs {
     json: bool,
 }
 
-pub(crate) fn pack(args: &PackArgs, _: Manner) -> Result<Done> {
+pub(crate) fn pack(args: &PackArgs, _: Verbosity) -> Result<Done> {
     output::check(&[&args.table], &[&args.output])?;
     let table = input::table(&args.table)?;
     let (packed, report) =
@@ -78,7 +78,7 @@ pub(crate) fn pack(args: &PackArgs, _: Manner) -> Result<Done> {
     Ok(Done::new(args.json, outcome))
 }
 
-pub(crate) fn unpack(args: &UnpackArgs, _: Manner) -> Result<Done> {
+pub(crate) fn unpack(args: &UnpackArgs, _: Verbosity) -> Result<Done> {
     output::check(&[&args.packed], &[&args.output])?;
     input::refuse_source(&args.packed)?;
     let packed = tables::packed(&args.packed, CACHE)?;

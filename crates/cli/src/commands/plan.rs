@@ -1,6 +1,6 @@
 //! `plan`: a floor plan as GeoJSON, cut from a scene at a height, or from a file of another format.
 
-use crate::command::{Done, Manner};
+use crate::command::{Done, Verbosity};
 use crate::error::{ErrorAbout, Result, anyhow};
 use crate::input::{self, refuse};
 use crate::output::{self, bytes};
@@ -40,7 +40,7 @@ pub(crate) struct PlanCommandArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &PlanCommandArgs, _: Manner) -> Result<Done> {
+pub(crate) fn run(args: &PlanCommandArgs, _: Verbosity) -> Result<Done> {
     let (path, out) = (&args.input, &args.output);
     output::check(&[path], &[out])?;
     let map = args.map.as_deref();

@@ -1,6 +1,6 @@
 //! `portals`: the portal file of a Quake map that has none.
 
-use crate::command::{Done, Manner};
+use crate::command::{Done, Verbosity};
 use crate::error::Result;
 use crate::map_portals::{MapPortals, made};
 use crate::output::{self, bytes, count};
@@ -24,7 +24,7 @@ pub(crate) struct PortalsArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &PortalsArgs, _: Manner) -> Result<Done> {
+pub(crate) fn run(args: &PortalsArgs, _: Verbosity) -> Result<Done> {
     output::check(&[&args.map], &[&args.output])?;
     let bsp = read_bsp(&args.map)?;
     let MapPortals { prt, text, .. } = made(&bsp, &args.map)?;

@@ -9,7 +9,7 @@ mod hearing;
 mod priority;
 
 use crate::command::Answer;
-use crate::commands::vis::{Beginning, Sound, VisArgs, VisManner, compute};
+use crate::commands::vis::{Beginning, Sound, VisArgs, VisRun, compute};
 use crate::error::Result;
 use crate::kept::Keeping;
 use crate::map_portals::MADE;
@@ -79,13 +79,13 @@ fn see(args: &VisProgramArgs, map: &Path, console: &Console) -> Result<()> {
         }
         console.say(Kind::Progress, &format!("computing  {how}"))
     };
-    let manner = VisManner {
+    let run = VisRun {
         show_progress: !(args.quiet || args.nopercent || args.noprogress),
         keeping: if args.nostate { Keeping::Nowhere } else { Keeping::FileIfItFits(&vis.resume) },
         keep_after: args.noautoclean,
         begin: &mut begin,
     };
-    let outcome = compute(&vis, manner)?;
+    let outcome = compute(&vis, run)?;
     console.say(Kind::Statistics, &format!("pairs      {}", outcome.clusters.brief_pairs()))?;
     if args.verbose {
         console.say(Kind::Statistics, outcome.clusters.to_string().trim_end())?;

@@ -22,7 +22,7 @@ mod worth;
 
 pub(crate) use source::bake_visibly;
 
-use crate::command::{Done, Manner};
+use crate::command::{Done, Verbosity};
 use crate::doors::DoorBox;
 use crate::error::{Result, anyhow, bail};
 use crate::input::{self, refuse};
@@ -102,7 +102,7 @@ pub(crate) struct BuildArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &BuildArgs, Manner { show_progress, verbose }: Manner) -> Result<Done> {
+pub(crate) fn run(args: &BuildArgs, Verbosity { show_progress, verbose }: Verbosity) -> Result<Done> {
     // What is not decided in time is decided anew when there is more of it.
     let keeping = if args.time_limit.is_some() { Keeping::Nowhere } else { Keeping::File(&args.resume) };
     let built = make(args, keeping, show_progress, verbose)?;

@@ -3,7 +3,7 @@
 pub(crate) mod office;
 pub(crate) mod tower;
 
-use crate::command::{Done, Manner};
+use crate::command::{Done, Verbosity};
 use crate::error::{ErrorAbout, Result};
 use crate::output::{self, bytes, cannot_be_made};
 use crate::reasons::reasons;
@@ -40,12 +40,12 @@ enum Example {
     Tower,
 }
 
-pub(crate) fn run(args: &DemoArgs, manner: Manner) -> Result<Done> {
+pub(crate) fn run(args: &DemoArgs, verbosity: Verbosity) -> Result<Done> {
     let folder = &args.out;
     std::fs::create_dir_all(folder).map_err(|error| cannot_be_made(folder, error))?;
     match args.example {
-        Example::Office => office::run(args, manner),
-        Example::Tower => tower::run(args, manner),
+        Example::Office => office::run(args, verbosity),
+        Example::Tower => tower::run(args, verbosity),
     }
 }
 

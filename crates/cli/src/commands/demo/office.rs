@@ -1,7 +1,7 @@
 //! The demo in the plane: an office floor.
 
 use super::{DemoArgs, Made, save_page};
-use crate::command::{Done, Manner};
+use crate::command::{Done, Verbosity};
 use crate::commands::build::{bake_visibly, plan};
 use crate::error::{ErrorAbout, Result};
 use crate::output::{self, bytes, percent};
@@ -17,7 +17,7 @@ use sightlines::viewer::Figure;
 use std::fmt;
 use std::time::Instant;
 
-pub(super) fn run(args: &DemoArgs, Manner { show_progress, .. }: Manner) -> Result<Done> {
+pub(super) fn run(args: &DemoArgs, Verbosity { show_progress, .. }: Verbosity) -> Result<Done> {
     let start = Instant::now();
     let folder = &args.out;
     let office = office(OfficeOptions { seed: args.seed, ..OfficeOptions::default() })

@@ -1,7 +1,7 @@
 //! The demo in space: a small furnished tower.
 
 use super::{DemoArgs, Made, save_page};
-use crate::command::{Done, Manner};
+use crate::command::{Done, Verbosity};
 use crate::commands::build::{bake_visibly, space};
 use crate::error::{ErrorAbout, Result};
 use crate::glb::save_glb;
@@ -19,7 +19,7 @@ use std::fmt;
 use std::path::Path;
 use std::time::Instant;
 
-pub(super) fn run(args: &DemoArgs, Manner { show_progress, .. }: Manner) -> Result<Done> {
+pub(super) fn run(args: &DemoArgs, Verbosity { show_progress, .. }: Verbosity) -> Result<Done> {
     let start = Instant::now();
     let options = TowerOptions { seed: args.seed, floors: 2, rooms_x: 3, rooms_y: 1, ..TowerOptions::default() };
     let [scene_path, table_path] = ["tower.glb", "tower.pvs"].map(|name| args.out.join(name));

@@ -4,7 +4,7 @@ pub(crate) mod space;
 
 mod scene;
 mod viewer;
-use crate::command::{Answer, Done, Manner};
+use crate::command::{Answer, Done, Verbosity};
 use crate::error::{Result, anyhow};
 use crate::input::refuse;
 use crate::picture::{PictureKind, save_picture};
@@ -65,7 +65,7 @@ fn height(text: &str) -> Result<f64, String> {
     check_coordinate(height).map_err(|error| error.to_string())
 }
 
-pub(crate) fn run(args: &DrawArgs, _: Manner) -> Result<Done> {
+pub(crate) fn run(args: &DrawArgs, _: Verbosity) -> Result<Done> {
     PictureKind::of(&args.output)?;
     let inputs: Vec<&Path> = std::iter::once(&args.table).chain(&args.scene).map(PathBuf::as_path).collect();
     output::check(&inputs, &[&args.output])?;

@@ -5,7 +5,7 @@ mod picture;
 pub(crate) mod report;
 mod text;
 
-use crate::command::{Answer, Done, Manner};
+use crate::command::{Answer, Done, Verbosity};
 use crate::error::{ErrorAbout, Result, anyhow};
 use crate::picture::{PictureKind, save_picture};
 use crate::place::Place;
@@ -59,7 +59,7 @@ pub(crate) struct ExplainArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &ExplainArgs, _: Manner) -> Result<Done> {
+pub(crate) fn run(args: &ExplainArgs, _: Verbosity) -> Result<Done> {
     if let Some(out) = &args.draw {
         PictureKind::of(out)?;
         output::check(&[&args.table], &[out])?;

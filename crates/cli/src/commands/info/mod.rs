@@ -6,7 +6,7 @@ pub(crate) mod quake;
 pub(crate) mod scene;
 pub(crate) mod wad;
 
-use crate::command::{Done, Manner};
+use crate::command::{Done, Verbosity};
 use crate::error::Result;
 use crate::facts::{DigestFacts, DoorFacts, Facts, FrameFacts, Source, StabFacts, write_doors};
 use crate::input;
@@ -40,7 +40,7 @@ pub(crate) struct InfoArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &InfoArgs, _: Manner) -> Result<Done> {
+pub(crate) fn run(args: &InfoArgs, _: Verbosity) -> Result<Done> {
     let path = &args.file;
     let kind = input::kind_of(path)?;
     if kind.is_some_and(|kind| kind != InputKind::Scene) {

@@ -2,7 +2,7 @@
 
 pub(crate) mod space;
 
-use crate::command::{Done, Manner};
+use crate::command::{Done, Verbosity};
 use crate::error::{ErrorAbout, Result, anyhow, bail};
 use crate::input::{self, refuse};
 use crate::output::{self, bytes, count};
@@ -106,7 +106,7 @@ struct Eye {
     from: String,
 }
 
-pub(crate) fn run(args: &IsovistArgs, _: Manner) -> Result<Done> {
+pub(crate) fn run(args: &IsovistArgs, _: Verbosity) -> Result<Done> {
     let kind = Kind::of(&args.output)?;
     let inputs = std::iter::once(&args.plan).chain(&args.points).chain(&args.table).map(PathBuf::as_path);
     output::check(&inputs.collect::<Vec<_>>(), &[&args.output])?;

@@ -3,7 +3,7 @@
 use super::outcome::{Merged, Missing};
 use super::task::{Made, Task};
 use super::{absolute, open, stopped};
-use crate::command::{Answer, Done, Manner};
+use crate::command::{Answer, Done, Verbosity};
 use crate::error::Result;
 use crate::interrupt;
 use crate::kept::Keeping;
@@ -83,7 +83,7 @@ pub(super) fn through(
     }
 }
 
-pub(crate) fn run(args: &MergeArgs, Manner { show_progress, verbose }: Manner) -> Result<Done> {
+pub(crate) fn run(args: &MergeArgs, Verbosity { show_progress, verbose }: Verbosity) -> Result<Done> {
     let (folder, out) = (absolute(&args.job)?, args.output.as_deref().map(absolute).transpose()?);
     let found = merge(&folder, out.as_deref(), args.threads, show_progress, verbose)?;
     Ok(report(&args.job, found, args.json))

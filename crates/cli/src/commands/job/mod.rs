@@ -9,7 +9,7 @@ mod submit;
 mod task;
 mod work;
 
-use crate::command::{Done, Manner};
+use crate::command::{Done, Verbosity};
 use crate::error::{ErrorAbout, Result, anyhow};
 use crate::interrupt;
 use clap::Subcommand;
@@ -44,14 +44,14 @@ enum JobCommand {
     Status(status::StatusArgs),
 }
 
-pub(crate) fn run(args: &JobArgs, manner: Manner) -> Result<Done> {
+pub(crate) fn run(args: &JobArgs, verbosity: Verbosity) -> Result<Done> {
     match &args.what {
-        JobCommand::Plan(args) => plan::run(args, manner),
-        JobCommand::Shard(args) => shard::run(args, manner),
-        JobCommand::Work(args) => work::run(args, manner),
-        JobCommand::Merge(args) => merge::run(args, manner),
-        JobCommand::Submit(args) => submit::run(args, manner),
-        JobCommand::Status(args) => status::run(args, manner),
+        JobCommand::Plan(args) => plan::run(args, verbosity),
+        JobCommand::Shard(args) => shard::run(args, verbosity),
+        JobCommand::Work(args) => work::run(args, verbosity),
+        JobCommand::Merge(args) => merge::run(args, verbosity),
+        JobCommand::Submit(args) => submit::run(args, verbosity),
+        JobCommand::Status(args) => status::run(args, verbosity),
     }
 }
 

@@ -3,7 +3,7 @@
 use super::absolute;
 use super::outcome::Planned;
 use super::task::Task;
-use crate::command::{Done, Manner};
+use crate::command::{Done, Verbosity};
 use crate::error::Result;
 use crate::kept::{Keeping, PROGRAM};
 use sightlines::checkpoint::{Identity, Job, JobSlot, JobStore, Manifest, Outcome, Role};
@@ -40,7 +40,7 @@ fn shards(text: &str) -> Result<usize, String> {
     }
 }
 
-pub(crate) fn run(args: &PlanArgs, Manner { show_progress, .. }: Manner) -> Result<Done> {
+pub(crate) fn run(args: &PlanArgs, Verbosity { show_progress, .. }: Verbosity) -> Result<Done> {
     let task = Task::parse(&args.command)?;
     let here = absolute(std::path::Path::new("."))?;
     let folder = absolute(&args.output)?;

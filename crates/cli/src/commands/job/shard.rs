@@ -3,7 +3,7 @@
 use super::outcome::{ShardDone, ShardsDone};
 use super::task::Task;
 use super::{absolute, open, stopped};
-use crate::command::{Done, Manner};
+use crate::command::{Done, Verbosity};
 use crate::error::{Result, anyhow};
 use crate::interrupt;
 use crate::kept::Keeping;
@@ -35,7 +35,7 @@ pub(crate) struct ShardArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &ShardArgs, Manner { show_progress, .. }: Manner) -> Result<Done> {
+pub(crate) fn run(args: &ShardArgs, Verbosity { show_progress, .. }: Verbosity) -> Result<Done> {
     let start = Instant::now();
     let job = open(&absolute(&args.job)?)?;
     let mut shards = Vec::new();

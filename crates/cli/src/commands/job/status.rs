@@ -2,7 +2,7 @@
 
 use super::outcome::{Missing, PhaseFacts, PhaseStatus, Status};
 use super::{absolute, open};
-use crate::command::{Done, Manner};
+use crate::command::{Done, Verbosity};
 use crate::error::Result;
 use sightlines::checkpoint::{Job, ShardState};
 use std::path::PathBuf;
@@ -18,7 +18,7 @@ pub(crate) struct StatusArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &StatusArgs, _: Manner) -> Result<Done> {
+pub(crate) fn run(args: &StatusArgs, _: Verbosity) -> Result<Done> {
     let job = open(&absolute(&args.job)?)?;
     let manifest = job.manifest();
     let phases = (0..manifest.phases.len()).map(|phase| of_phase(&job, phase)).collect::<Result<Vec<_>>>()?;

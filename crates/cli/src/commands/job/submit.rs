@@ -4,7 +4,7 @@ use super::merge::{Progress, merge, report};
 use super::outcome::Submitted;
 use super::task::Task;
 use super::{absolute, interrupted, open};
-use crate::command::{Done, Manner};
+use crate::command::{Done, Verbosity};
 use crate::error::{ErrorAbout, Result, bail};
 use crate::interrupt;
 use crate::kept::PROGRAM;
@@ -65,7 +65,7 @@ pub(crate) struct SubmitArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &SubmitArgs, Manner { show_progress, verbose }: Manner) -> Result<Done> {
+pub(crate) fn run(args: &SubmitArgs, Verbosity { show_progress, verbose }: Verbosity) -> Result<Done> {
     let (folder, out) = (absolute(&args.job)?, args.output.as_deref().map(absolute).transpose()?);
     let program = std::env::current_exe().in_file(&folder)?;
     let job = open(&folder)?;

@@ -3,7 +3,7 @@
 use super::absolute;
 use super::merge::{report, through};
 use super::task::Task;
-use crate::command::{Done, Manner};
+use crate::command::{Done, Verbosity};
 use crate::error::Result;
 use crate::interrupt;
 use crate::memory::MemoryArgs;
@@ -36,7 +36,7 @@ pub(crate) struct WorkArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &WorkArgs, Manner { verbose, .. }: Manner) -> Result<Done> {
+pub(crate) fn run(args: &WorkArgs, Verbosity { verbose, .. }: Verbosity) -> Result<Done> {
     let (folder, out) = (absolute(&args.job)?, args.output.as_deref().map(absolute).transpose()?);
     let role = Role::Worker { n_workers: args.workers as usize, stop: interrupt::requested };
     let after = Duration::from_secs(args.save_after);

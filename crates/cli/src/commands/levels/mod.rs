@@ -2,7 +2,7 @@
 
 pub(crate) mod outcome;
 
-use crate::command::{Done, Manner};
+use crate::command::{Done, Verbosity};
 use crate::error::{Result, anyhow};
 use crate::input;
 use crate::kept::{self, Keeping, Kept, ResumeArgs};
@@ -64,7 +64,7 @@ fn is_ours(name: &str) -> bool {
     name == INDEX_NAME || number.is_some_and(|n| !n.is_empty() && n.bytes().all(|b| b.is_ascii_digit()))
 }
 
-pub(crate) fn run(args: &LevelsArgs, Manner { show_progress, .. }: Manner) -> Result<Done> {
+pub(crate) fn run(args: &LevelsArgs, Verbosity { show_progress, .. }: Verbosity) -> Result<Done> {
     let work_memory = MemoryArgs::of(args.work_memory);
     work_memory.watch();
     // Outputs that cannot be written are reported before the work is done.

@@ -4,7 +4,7 @@ mod method;
 pub(crate) mod outcome;
 
 use crate::buffers::method_failed;
-use crate::command::{Done, Manner};
+use crate::command::{Done, Verbosity};
 use crate::error::{ErrorAbout, Result};
 use crate::eye::EyeArgs;
 use crate::input;
@@ -81,7 +81,7 @@ pub(crate) struct LightArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &LightArgs, _: Manner) -> Result<Done> {
+pub(crate) fn run(args: &LightArgs, _: Verbosity) -> Result<Done> {
     picture::check_png_name(&args.output)?;
     output::check(&[&args.scene], &[&args.output])?;
     input::check_is_scene(&args.scene)?;

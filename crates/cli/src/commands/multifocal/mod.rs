@@ -6,7 +6,7 @@ pub(crate) mod outcome;
 mod target;
 
 use crate::buffers::method_failed;
-use crate::command::{Done, Manner};
+use crate::command::{Done, Verbosity};
 use crate::error::{ErrorAbout, Result, anyhow};
 use crate::input;
 use crate::named::{measure, one_of};
@@ -79,7 +79,7 @@ pub(crate) struct MultifocalArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &MultifocalArgs, _: Manner) -> Result<Done> {
+pub(crate) fn run(args: &MultifocalArgs, _: Verbosity) -> Result<Done> {
     check_outputs(args)?;
     input::check_is_scene(&args.scene)?;
     let file = input::occluders(&args.scene, &args.surfaces.options())?;

@@ -2,7 +2,7 @@
 
 pub(crate) mod sight;
 
-use crate::command::{Done, Manner};
+use crate::command::{Done, Verbosity};
 use crate::error::{ErrorAbout, Result};
 use crate::facts::Source;
 use crate::output::count;
@@ -36,7 +36,7 @@ pub(crate) struct QueryArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &QueryArgs, _: Manner) -> Result<Done> {
+pub(crate) fn run(args: &QueryArgs, _: Verbosity) -> Result<Done> {
     match tables::open(&args.table, CACHE)? {
         Opened::Plain(cells) => ask(&cells, args),
         Opened::Packed(cells) => ask(&cells, args),

@@ -5,7 +5,7 @@ pub(crate) mod outcome;
 
 pub(crate) use outcome::Outcome;
 
-use crate::command::{Done, Manner};
+use crate::command::{Done, Verbosity};
 use crate::error::{Result, anyhow};
 use crate::kept::{self, Keeping, Kept, ResumeArgs};
 use crate::memory::MemoryArgs;
@@ -58,7 +58,7 @@ pub(crate) struct RejectArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &RejectArgs, Manner { show_progress, .. }: Manner) -> Result<Done> {
+pub(crate) fn run(args: &RejectArgs, Verbosity { show_progress, .. }: Verbosity) -> Result<Done> {
     let outcome = make(args, Keeping::File(&args.resume), show_progress)?;
     Ok(Done::new(args.json, outcome))
 }

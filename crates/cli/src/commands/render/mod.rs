@@ -4,7 +4,7 @@ mod cull;
 mod method;
 pub(crate) mod outcome;
 
-use crate::command::{Done, Manner};
+use crate::command::{Done, Verbosity};
 use crate::error::{ErrorAbout, Result, anyhow, bail};
 use crate::eye::EyeArgs;
 use crate::input;
@@ -74,7 +74,7 @@ pub(crate) struct RenderArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &RenderArgs, Manner { show_progress, .. }: Manner) -> Result<Done> {
+pub(crate) fn run(args: &RenderArgs, Verbosity { show_progress, .. }: Verbosity) -> Result<Done> {
     check(args)?;
     input::check_is_scene(&args.scene)?;
     let table =
@@ -85,7 +85,7 @@ pub(crate) fn run(args: &RenderArgs, Manner { show_progress, .. }: Manner) -> Re
         input::check_occluder(&args.scene, &file)?;
         if !file.scene.front_occluders().is_empty() {
             bail!(
-                "{}: --cull pvs: the table takes walls with one side to hide from their front (--single-sided), and this picture does not show them",
+                "{}: --cull pvs: the table takes single-sided walls to hide from their front (--single-sided), and this picture does not show them",
                 args.scene.display()
             );
         }

@@ -3,7 +3,7 @@
 mod eyes;
 pub(crate) mod outcome;
 
-use crate::command::{Done, Manner};
+use crate::command::{Done, Verbosity};
 use crate::error::{Result, anyhow};
 use crate::output;
 use crate::progress::Bar;
@@ -51,7 +51,7 @@ pub(crate) struct SimplifyArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &SimplifyArgs, Manner { show_progress, .. }: Manner) -> Result<Done> {
+pub(crate) fn run(args: &SimplifyArgs, Verbosity { show_progress, .. }: Verbosity) -> Result<Done> {
     let format = OutFormat::of(&args.output)?;
     output::check(&args.eyes.table.iter().map(PathBuf::as_path).collect::<Vec<_>>(), &[&args.output])?;
     let table = args.eyes.table()?;

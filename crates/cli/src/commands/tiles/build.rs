@@ -2,7 +2,7 @@
 
 use super::outcome::Outcome;
 use crate::buffers::method_failed;
-use crate::command::{Done, Manner};
+use crate::command::{Done, Verbosity};
 use crate::commands::build::region::RegionArgs;
 use crate::error::{Result, anyhow, bail};
 use crate::input::no_occluder;
@@ -55,7 +55,7 @@ pub(crate) struct TilesBuildArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &TilesBuildArgs, Manner { show_progress, .. }: Manner) -> Result<Done> {
+pub(crate) fn run(args: &TilesBuildArgs, Verbosity { show_progress, .. }: Verbosity) -> Result<Done> {
     let outcome = make(args, Keeping::Nowhere, show_progress)?;
     Ok(Done::new(args.json, outcome))
 }

@@ -1,6 +1,6 @@
 //! `tiles check`: whether the files of a baked world are whole and belong together.
 
-use crate::command::{Done, Manner};
+use crate::command::{Done, Verbosity};
 use crate::error::Result;
 use crate::output::{bytes, count};
 use crate::progress::Bar;
@@ -36,7 +36,7 @@ pub(crate) struct Checked {
     n_resident_bytes: usize,
 }
 
-pub(super) fn run(args: &TilesCheckArgs, Manner { show_progress, .. }: Manner) -> Result<Done> {
+pub(super) fn run(args: &TilesCheckArgs, Verbosity { show_progress, .. }: Verbosity) -> Result<Done> {
     let world = World::open(&args.world)?;
     let n_tiles = world.index().tiles.len();
     let mut checked =

@@ -8,7 +8,7 @@ pub(crate) mod query;
 pub(crate) use build::{TilesBuildArgs, make};
 pub(crate) use outcome::Outcome;
 
-use crate::command::{Done, Manner};
+use crate::command::{Done, Verbosity};
 use crate::error::Result;
 use clap::Subcommand;
 
@@ -30,10 +30,10 @@ pub(crate) enum TilesCommand {
     Check(check::TilesCheckArgs),
 }
 
-pub(crate) fn run(args: &TilesArgs, manner: Manner) -> Result<Done> {
+pub(crate) fn run(args: &TilesArgs, verbosity: Verbosity) -> Result<Done> {
     match &args.what {
-        TilesCommand::Build(args) => build::run(args, manner),
-        TilesCommand::Query(args) => query::run(args, manner),
-        TilesCommand::Check(args) => check::run(args, manner),
+        TilesCommand::Build(args) => build::run(args, verbosity),
+        TilesCommand::Query(args) => query::run(args, verbosity),
+        TilesCommand::Check(args) => check::run(args, verbosity),
     }
 }

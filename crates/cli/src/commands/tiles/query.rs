@@ -1,6 +1,6 @@
 //! `tiles query`: what may be seen from a point of a baked world.
 
-use crate::command::{Done, Manner};
+use crate::command::{Done, Verbosity};
 use crate::error::Result;
 use crate::output::count;
 use crate::place::Point;
@@ -52,7 +52,7 @@ pub(crate) struct Found {
     n_tiles: usize,
 }
 
-pub(super) fn run(args: &TilesQueryArgs, _: Manner) -> Result<Done> {
+pub(super) fn run(args: &TilesQueryArgs, _: Verbosity) -> Result<Done> {
     let world = World::open(&args.world)?;
     let eye = args.eye.coordinates(3, &args.world)?;
     let eye = [eye[0], eye[1], eye[2]];

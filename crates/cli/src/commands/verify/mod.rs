@@ -7,7 +7,7 @@ mod proofs;
 mod truth;
 mod violations;
 
-use crate::command::{Done, Manner};
+use crate::command::{Done, Verbosity};
 use crate::error::{Result, anyhow};
 use crate::input;
 use crate::input::refuse;
@@ -76,7 +76,7 @@ pub(crate) struct VerifyArgs {
 /// Bytes of blocks of a packed table that are kept while it is unpacked.
 const CACHE: usize = 64 << 20;
 
-pub(crate) fn run(args: &VerifyArgs, Manner { show_progress, .. }: Manner) -> Result<Done> {
+pub(crate) fn run(args: &VerifyArgs, Verbosity { show_progress, .. }: Verbosity) -> Result<Done> {
     if let Some(picture) = &args.draw {
         PictureKind::of(picture)?;
         output::check(&[&args.table, &args.scene], &[picture])?;

@@ -4,7 +4,7 @@ mod kind;
 pub(crate) mod outcome;
 mod points;
 
-use crate::command::{Done, Manner};
+use crate::command::{Done, Verbosity};
 use crate::error::{ErrorAbout, Result, anyhow, bail};
 use crate::input;
 use crate::kept::{self, Keeping, Kept, ResumeArgs};
@@ -177,7 +177,7 @@ const fn touch_about(touch: Touch) -> &'static str {
     }
 }
 
-pub(crate) fn run(args: &VgaArgs, Manner { show_progress, .. }: Manner) -> Result<Done> {
+pub(crate) fn run(args: &VgaArgs, Verbosity { show_progress, .. }: Verbosity) -> Result<Done> {
     args.memory.watch();
     let kind = Kind::of(&args.output)?;
     let inputs: Vec<&Path> = std::iter::once(&args.plan).chain(&args.points).map(PathBuf::as_path).collect();

@@ -2,7 +2,7 @@
 
 mod scene;
 
-use crate::command::{Done, Manner};
+use crate::command::{Done, Verbosity};
 use crate::error::{ErrorAbout, Result, anyhow};
 use crate::output::{self, bytes, count};
 use crate::plans::PlanArgs;
@@ -65,7 +65,7 @@ pub(crate) struct ViewArgs {
     json: bool,
 }
 
-pub(crate) fn run(args: &ViewArgs, Manner { show_progress, .. }: Manner) -> Result<Done> {
+pub(crate) fn run(args: &ViewArgs, Verbosity { show_progress, .. }: Verbosity) -> Result<Done> {
     let others = [&args.scene, &args.against, &args.walk];
     let inputs: Vec<&Path> =
         std::iter::once(args.table.as_path()).chain(others.into_iter().filter_map(Option::as_deref)).collect();

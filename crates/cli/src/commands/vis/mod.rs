@@ -4,7 +4,7 @@ mod certify;
 pub(crate) mod outcome;
 mod sounds;
 
-use crate::command::{Done, Manner};
+use crate::command::{Done, Verbosity};
 use crate::error::{Result, anyhow, bail};
 pub(crate) use outcome::Outcome;
 pub(crate) use sounds::Sound;
@@ -78,7 +78,7 @@ impl VisArgs {
 }
 
 /// How to go about it, beside what the arguments say.
-pub(crate) struct VisManner<'a, 'k> {
+pub(crate) struct VisRun<'a, 'k> {
     pub(crate) show_progress: bool,
     /// Where results of units are kept.
     pub(crate) keeping: Keeping<'k>,
@@ -97,7 +97,7 @@ pub(crate) struct Beginning<'a> {
     pub(crate) resumed: bool,
 }
 
-pub(crate) fn run(args: &VisArgs, Manner { show_progress, verbose }: Manner) -> Result<Done> {
+pub(crate) fn run(args: &VisArgs, Verbosity { show_progress, verbose }: Verbosity) -> Result<Done> {
     let mut outcome = make(args, Keeping::File(&args.resume), show_progress)?;
     outcome.verbose = verbose;
     Ok(Done::new(args.json, outcome))
@@ -105,11 +105,11 @@ pub(crate) fn run(args: &VisArgs, Manner { show_progress, verbose }: Manner) -> 
 
 /// Writes the map. Prints nothing but progress and warnings.
 pub(crate) fn make(args: &VisArgs, keeping: Keeping<'_>, show_progress: bool) -> Result<Outcome> {
-    compute(args, VisManner { show_progress, keeping, keep_after: false, begin: &mut |_| Ok(()) })
+    compute(args, VisRun { show_progress, keeping, keep_after: false, begin: &mut |_| Ok(()) })
 }
 
-/// The same, in a manner.
-pub(crate) fn compute(args: &VisArgs, manner: VisManner<'_, '_>) -> Result<Outcome> {
+/// The same, in a run.
+pub(crate) fn compute(args: &VisArgs, run: VisRun<'_, '_>) -> Result<Outcome> {
     crate::threads::use_only(args.threads);
     let start = Instant::now();
     args.memory.watch();
@@ -125,12 +125,11 @@ pub(crate) fn compute(args: &VisArgs, manner: VisManner<'_, '_>) -> Result<Outco
     let out = args.output.as_ref().unwrap_or(&args.map);
     // The map may be replaced.
     output::check(&file.iter().map(PathBuf::as_path).collect::<Vec<_>>(), &[out])?;
-    let inputs =
-        kept::look(manner.keeping, [Some(&args.map), file.as_ref()].into_iter().flatten().map(PathBuf::as_path))?;
+    let inputs = kept::look(run.keeping, [Some(&args.map), file.as_ref()].into_iter().flatten().map(PathBuf::as_path))?;
     let bsp = read_bsp(&args.map)?;
     let portals = portals_for(&bsp, &args.map, args.prt.as_deref())?;
     let format = portals.format();
-    if manner.show_progress {
+    if run.show_progress {
         portals.announce();
     }
     let MapPortals { prt, path: prt_path, text, .. } = portals;
@@ -139,11 +138,11 @@ pub(crate) fn compute(args: &VisArgs, manner: VisManner<'_, '_>) -> Result<Outco
 
     let too_large = |source| anyhow!("{}: {source}; allow more", args.map.display());
     let threads = args.memory.threads(args.threads, portals_need(&prt)).map_err(too_large)?;
-    let kept = Kept::open(manner.keeping, &inputs, &[out], || args.identity(&text, &inputs, manner.keeping))?;
+    let kept = Kept::open(run.keeping, &inputs, &[out], || args.identity(&text, &inputs, run.keeping))?;
     drop(text);
     let resumed = kept.n_taken_up() > 0;
-    (manner.begin)(&Beginning { bsp: &bsp, prt: &prt, prt_path: &prt_path, resumed })?;
-    let bar = Bar::new("visibility of clusters", manner.show_progress);
+    (run.begin)(&Beginning { bsp: &bsp, prt: &prt, prt_path: &prt_path, resumed })?;
+    let bar = Bar::new("visibility of clusters", run.show_progress);
     let sounds = sounds::all_but(&args.silence);
     let search = ConvexOptions { fast: args.fast, threads };
     let options = PrtOptions { search, progress: Some(&bar), units: kept.units(), sounds };
@@ -161,7 +160,7 @@ pub(crate) fn compute(args: &VisArgs, manner: VisManner<'_, '_>) -> Result<Outco
     kept.before_writing()?;
     // Before anything is written: a table that is proven wrong should not be.
     let certified = args.certify.map(|n| {
-        let bar = Bar::new("proofs", manner.show_progress);
+        let bar = Bar::new("proofs", run.show_progress);
         certify(&prt_path, &map.graph, &map.clusters.seen, n, args.fast, &bar)
     });
     let certified = certified.transpose()?;
@@ -169,7 +168,7 @@ pub(crate) fn compute(args: &VisArgs, manner: VisManner<'_, '_>) -> Result<Outco
         kept.finish(false);
         return Err(error);
     }
-    if manner.keep_after {
+    if run.keep_after {
         kept.leave();
     } else {
         kept.finish(true);

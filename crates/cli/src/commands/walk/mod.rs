@@ -3,7 +3,7 @@
 mod levels;
 pub(crate) mod outcome;
 
-use crate::command::{Done, Manner};
+use crate::command::{Done, Verbosity};
 use crate::error::{ErrorAbout, Result, anyhow, bail};
 use crate::output;
 use crate::progress::Bar;
@@ -88,7 +88,7 @@ fn steps(text: &str) -> Result<Budget, String> {
     }
 }
 
-pub(crate) fn run(args: &WalkArgs, Manner { show_progress, .. }: Manner) -> Result<Done> {
+pub(crate) fn run(args: &WalkArgs, Verbosity { show_progress, .. }: Verbosity) -> Result<Done> {
     let outputs: Vec<&Path> = [&args.output, &args.csv].into_iter().flatten().map(PathBuf::as_path).collect();
     output::check(&[&args.table], &outputs)?;
     match tables::open(&args.table, args.budget)? {
