@@ -34,17 +34,28 @@ struct Pair {
     answer: &'static str,
 }
 
+/// What a line passes.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Through {
+    /// Visible: the portals that the line passes, in order.
+    portals: Vec<u32>,
+    /// Visible: the cell entered through each portal.
+    cells: Vec<u32>,
+}
+
+impl Through {
+    fn new(line: &SightLine) -> Self {
+        Self { portals: numbers(&line.portals), cells: entered(line) }
+    }
+}
+
 /// Exit code 1 for a hidden pair.
 #[derive(Debug, Serialize, JsonSchema)]
 pub(crate) struct InPlan {
     #[serde(flatten)]
     pair: Pair,
-    /// Visible: the portals that the line passes, in order.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    portals: Option<Vec<u32>>,
-    /// Visible: the cell entered through each portal.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    cells: Option<Vec<u32>>,
+    #[serde(flatten)]
+    through: Option<Through>,
     /// Visible: where the line crosses each portal, rounded.
     #[serde(skip_serializing_if = "Option::is_none")]
     points: Option<Vec<[f64; 2]>>,
@@ -102,12 +113,8 @@ struct End {
 pub(crate) struct InScene {
     #[serde(flatten)]
     pair: Pair,
-    /// Visible: the portals that the line passes, in order.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    portals: Option<Vec<u32>>,
-    /// Visible: the cell entered through each portal.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    cells: Option<Vec<u32>>,
+    #[serde(flatten)]
+    through: Option<Through>,
     /// Visible: where the line crosses each portal, rounded; null for a portal that the line lies in.
     #[serde(skip_serializing_if = "Option::is_none")]
     points: Option<Vec<Option<[f64; 3]>>>,
@@ -292,8 +299,7 @@ impl Report<'_> {
         let planar = |[x, y, _]: [f64; 3]| [x, y];
         InPlan {
             pair: self.pair(),
-            portals: line.map(|(line, _)| numbers(&line.portals)),
-            cells: line.map(|(line, _)| entered(line)),
+            through: line.map(|(line, _)| Through::new(line)),
             points: line.map(|(_, exact)| exact.crossings().into_iter().flatten().map(planar).collect()),
             line: line.and_then(|(_, exact)| match exact {
                 ExactLine::Planar(witness, _) => {
@@ -313,8 +319,7 @@ impl Report<'_> {
         let line = self.line();
         InScene {
             pair: self.pair(),
-            portals: line.map(|(line, _)| numbers(&line.portals)),
-            cells: line.map(|(line, _)| entered(line)),
+            through: line.map(|(line, _)| Through::new(line)),
             points: line.map(|(_, exact)| exact.crossings()),
             ends: line.and_then(|(line, _)| line.ends),
             line: line.and_then(|(_, exact)| match exact {
