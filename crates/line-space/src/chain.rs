@@ -11,6 +11,8 @@
 //! having an end on `F` (1), so the number of crossings stays odd (3); all others are limits of these, and `F` is closed. For the lines
 //! on one side of an edge all three are needed only of those, if they are connected: then they too can be moved into each other.
 //!
+//! Where `F` has triangles that block from their fronts only, the number of crossings is counted with signs; see [`crate::sense`].
+//!
 //! `F` is found by growth: from a triangle that the middle line hits, over every edge of the rim that lines pass on both sides, to
 //! the next triangle. Where there is none, or only one that folds back, as at a silhouette, the lines on the far side of that edge are left to other
 //! chains. Growth is a heuristic; the conditions are checked exactly.
@@ -23,6 +25,7 @@ use crate::end::End;
 use crate::hull::{Code, Hull};
 use crate::marks::Marks;
 use crate::orient::orient;
+use crate::sense::Sense;
 use crate::side::{Limit, Side};
 use crate::surface::Surface;
 use crate::touch::{Start, Target};
@@ -141,13 +144,14 @@ pub(crate) struct ChainFinder {
     codes: Marks<Code>,
     /// For edges of the present cell whether lines may pass them on both sides.
     mixed: Marks<bool>,
-    /// For edges of the present chain whether an odd number of triangles ends there.
-    odd: Marks<bool>,
-    /// For triangles of the present chain.
-    part_of: Marks<()>,
-    /// Where lines begin, and for triangles whether they block all lines from there.
-    volume: Aabb<3>,
-    blocks: Marks<bool>,
+    /// For edges of the present chain how often triangles end there, by their senses; odd for the rim.
+    ends: Marks<i16>,
+    /// For triangles of the present chain their sense: in which direction a crossing counts.
+    senses: Marks<i8>,
+    /// What triangles with one side do to lines from a volume.
+    sense: Sense,
+    /// Whether the present chain blocks only what crosses it in one direction.
+    has_direction: bool,
     chain: Vec<u32>,
     open: Vec<(u32, u32)>,
     /// How many triangles a chain has at most.
@@ -160,10 +164,10 @@ impl ChainFinder {
         Self {
             codes: Marks::new(mesh.vertices().len()),
             mixed: Marks::new(mesh.edges().len()),
-            odd: Marks::new(mesh.edges().len()),
-            part_of: Marks::new(mesh.triangles().len()),
-            volume: Aabb::EMPTY,
-            blocks: Marks::new(if surface.has_fronts() { mesh.triangles().len() } else { 0 }),
+            ends: Marks::new(mesh.edges().len()),
+            senses: Marks::new(mesh.triangles().len()),
+            sense: Sense::new(surface),
+            has_direction: false,
             chain: Vec::new(),
             open: Vec::new(),
             longest,
@@ -172,21 +176,12 @@ impl ChainFinder {
 
     /// Has to come before the chains of lines from another volume.
     pub(crate) fn look_from(&mut self, volume: &Aabb<3>) {
-        self.volume = *volume;
-        self.blocks.forget();
+        self.sense.look_from(volume);
     }
 
-    /// Whether a triangle blocks all lines from the volume.
-    pub(crate) fn blocks(&mut self, surface: &Surface, triangle: u32) -> bool {
-        if !surface.is_front_only(triangle) {
-            return true;
-        }
-        let known = self.blocks.get(triangle);
-        known.unwrap_or_else(|| {
-            let blocks = surface.is_in_front(triangle, &self.volume);
-            self.blocks.set(triangle, blocks);
-            blocks
-        })
+    /// Whether a triangle that the middle line meets blocks it, as doubles have it.
+    pub(crate) fn blocks(&mut self, surface: &Surface, shaft: &Shaft, triangle: u32) -> bool {
+        self.sense.blocks_always(surface, triangle) || surface.is_met_from_front(triangle, &shaft.line)
     }
 
     /// Has to come before the chains of another cell.
@@ -196,8 +191,9 @@ impl ChainFinder {
     }
 
     fn next_chain(&mut self) {
-        self.odd.forget();
-        self.part_of.forget();
+        self.ends.forget();
+        self.senses.forget();
+        self.has_direction = false;
         self.chain.clear();
         self.open.clear();
     }
@@ -215,7 +211,9 @@ impl ChainFinder {
         let mut longest = self.longest;
         let (mut folded, mut left, mut can_fold) = (None, None, false);
         let failure = |gap, can_fold| Failure { gap, can_fold };
-        self.add(surface, shaft, target, start).map_err(|gap| failure(gap, can_fold))?;
+        // What the middle line meets counts, in whichever direction.
+        let sense = if !surface.has_fronts() || surface.is_met_from_front(start, &shaft.line) { 1 } else { -1 };
+        self.add(surface, shaft, target, start, sense).map_err(|gap| failure(gap, can_fold))?;
         while let Some((edge, triangle)) = self.open.pop() {
             if !self.is_odd(edge) || !self.is_mixed(surface, shaft, edge) {
                 continue;
@@ -228,13 +226,13 @@ impl ChainFinder {
             let next = self.next_triangle(surface, shaft, target, edge, triangle);
             match (next, at_fold) {
                 (None, AtFold::Follow(_)) => return Err(failure(folded.unwrap_or(gap), false)),
-                (Some((next, false)), _) => {
+                (Some((next, sense, false)), _) => {
                     if self.chain.len() >= longest {
                         return Err(failure(folded.unwrap_or(Gap::Other), can_fold));
                     }
-                    self.add(surface, shaft, target, next).map_err(|gap| failure(gap, can_fold))?;
+                    self.add(surface, shaft, target, next, sense).map_err(|gap| failure(gap, can_fold))?;
                 }
-                (Some((next, true)), AtFold::Follow(most)) => {
+                (Some((next, sense, true)), AtFold::Follow(most)) => {
                     if folded.is_none() {
                         folded = Some(gap);
                         longest = longest.min(self.chain.len() + most);
@@ -242,7 +240,7 @@ impl ChainFinder {
                     if self.chain.len() >= longest {
                         return Err(failure(folded.unwrap_or(Gap::Other), can_fold));
                     }
-                    self.add(surface, shaft, target, next).map_err(|gap| failure(gap, can_fold))?;
+                    self.add(surface, shaft, target, next, sense).map_err(|gap| failure(gap, can_fold))?;
                 }
                 (_, AtFold::Leave) => {
                     can_fold |= next.is_some();
@@ -256,14 +254,14 @@ impl ChainFinder {
                 }
             }
         }
-        if !self.is_crossed_oddly(surface, shaft) {
+        if !self.is_crossed(surface, shaft) || self.has_direction && !self.agrees(surface, shaft, left) {
             return Err(failure(folded.unwrap_or(Gap::Other), can_fold));
         }
         let of_side = |side: Side| Blocked::Side { limit: side.limit, share: side.share() };
         Ok(left.map_or(Blocked::All, of_side))
     }
 
-    fn add(&mut self, surface: &Surface, shaft: &Shaft, target: &Target, triangle: u32) -> Result<(), Gap> {
+    fn add(&mut self, surface: &Surface, shaft: &Shaft, target: &Target, triangle: u32, sense: i8) -> Result<(), Gap> {
         let (corners, bounds) = (surface.corners(triangle), surface.bounds(triangle));
         if !shaft.start.is_clear_of(&corners, bounds, &shaft.cell.from) {
             return Err(Gap::Start { triangle });
@@ -271,12 +269,14 @@ impl ChainFinder {
         if !target.is_clear_of(&corners, bounds, &shaft.cell.to) {
             return Err(Gap::Target { triangle });
         }
-        self.part_of.set(triangle, ());
+        self.senses.set(triangle, sense);
+        self.has_direction |= !self.sense.blocks_always(surface, triangle);
         self.chain.push(triangle);
-        for &edge in surface.mesh().outline_edges(triangle) {
-            let odd = !self.is_odd(edge);
-            self.odd.set(edge, odd);
-            if odd {
+        for (i, &edge) in surface.mesh().outline_edges(triangle).iter().enumerate() {
+            let way = if surface.has_fronts() { sense * surface.way_along(triangle, i) } else { 1 };
+            let ends = self.ends.get(edge).unwrap_or_default() + i16::from(way);
+            self.ends.set(edge, ends);
+            if ends % 2 != 0 {
                 self.open.push((edge, triangle));
             }
         }
@@ -285,11 +285,11 @@ impl ChainFinder {
 
     /// Whether a triangle was part of the last chain.
     pub(crate) fn has(&self, triangle: u32) -> bool {
-        self.part_of.get(triangle).is_some()
+        self.senses.get(triangle).is_some()
     }
 
     fn is_odd(&self, edge: u32) -> bool {
-        self.odd.get(edge) == Some(true)
+        self.ends.get(edge).is_some_and(|ends| ends % 2 != 0)
     }
 
     /// Whether the lines in question may pass an edge on both sides, and meet it.
@@ -322,8 +322,8 @@ impl ChainFinder {
         code
     }
 
-    /// The triangle that continues the chain beyond an edge, and whether the chain folds back there: the largest one on the other side of
-    /// the edge as seen along the middle line, else one on the same side.
+    /// The triangle that continues the chain beyond an edge with its sense, and whether the chain folds back there: the largest one on the
+    /// other side of the edge as seen along the middle line, else one on the same side.
     fn next_triangle(
         &mut self,
         surface: &Surface,
@@ -331,15 +331,20 @@ impl ChainFinder {
         target: &Target,
         edge: u32,
         triangle: u32,
-    ) -> Option<(u32, bool)> {
+    ) -> Option<(u32, i8, bool)> {
         let mesh = surface.mesh();
         let [p, q] = mesh.edges()[edge as usize].map(|v| sub(mesh.vertices()[v as usize], shaft.line[0]));
         let normal = cross(p, q);
         let side = |t: u32| dot(normal, sub(surface.middle(t), shaft.line[0])) > 0.0;
         let here = side(triangle);
-        let mut best: Option<(bool, f64, u32)> = None;
+        let way = self.senses.get(triangle).unwrap_or(1) * surface.way_at(triangle, edge);
+        let mut best: Option<(bool, f64, u32, i8)> = None;
         for &other in mesh.triangles_at(edge) {
-            if other == triangle || self.has(other) || !self.blocks(surface, other) {
+            if other == triangle || self.has(other) {
+                continue;
+            }
+            let sense = -way * surface.way_at(other, edge);
+            if sense < 0 && !self.sense.blocks_always(surface, other) {
                 continue;
             }
             let (corners, bounds) = (surface.corners(other), surface.bounds(other));
@@ -348,17 +353,26 @@ impl ChainFinder {
             {
                 continue;
             }
-            let candidate = (side(other) != here, surface.area(other), other);
+            let candidate = (side(other) != here, surface.area(other), other, sense);
             if best.is_none_or(|b| (candidate.0, candidate.1) > (b.0, b.1)) {
                 best = Some(candidate);
             }
         }
-        best.map(|(continues, _, t)| (t, !continues))
+        best.map(|(continues, _, t, sense)| (t, sense, !continues))
     }
 
-    /// Condition 3, of the middle line.
-    fn is_crossed_oddly(&self, surface: &Surface, shaft: &Shaft) -> bool {
-        let mut n = 0u32;
+    /// Of a chain with a direction: whether its triangles agree at every edge within it that the lines in question may pass on both sides.
+    fn agrees(&mut self, surface: &Surface, shaft: &Shaft, left: Option<Side>) -> bool {
+        let outlines = self.chain.iter().flat_map(|&t| surface.mesh().outline_edges(t));
+        let mut edges: Vec<u32> =
+            outlines.copied().filter(|&e| self.ends.get(e).is_some_and(|ends| ends != 0)).collect();
+        edges.retain(|&edge| self.is_mixed(surface, shaft, edge));
+        edges.iter().all(|&edge| left.is_some_and(|side| side.misses(&shaft.cell, surface.edge(edge))))
+    }
+
+    /// Condition 3, of the middle line; in a chain with a direction more often in it than against it.
+    fn is_crossed(&self, surface: &Surface, shaft: &Shaft) -> bool {
+        let (mut n, mut along) = (0u32, 0i32);
         let [p, q] = shaft.line;
         let far = |b: &Aabb<3>, k: usize| {
             b.max[k] < p[k].min(q[k] - shaft.rounding[k]).next_down()
@@ -369,26 +383,31 @@ impl ChainFinder {
                 continue;
             }
             match crosses(shaft, surface.corners(t)) {
-                Some(crossed) => n += u32::from(crossed),
+                Some(0) => {}
+                Some(way) => {
+                    n += 1;
+                    along += i32::from(way * self.senses.get(t).unwrap_or(1));
+                }
                 None => return false,
             }
         }
-        n % 2 == 1
+        n % 2 == 1 && (!self.has_direction || along > 0)
     }
 }
 
 /// Rounding of `det` of three differences, as a share of the sum of magnitudes of its products.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// Whether the middle line crosses a triangle in its interior; none if that is not certain.
-fn crosses(shaft: &Shaft, [a, b, c]: [Point3; 3]) -> Option<bool> {
+/// Whether the middle line crosses a triangle in its interior: 1 from its front to its back, -1 the other way, 0 not; none if that is not
+/// certain.
+fn crosses(shaft: &Shaft, [a, b, c]: [Point3; 3]) -> Option<i8> {
     let [p, q] = shaft.line;
     let mut sides = [0i8; 3];
     for (side, [x, y]) in sides.iter_mut().zip([[a, b], [b, c], [c, a]]) {
         *side = sign(x, y, p, q, shaft.rounding);
     }
     if sides.contains(&1) && sides.contains(&-1) {
-        return Some(false);
+        return Some(0);
     }
     let end = sign(a, b, c, q, shaft.rounding);
     let start = sign(a, b, c, p, [0.0; 3]);
@@ -396,7 +415,7 @@ fn crosses(shaft: &Shaft, [a, b, c]: [Point3; 3]) -> Option<bool> {
         return None;
     }
     // A line that begins on a triangle crosses it there: condition 1 leaves only those that it comes to from behind.
-    Some(start != end)
+    Some(if start == end { 0 } else { -end })
 }
 
 /// The sign of `orient3d(a, b, c, d)` for every `d` within `radius`; 0 if it is not the same for all, or zero.

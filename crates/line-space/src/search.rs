@@ -128,7 +128,7 @@ impl Search {
             let gap = if is_ready {
                 surface.hits(shaft.line[0], shaft.line[1], &mut self.hits);
                 let finder = &mut self.finder;
-                self.hits.retain(|hit| finder.blocks(surface, hit.triangle));
+                self.hits.retain(|hit| finder.blocks(surface, &shaft, hit.triangle));
                 let is_free = self.hits.iter().all(|hit| hit.at > 1.0 - AT_END);
                 // A line of a root with parts may be none of those in question.
                 if is_free && parts.is_empty() {

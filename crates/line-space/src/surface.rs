@@ -1,7 +1,7 @@
 //! The surfaces of a scene, prepared for lines: a mesh, a tree of its triangles, and what estimates need.
 
 use crate::conform::conform;
-use sightlines_geometry::vector::{add, length, normal, scale, sub};
+use sightlines_geometry::vector::{add, dot, length, normal, scale, sub};
 use sightlines_geometry::{Aabb, BoxTree, Point3, orient3d, ray_box, ray_triangle};
 use sightlines_multifocal::mesh::Mesh;
 use std::collections::HashMap;
@@ -102,6 +102,23 @@ impl Surface {
         let [a, b, c] = self.corners(triangle);
         let sides = volume.corners().map(|eye| orient3d(a, b, c, eye));
         sides.iter().all(|&side| side >= 0.0) && sides.iter().any(|&side| side > 0.0)
+    }
+
+    /// Whether a line meets the front of a triangle, as doubles have it.
+    pub(crate) fn is_met_from_front(&self, triangle: u32, [p, q]: &[Point3; 2]) -> bool {
+        dot(normal(self.corners(triangle)), sub(*q, *p)) < 0.0
+    }
+
+    /// Whether the edge at a place of the outline of a triangle is passed from its lower end to its higher one: 1, or else -1.
+    pub(crate) fn way_along(&self, triangle: u32, place: usize) -> i8 {
+        let outline = self.mesh.outline(triangle);
+        if outline[place] < outline[(place + 1) % outline.len()] { 1 } else { -1 }
+    }
+
+    /// The same of an edge of the outline by its index. 1 if no triangle has a front, for then nothing depends on it.
+    pub(crate) fn way_at(&self, triangle: u32, edge: u32) -> i8 {
+        let place = self.mesh.outline_edges(triangle).iter().position(|&e| e == edge);
+        if self.has_fronts() { place.map_or(1, |place| self.way_along(triangle, place)) } else { 1 }
     }
 
     /// The largest magnitudes of coordinates.

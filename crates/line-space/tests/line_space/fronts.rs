@@ -29,6 +29,41 @@ fn mixed() -> impl Strategy<Value = Mixed> {
     })
 }
 
+/// Squares of a lattice, of which up to four meet at an edge, each with both sides or one of two: chains close there whose triangles do not
+/// agree.
+fn lattice() -> impl Strategy<Value = Mixed> {
+    let sides = || prop::collection::vec(0u8..8, 108);
+    sides().prop_map(|sides| {
+        let (mut both_sides, mut fronts) = (Soup::new(), Soup::new());
+        let mut sides = sides.into_iter();
+        for (axis, place) in (0..3).flat_map(|axis| (0..36).map(move |place| (axis, place))) {
+            let corner = |u: i32, v: i32| {
+                let mut p = [f64::from(place / 9); 3];
+                p[(axis + 1) % 3] = f64::from(place % 3 + u);
+                p[(axis + 2) % 3] = f64::from(place / 3 % 3 + v);
+                p
+            };
+            let square = quad([corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)], false);
+            match sides.next() {
+                Some(0 | 1) => both_sides.extend(square),
+                Some(2..5) => fronts.extend(square),
+                Some(5..7) => fronts.extend(square.map(turn)),
+                _ => {}
+            }
+        }
+        Mixed { both_sides, fronts }
+    })
+}
+
+/// The lower corner of a box in or around the lattice.
+fn corner() -> impl Strategy<Value = Point3> {
+    [-2i32..4, -2i32..4, -2i32..4].prop_map(|p| p.map(|x| f64::from(x) + 0.1))
+}
+
+fn turn([a, b, c]: [Point3; 3]) -> [Point3; 3] {
+    [a, c, b]
+}
+
 /// Whether a segment certainly touches a triangle nowhere. Exact.
 fn is_apart(p: Point3, q: Point3, &[a, b, c]: &[Point3; 3]) -> bool {
     let [from, to] = [p, q].map(|e| orient3d(a, b, c, e));
@@ -66,6 +101,23 @@ proptest! {
         for [v, e] in &pairs {
             if lines.see_box(v, e, BUDGET) == Outcome::Hidden {
                 let free = mixed.free_segment(v, e, seed, 200);
+                prop_assert!(free.is_none(), "{:?} to {:?}: {:?}", v, e, free);
+            }
+        }
+    }
+
+    /// Invariant: the same where many faces meet.
+    #[test]
+    fn nothing_that_is_seen_past_backs_of_a_lattice_is_hidden(
+        mixed in lattice(),
+        pairs in prop::collection::vec((corner(), corner()), 8),
+        seed in any::<u64>(),
+    ) {
+        let mut lines = mixed.lines();
+        let unit = |p: Point3| Aabb { min: p, max: p.map(|x| x + 0.8) };
+        for (v, e) in pairs.iter().map(|&(p, q)| (unit(p), unit(q))) {
+            if lines.see_box(&v, &e, BUDGET) == Outcome::Hidden {
+                let free = mixed.free_segment(&v, &e, seed, 500);
                 prop_assert!(free.is_none(), "{:?} to {:?}: {:?}", v, e, free);
             }
         }
@@ -130,4 +182,38 @@ fn walls_hide_from_the_front_and_on_floors() {
     let below = Aabb { min: [-4., -1., -3.], max: [-2., 1., -1.] };
     assert_eq!(lines.see_box(&unit(-4.), &below, BUDGET), Outcome::Hidden);
     assert_eq!(lines.see_box(&below, &unit(-4.), BUDGET), Outcome::Reached);
+}
+
+/// A screen of flat pieces around half of a target. No volume before it is in front of all pieces: what blocks is the screen as a whole, from
+/// outside only.
+#[test]
+fn bent_screens_hide_from_volumes_that_reach_behind_their_pieces() {
+    let n = 8;
+    let at = |i: i32, z: f64| {
+        let angle = std::f64::consts::PI * f64::from(i) / f64::from(n);
+        [-6.0 * angle.sin(), 6.0 * angle.cos(), z]
+    };
+    let pieces = |i: i32| quad([at(i, -20.0), at(i, 20.0), at(i + 1, 20.0), at(i + 1, -20.0)], false);
+    let screen = |turned: bool| -> Soup { (0..n).flat_map(pieces).map(|t| if turned { turn(t) } else { t }).collect() };
+    let volume = Aabb { min: [-9.0, -5.0, 0.0], max: [-8.0, 5.0, 1.0] };
+    let target = Aabb { min: [-1.0, -1.0, 0.0], max: [0.0, 1.0, 1.0] };
+    let outcomes = [false, true].map(|turned| {
+        let fronts = screen(turned);
+        let behind_some = fronts.iter().any(|t| volume.corners().iter().any(|&p| orient3d(t[0], t[1], t[2], p) < 0.0));
+        assert!(behind_some);
+        LineSpace::with_fronts(&[], &fronts).see_box(&volume, &target, BUDGET)
+    });
+    assert!(outcomes.contains(&Outcome::Hidden) && outcomes.contains(&Outcome::Reached), "{outcomes:?}");
+    // The same from within: blocked by the other screen.
+    for (turned, outcome) in [false, true].into_iter().zip(outcomes) {
+        let inside = LineSpace::with_fronts(&[], &screen(turned)).see_box(&target, &volume, BUDGET);
+        assert_ne!(inside, outcome);
+    }
+    // A piece that is turned round lets lines pass.
+    let hiding = screen(outcomes[1] == Outcome::Hidden);
+    let gap: Soup = hiding.iter().enumerate().map(|(k, &t)| if k / 2 == 3 { turn(t) } else { t }).collect();
+    assert_eq!(LineSpace::with_fronts(&[], &gap).see_box(&volume, &target, BUDGET), Outcome::Reached);
+    // With the pieces before it, it hides again.
+    let both: Soup = hiding.into_iter().chain(gap).collect();
+    assert_eq!(LineSpace::with_fronts(&[], &both).see_box(&volume, &target, BUDGET), Outcome::Hidden);
 }
