@@ -6,6 +6,7 @@ pub mod chart;
 pub mod child;
 pub mod codings;
 pub mod cpu;
+pub mod front;
 pub mod path;
 pub mod program;
 pub mod quake;

@@ -2,7 +2,6 @@
 
 use super::older::BoxTreeN;
 use super::panels::time_against_over;
-use super::plot::Panel;
 use super::row::Row;
 use super::{ChartError, Family, Settings};
 use sightlines::bake::quake::bake_map;
@@ -15,6 +14,7 @@ use sightlines::pvs::{CellId, ObjectId, Table};
 use sightlines::scenes::{OfficeOptions, office};
 use sightlines::visible_surface::{Camera, FaceMask, Faces, RayCaster, RenderInput, VisibleSurface};
 use sightlines::walkthrough::{CameraPose, wander};
+use sightlines_benches::chart::Panel;
 use sightlines_benches::spec::SceneSpec;
 use std::convert::Infallible;
 use std::hint::black_box;

@@ -1,13 +1,12 @@
 //! Time and memory against the size of scenes, with fitted exponents; each run in a process of its own.
 
 use super::clock::{SHORT, timed};
-use super::plot::{Panel, Point, Series};
 use super::row::Row;
 use super::{ChartError, Family, Settings};
 use sightlines::bake::{PlanBakeOptions, SceneBakeOptions, bake_plan, bake_scene};
 use sightlines::scenes::{OfficeOptions, TowerOptions, office, tower};
 use sightlines::stabtree::{ConvexOptions, ConvexSearch};
-use sightlines_benches::chart::exponent;
+use sightlines_benches::chart::{Panel, Point, Series, exponent};
 use sightlines_benches::quake::MapSpec;
 use std::process::{Command, Stdio};
 

@@ -1,27 +1,26 @@
 //! Charts of speed against accuracy: each family of methods measured on the same scenes, and pictures of that.
 //!
 //! Measuring and drawing are separate. Measuring writes one CSV for each family ([`row`]); drawing reads nothing else and
-//! gives the same bytes for the same rows ([`plot`], [`page`]). Times differ from machine to machine, so each row says on
+//! gives the same bytes for the same rows ([`chart`], [`page`]). Times differ from machine to machine, so each row says on
 //! which it was measured, and by which state of the program; shares do not.
 
 pub mod cell_to_cell;
 pub mod certificates;
 mod clock;
 pub mod eye_to_cell;
-pub mod front;
 pub mod growth;
 pub mod multifocal;
 pub mod older;
 pub mod packed;
 pub mod page;
 pub mod panels;
-pub mod plot;
 pub mod row;
 pub mod simplify;
 mod slow_stabbers;
 pub mod visible_surface;
 
 use row::{Row, RowError};
+use sightlines_benches::chart;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -43,7 +42,7 @@ pub trait Family {
     fn measure(&self, settings: &Settings) -> Result<Vec<Row>, ChartError>;
 
     /// The panels of its picture, from rows alone.
-    fn panels(&self, rows: &[Row]) -> Vec<plot::Panel>;
+    fn panels(&self, rows: &[Row]) -> Vec<chart::Panel>;
 }
 
 /// All families, in the order of the page.
@@ -93,9 +92,6 @@ pub enum ChartError {
         /// What is wrong with it.
         source: RowError,
     },
-    /// A picture that cannot be drawn.
-    #[error(transparent)]
-    Plot(#[from] plot::PlotError),
     /// No family has that name.
     #[error("there is no family '{name}', only {known}")]
     Family {
@@ -174,13 +170,13 @@ pub fn draw(out: &Path, families: &[Box<dyn Family>]) -> Result<(), ChartError> 
         let text = std::fs::read_to_string(&path).map_err(|source| ChartError::File { path: path.clone(), source })?;
         let rows = row::read(&text).map_err(|source| ChartError::Row { path: path.clone(), source })?;
         let panels = family.panels(&rows);
-        let svg = plot::svg(family.title(), &panels)?;
+        let svg = chart::svg(family.title(), &panels);
         front.extend(panels.into_iter().filter(|panel| is_in_front(family.name(), &panel.title)));
         save(&path.with_extension("svg"), &svg)?;
         sections.push(page::Section { name: family.name(), title: family.title(), about: family.about(), svg, rows });
     }
     if !front.is_empty() {
-        save(&out.join("front.svg"), &plot::svg("Speed against accuracy, and growth", &front)?)?;
+        save(&out.join("front.svg"), &chart::svg("Speed against accuracy, and growth", &front))?;
     }
     save(&out.join("index.html"), &page::html(&sections))
 }

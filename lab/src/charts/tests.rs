@@ -1,7 +1,7 @@
 //! What is measured is written, read and drawn; the same rows give the same bytes.
 
 use super::*;
-use crate::charts::plot::Panel;
+use sightlines_benches::chart::Panel;
 
 /// A family that takes no time.
 struct Made;
