@@ -11,6 +11,7 @@ use sightlines::kdtree::{SceneOptions, subdivide_scene};
 use sightlines::scenes::{TowerOptions, tower};
 use sightlines::stabtree::{AxialVisibility, SearchOptions, axial_visibility};
 use sightlines_benches::chart::{Panel, Series, svg};
+use sightlines_benches::measure::median;
 use sightlines_benches::program::{Common, Files, exit, read_rows, save};
 use std::error::Error;
 use std::path::PathBuf;
@@ -267,11 +268,6 @@ fn doors_of_floor(live: &LiveScene, floor: u32, n: usize) -> Vec<PortalId> {
     let portals = (0u32..).map(PortalId).zip(live.graph().portals());
     let doors: Vec<PortalId> = portals.filter(|(_, p)| is_door(&p.shape.extent)).map(|(id, _)| id).collect();
     spread(&doors, n).copied().collect()
-}
-
-fn median(mut numbers: Vec<f64>) -> f64 {
-    numbers.sort_unstable_by(f64::total_cmp);
-    numbers[numbers.len() / 2]
 }
 
 fn write(rows: &[Row]) -> String {

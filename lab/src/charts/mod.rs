@@ -6,7 +6,6 @@
 
 pub mod cell_to_cell;
 pub mod certificates;
-mod clock;
 pub mod eye_to_cell;
 pub mod growth;
 pub mod multifocal;
@@ -20,7 +19,9 @@ mod slow_stabbers;
 pub mod visible_surface;
 
 use row::{Row, RowError};
+use sightlines::formats::files::{WriteError, atomic_write};
 use sightlines_benches::chart;
+use sightlines_benches::measure::quickest;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -76,7 +77,7 @@ pub struct Settings {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ChartError {
-    /// A file that cannot be read or written.
+    /// A file that cannot be read, or a folder that cannot be made.
     #[error("{}: {source}", path.display())]
     File {
         /// Its path.
@@ -84,6 +85,9 @@ pub enum ChartError {
         /// Why not.
         source: std::io::Error,
     },
+    /// A file that cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
     /// A file that is no chart's.
     #[error("{}: {source}", path.display())]
     Row {
@@ -150,7 +154,7 @@ pub fn run(task: &Task, settings: &Settings) -> Result<(), ChartError> {
             let start = Instant::now();
             let rows = family.measure(settings)?;
             eprintln!("{}: {} rows in {:.1} s", family.name(), rows.len(), start.elapsed().as_secs_f64());
-            save(&task.out.join(family.name()).with_extension("csv"), &row::write(&rows))?;
+            atomic_write(task.out.join(family.name()).with_extension("csv"), row::write(&rows).as_bytes())?;
         }
     }
     draw(&task.out, &families)
@@ -172,13 +176,14 @@ pub fn draw(out: &Path, families: &[Box<dyn Family>]) -> Result<(), ChartError> 
         let panels = family.panels(&rows);
         let svg = chart::svg(family.title(), &panels);
         front.extend(panels.into_iter().filter(|panel| is_in_front(family.name(), &panel.title)));
-        save(&path.with_extension("svg"), &svg)?;
+        atomic_write(path.with_extension("svg"), svg.as_bytes())?;
         sections.push(page::Section { name: family.name(), title: family.title(), about: family.about(), svg, rows });
     }
     if !front.is_empty() {
-        save(&out.join("front.svg"), &chart::svg("Speed against accuracy, and growth", &front))?;
+        let svg = chart::svg("Speed against accuracy, and growth", &front);
+        atomic_write(out.join("front.svg"), svg.as_bytes())?;
     }
-    save(&out.join("index.html"), &page::html(&sections))
+    Ok(atomic_write(out.join("index.html"), page::html(&sections).as_bytes())?)
 }
 
 /// Whether a panel is one of the few that matter most: a scene of each kind, and how time grows.
@@ -189,13 +194,6 @@ fn is_in_front(family: &str, title: &str) -> bool {
         _ => &[],
     };
     first.iter().any(|first| title.starts_with(first))
-}
-
-/// Writes a file beside and renames it, so that no reader sees half of one.
-fn save(path: &Path, text: &str) -> Result<(), ChartError> {
-    let beside = path.with_extension("part");
-    let saved = std::fs::write(&beside, text).and_then(|()| std::fs::rename(&beside, path));
-    saved.map_err(|source| ChartError::File { path: path.to_owned(), source })
 }
 
 impl Settings {
@@ -225,15 +223,8 @@ impl Settings {
 
     /// What something gives, the seconds of the quickest run, and of how many. Those below a second are repeated, 3 times in the
     /// quick form and 5 times else.
-    pub(crate) fn best_of<T>(&self, mut run: impl FnMut() -> T) -> (T, f64, u32) {
-        let (mut value, mut seconds) = clock::timed(&mut run);
-        let mut repeats = 1;
-        while repeats < self.pick(3, 5) && seconds < clock::SHORT {
-            let (again, time) = clock::timed(&mut run);
-            (value, seconds) = (again, seconds.min(time));
-            repeats += 1;
-        }
-        (value, seconds, repeats)
+    pub(crate) fn best_of<T>(&self, run: impl FnMut() -> T) -> (T, f64, u32) {
+        quickest(self.pick(3, 5), run)
     }
 }
 
