@@ -72,8 +72,13 @@ impl VisibilityGraph {
             runs_of(list, point, runs);
             ascends.then(|| Box::<[Run]>::from(&runs[..])).ok_or(GraphError::Row { point, n_points })
         };
-        let fits = &|row: &Box<[Run]>, point: usize| fits_row(row, point, n_points as usize);
-        let stage = Stage { title: "what points see", phase: "sight", size: UNIT, cost: &|_| 1.0, fits };
+        let stage = Stage::<Box<[Run]>> {
+            title: "what points see",
+            phase: "sight",
+            size: UNIT,
+            cost: &|_| 1.0,
+            fits: &|row, point| fits_row(row, point, n_points as usize),
+        };
         Ok(Self { rows: effort.each(&stage, n_points as usize, state, row)? })
     }
 
