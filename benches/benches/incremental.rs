@@ -11,6 +11,7 @@ use sightlines::kdtree::{SceneOptions, subdivide_scene};
 use sightlines::scenes::{TowerOptions, tower};
 use sightlines::stabtree::{AxialVisibility, SearchOptions, axial_visibility};
 use sightlines_benches::chart::{Panel, Series, svg};
+use sightlines_benches::measure::median;
 use sightlines_benches::program::{Common, Files, exit, read_rows, save};
 use std::error::Error;
 use std::path::PathBuf;
@@ -269,11 +270,6 @@ fn doors_of_floor(live: &LiveScene, floor: u32, n: usize) -> Vec<PortalId> {
     spread(&doors, n).copied().collect()
 }
 
-fn median(mut numbers: Vec<f64>) -> f64 {
-    numbers.sort_unstable_by(f64::total_cmp);
-    numbers[numbers.len() / 2]
-}
-
 fn write(rows: &[Row]) -> String {
     let line = |row: &Row| {
         let numbers: Vec<String> = row.numbers.iter().map(f64::to_string).collect();
@@ -339,18 +335,18 @@ fn chart(rows: &[Row]) -> String {
     threads.dedup();
     let series = |threads: usize, kind: usize, column: usize, name: &str| {
         let wanted = rows.iter().filter(move |r| (r.threads, r.kind) == (threads, kind));
-        Series { name: name.to_owned(), points: wanted.map(|r| [f64::from(r.floors), r.numbers[column]]).collect() }
+        Series::line(name, wanted.map(|r| [f64::from(r.floors), r.numbers[column]]).collect())
     };
     for &n in &threads {
         let mut times: Vec<Series> = vec![series(n, 0, REBUILD, "rebuild")];
         times.extend([0, 1, 2, 4, 5].map(|kind| series(n, kind, UPDATE, KINDS[kind])));
         let title = format!("seconds, threads: {n}");
-        panels.push(Panel { title, x_name: "floors".into(), series: times });
+        panels.push(Panel::of_lines(title, "floors", times));
     }
     for &n in &threads {
         let faster = (0..KINDS.len()).map(|kind| series(n, kind, FASTER, KINDS[kind])).collect();
         let title = format!("times faster, threads: {n}");
-        panels.push(Panel { title, x_name: "floors".into(), series: faster });
+        panels.push(Panel::of_lines(title, "floors", faster));
     }
     svg("Towers that change: updates against rebuilds", &panels)
 }

@@ -10,7 +10,7 @@ use sightlines::formats::doom::{DoomMap, choose_map, list_maps};
 use sightlines::geometry::{Point2, Random, Segment2};
 use sightlines::isovist::{Isovist, Touch, Viewer, WallMesh};
 use sightlines::scenes::{OfficeOptions, doom_like, office};
-use sightlines_benches::cpu::CpuClock;
+use sightlines_benches::measure::{CpuClock, Work};
 use sightlines_benches::program::{Common, exit};
 use std::error::Error;
 use std::hint::black_box;
@@ -89,7 +89,7 @@ fn eyes(plan: &Plan, n: usize) -> Vec<Point2> {
 fn measure(args: &Args, name: &str, plan: &Plan) -> Result<(), Box<dyn Error>> {
     let walls: Vec<Segment2> =
         plan.lines().iter().filter(|line| line.opaque).map(|line| Segment2::new(line.a, line.b)).collect();
-    let start = CpuClock::start();
+    let start = CpuClock::start(Work::Thread);
     let mesh = WallMesh::new(plan)?;
     let mesh_ms = start.elapsed().as_secs_f64() * 1e3;
     let eyes = eyes(plan, if args.common.test { 50 } else { args.eyes });
@@ -103,13 +103,13 @@ fn measure(args: &Args, name: &str, plan: &Plan) -> Result<(), Box<dyn Error>> {
     let rounds = if args.common.test { 1 } else { 5 };
     for _ in 0..rounds {
         n_vertices = 0;
-        let start = CpuClock::start();
+        let start = CpuClock::start(Work::Thread);
         for &eye in &eyes {
             viewer.look(eye, &mut isovist)?;
             n_vertices += black_box(&isovist).vertices().len();
         }
         best = best.min(start.elapsed().as_secs_f64());
-        let start = CpuClock::start();
+        let start = CpuClock::start(Work::Thread);
         for &eye in &eyes {
             viewer.look(eye, &mut isovist)?;
             black_box(isovist.measures());
@@ -118,12 +118,12 @@ fn measure(args: &Args, name: &str, plan: &Plan) -> Result<(), Box<dyn Error>> {
     }
     let n = eyes.len() as f64;
     let pairs: Vec<(Point2, Point2)> = eyes.windows(2).map(|pair| (pair[0], pair[1])).collect();
-    let start = CpuClock::start();
+    let start = CpuClock::start(Work::Thread);
     for &(a, b) in &pairs {
         black_box(mesh.sees(a, b, Touch::Blocks)?);
     }
     let sees = start.elapsed().as_secs_f64() / pairs.len() as f64;
-    let start = CpuClock::start();
+    let start = CpuClock::start(Work::Thread);
     for &(a, b) in pairs.iter().take(500) {
         black_box(plain(a, b));
     }

@@ -11,7 +11,7 @@ use sightlines::pvs::{
     BitMatrix, CellId, CellRecord, Locator, ObjectId, ObjectRecord, PlaceBuffer, PortalRecord, Table, TableKind,
     TableParts,
 };
-use sightlines_benches::child::memory_of;
+use sightlines_benches::measure::{median, memory_of};
 use sightlines_benches::program::{Common, exit};
 use sightlines_testkit::mutate::SplitMix;
 use std::error::Error;
@@ -355,10 +355,6 @@ fn ask(path: &Path, city: &City, args: &Args) -> Result<[f64; 8], Box<dyn Error>
         packed.visible(here[0], &mut cells)?;
         firsts.push(micros(start));
     }
-    let median = |mut times: Vec<f64>| {
-        times.sort_by(f64::total_cmp);
-        times[times.len() / 2]
-    };
     let mut times = vec![median(opens), median(firsts)];
     let near = city.place_of.len().min(4096);
     let first = random.below(city.place_of.len() - near + 1);

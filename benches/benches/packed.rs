@@ -16,7 +16,7 @@ use sightlines::pvs::{
 };
 use sightlines::scenes;
 use sightlines_benches::codings::{CodedRows, RowCoding, unpack_runs, zero_runs};
-use sightlines_benches::program::{Common, exit};
+use sightlines_benches::program::{Common, exit, save};
 use sightlines_benches::spec::SceneSpec;
 use sightlines_packed::{Distinct, PackError, PackOptions, Packed, pack_report};
 use sightlines_testkit::mutate::SplitMix;
@@ -94,9 +94,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let text = markdown(&rows) + &large;
     println!("{text}");
     for (path, text) in [(&args.csv, csv(&rows)), (&args.md, text)] {
-        if let Some(path) = path {
-            std::fs::write(path, text).map_err(|e| format!("{}: {e}", path.display()))?;
-        }
+        save(path.as_deref(), || text)?;
     }
     Ok(())
 }

@@ -6,10 +6,11 @@
 
 use clap::Parser;
 use sightlines::pvs::BitMatrix;
-use sightlines_benches::program::Common;
+use sightlines_benches::measure::{CpuClock, Work};
+use sightlines_benches::program::{Common, save};
 use sightlines_benches::quake::MapSpec;
 use sightlines_benches::quake::chart::svg;
-use sightlines_benches::quake::job::{self, Answer, METHODS, Measured, Method, cpu_seconds};
+use sightlines_benches::quake::job::{self, Answer, METHODS, Measured, Method};
 use sightlines_benches::quake::rows::{Row, both_ways, csv, known, markdown, n_missing, n_pairs, of_map, put, read};
 use sightlines_tests::{data_folder, files};
 use std::collections::BTreeSet;
@@ -132,9 +133,7 @@ fn specs(args: &Args) -> Result<Vec<MapSpec>, Box<dyn Error>> {
 fn write(args: &Args, rows: &[Row]) -> Result<(), Box<dyn Error>> {
     let texts = [(&args.csv, csv(rows)), (&args.md, markdown(rows)), (&args.svg, svg(rows))];
     for (path, text) in texts {
-        if let Some(path) = path {
-            std::fs::write(path, text).map_err(|e| format!("{}: {e}", path.display()))?;
-        }
+        save(path.as_deref(), || text)?;
     }
     Ok(())
 }
@@ -206,9 +205,9 @@ fn prove(map: &str, answers: &[(Method, Answer)], rows: &mut [Row]) {
 
 /// The walk, and then its pairs taken both ways.
 fn symmetric((mut measured, walked): (Measured, Answer)) -> (Measured, Answer) {
-    let before = cpu_seconds();
+    let clock = CpuClock::start(Work::Threads);
     let table = both_ways(&walked.table);
-    measured.cpu += before.zip(cpu_seconds()).map_or(0.0, |(before, now)| now - before);
+    measured.cpu += clock.elapsed().as_secs_f64();
     (measured, Answer { table, ..walked })
 }
 

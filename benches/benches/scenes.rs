@@ -8,7 +8,7 @@ use sightlines::bake::PortalMode;
 use sightlines::cells::Scene;
 use sightlines::pvs::{ObjectId, Table};
 use sightlines_benches::child::{self, Job, Limits, Measured, Outcome, portals_name, portals_of};
-use sightlines_benches::program::Common;
+use sightlines_benches::program::{Common, save};
 use sightlines_benches::recorded::{Hidden, compare};
 use sightlines_benches::spec::SceneSpec;
 use sightlines_benches::witness::{Missing, Pair, RayOptions, Verdict, judge};
@@ -131,9 +131,7 @@ fn measure(args: &Args) -> Result<Report, Box<dyn std::error::Error>> {
             break;
         }
         for (path, text) in [(&args.csv, csv(&report.rows)), (&args.md, markdown(&report.rows) + &report.recorded)] {
-            if let Some(path) = path {
-                std::fs::write(path, text).map_err(|e| format!("{}: {e}", path.display()))?;
-            }
+            save(path.as_deref(), || text)?;
         }
     }
     std::fs::remove_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;

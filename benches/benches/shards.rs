@@ -4,13 +4,13 @@
 //! end at about the same time, the job takes the time of one divided by their number.
 
 use clap::Parser;
+use sightlines_benches::measure::{CpuClock, Work};
 use sightlines_benches::program::{Common, exit};
 use sightlines_testkit::mutate::SplitMix;
 use std::error::Error;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
-use std::time::Instant;
 
 /// Jobs beside one process.
 #[derive(Debug, Clone, Parser)]
@@ -52,16 +52,6 @@ struct Cost {
     cpu: f64,
 }
 
-/// Seconds of processors that all ended children of this process have taken, and theirs; Linux only.
-fn of_children() -> Option<f64> {
-    let text = std::fs::read_to_string("/proc/self/stat").ok()?;
-    // The name of the program, which comes second, may have spaces.
-    let fields: Vec<&str> = text.rsplit_once(')')?.1.split_whitespace().collect();
-    let ticks: f64 = fields.get(13)?.parse::<f64>().ok()? + fields.get(14)?.parse::<f64>().ok()?;
-    // Linux counts a hundred of them in a second.
-    Some(ticks / 100.0)
-}
-
 struct Bench {
     program: PathBuf,
     folder: PathBuf,
@@ -70,15 +60,14 @@ struct Bench {
 impl Bench {
     /// Runs a command line, words with spaces between them, and returns what it took.
     fn run(&self, line: &str) -> Result<Cost, Box<dyn Error>> {
-        let (before, start) = (of_children(), Instant::now());
+        let clock = CpuClock::start(Work::Children);
         let mut command = Command::new(&self.program);
         command.args(line.split(' ')).arg("-q").current_dir(&self.folder).stdout(Stdio::null());
         let status = command.status().map_err(|error| format!("{}: {error}", self.program.display()))?;
         if !status.success() {
             return Err(format!("{line}: {status}").into());
         }
-        let wall = start.elapsed().as_secs_f64();
-        let cpu = of_children().zip(before).map_or(wall, |(after, before)| after - before);
+        let [wall, cpu] = [clock.wall(), clock.elapsed()].map(|time| time.as_secs_f64());
         Ok(Cost { wall, cpu })
     }
 

@@ -14,7 +14,7 @@ use sightlines::formats::quake::{Prt, read_prt};
 use sightlines::pvs::{CellId, StabTrees, Table};
 use sightlines::scenes::world::{QuakeLikeOptions, quake_like};
 use sightlines::scenes::{OfficeOptions, office};
-use sightlines_benches::program::{Common, exit};
+use sightlines_benches::program::{Common, exit, save};
 use sightlines_benches::spec::SceneSpec;
 use sightlines_tests::data_folder;
 use sightlines_tests::world_files::prt_of_world;
@@ -102,9 +102,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         check(&rows);
     }
     for (path, text) in [(&args.csv, csv(&rows)), (&args.md, markdown(&rows))] {
-        if let Some(path) = path {
-            std::fs::write(path, text).map_err(|e| format!("{}: {e}", path.display()))?;
-        }
+        save(path.as_deref(), || text)?;
     }
     println!("{}", markdown(&rows));
     Ok(())

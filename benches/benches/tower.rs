@@ -194,10 +194,10 @@ fn fitted(name: &str, points: &[[f64; 2]]) -> String {
 fn chart(rows: &[Row]) -> String {
     let series = |name: &str, y: &dyn Fn(&Row) -> f64| {
         let points = points(rows, y);
-        Series { name: fitted(name, &points), points }
+        Series::line(fitted(name, &points), points)
     };
     let mib = |column: usize| move |row: &Row| row[column] / f64::from(1 << 20);
-    let panel = |title: &str, series: Vec<Series>| Panel { title: title.into(), x_name: "floors".into(), series };
+    let panel = |title: &str, series: Vec<Series>| Panel::of_lines(title, "floors", series);
     let panels = [
         panel("time, seconds", vec![series("cut", &|r| r[CUT]), series("see", &|r| r[SEE])]),
         panel("memory, MiB", vec![series("peak", &mib(PEAK)), series("table", &mib(BYTES))]),

@@ -13,6 +13,7 @@ use sightlines::formats::{SceneInfo, ViewCell, ViewCells};
 use sightlines::geometry::Aabb;
 use sightlines::pvs::{CellId, ObjectId};
 use sightlines::scenes::{CityOptions, TowerOptions};
+use sightlines_benches::measure::{CpuClock, Work};
 use sightlines_benches::program::{Common, exit};
 use sightlines_benches::targets::Targets;
 use sightlines_benches::viewed::{ViewedScene, evenly};
@@ -21,8 +22,6 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::error::Error;
 use std::path::Path;
 use std::process::ExitCode;
-use std::sync::OnceLock;
-use std::time::Instant;
 
 /// Turned, scaled and moved scenes against rays, and against the scenes as they were.
 #[derive(Debug, Clone, Parser)]
@@ -230,18 +229,6 @@ fn reached(
     found
 }
 
-/// Seconds that this process has worked, by the system's count of hundredths, so that others who use the machine count less; by the clock where
-/// the system does not tell.
-fn seconds() -> f64 {
-    static START: OnceLock<Instant> = OnceLock::new();
-    let by_clock = START.get_or_init(Instant::now).elapsed().as_secs_f64();
-    // Behind the name in parentheses come the state and ten numbers, then user and system time.
-    let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
-    let fields = stat.rsplit_once(')').map_or("", |(_, rest)| rest).split_whitespace();
-    let ticks: Vec<u64> = fields.skip(11).take(2).filter_map(|n| n.parse().ok()).collect();
-    if let [user, system] = ticks[..] { (user + system) as f64 / 100.0 } else { by_clock }
-}
-
 /// A row of the table.
 struct Row {
     pairs: usize,
@@ -264,9 +251,9 @@ fn row(case: &Case, change: &Change, args: &Args, info: &SceneInfo) -> Result<Ro
         ..BakeRequest::default()
     };
     let runtime = Runtime { threads: args.threads, ..Runtime::default() };
-    let start = seconds();
+    let clock = CpuClock::start(Work::Process);
     let Baked { table, .. } = runtime.bake(BakeInput::Scene(&scene, Some(info)), &request)?;
-    let seconds = seconds() - start;
+    let seconds = clock.elapsed().as_secs_f64();
     let (rays, targets) = (RayScene::new(&scene), Targets::new(&scene));
     let gap = table.frame().map_or(0.0, |frame| frame.gap());
     let mut row = Row { pairs: 0, seconds, gap, known: 0, missing_known: 0, reached: 0, missing: [0; 2] };

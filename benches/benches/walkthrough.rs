@@ -15,7 +15,7 @@ use sightlines::pvs::{ObjectId, Table};
 use sightlines::scenes::{TowerOptions, tower};
 use sightlines_benches::child::portals_of;
 use sightlines_benches::path::{CameraPose, walk};
-use sightlines_benches::program::Common;
+use sightlines_benches::program::{Common, save};
 use sightlines_benches::raster::{Camera, Drawn, Picture};
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -113,9 +113,7 @@ fn run(args: &Args) -> Result<usize, Box<dyn Error>> {
             eprintln!("WRONG frame {k}, {way}: {} pixels differ, at {:?}", f.n_wrong, poses[k]);
         }
     }
-    if let Some(path) = &args.csv {
-        std::fs::write(path, csv(&frames)).map_err(|e| format!("{}: {e}", path.display()))?;
-    }
+    save(args.csv.as_deref(), || csv(&frames))?;
     report(&scene, &frames, [width, height]);
     if args.common.test {
         check(&scene, &table, &poses, &frames);

@@ -1,5 +1,6 @@
 //! One bake in a process of its own, so that its peak of memory is its own and it can be stopped.
 
+use crate::measure::{memory_of, peak};
 use crate::spec::SceneSpec;
 use sightlines::bake::{PortalMode, SceneBakeOptions, bake_scene};
 use sightlines::kdtree::SceneOptions;
@@ -103,7 +104,7 @@ pub fn serve() {
 
 /// If this process was started with `word` as its first argument, prints what `answer` makes of the others and ends;
 /// else does nothing.
-pub(crate) fn serve_jobs(word: &str, answer: impl Fn(&[String]) -> Result<String, Box<dyn std::error::Error>>) {
+pub fn serve_jobs(word: &str, answer: impl Fn(&[String]) -> Result<String, Box<dyn std::error::Error>>) {
     let args: Vec<String> = std::env::args().skip(1).collect();
     if args.first().is_none_or(|a| a != word) {
         return;
@@ -144,7 +145,7 @@ pub fn bake(job: &Job) -> Result<Measured, Box<dyn std::error::Error>> {
     let options = SceneBakeOptions { cut, portals: job.portals, threads: job.threads, ..SceneBakeOptions::default() };
     let baked = bake_scene(&scene, &options).map_err(|error| format!("{}: {error}", job.spec))?;
     // Before the table is written: only a program that writes files pays for that.
-    let peak = memory_of("self", "VmHWM:").unwrap_or(0);
+    let peak = peak();
     let bytes = baked.table.to_bytes();
     if let Some(path) = &job.table {
         std::fs::write(path, &bytes).map_err(|error| format!("{}: {error}", path.display()))?;
@@ -207,13 +208,6 @@ fn watch(mut child: Child, limits: &Limits) -> Outcome {
     let Ok(output) = child.wait_with_output() else { return Outcome::Failed };
     let measured = output.status.success().then(|| from_text(&String::from_utf8_lossy(&output.stdout))).flatten();
     measured.map_or(Outcome::Failed, Outcome::Done)
-}
-
-/// A line such as `VmHWM:   1234 kB` of what the system says about a process, in bytes.
-pub fn memory_of(process: &str, key: &str) -> Option<u64> {
-    let status = std::fs::read_to_string(format!("/proc/{process}/status")).ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix(key))?;
-    line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)
 }
 
 fn to_text(m: &Measured) -> String {

@@ -1,11 +1,12 @@
 //! What benches share: portal sequences as a search meets them, bakes in processes of their own, rays against
-//! tables, a z-buffer, methods on Quake maps, scenes with boxes for eyes, rows of files, charts.
+//! tables, a z-buffer, methods on Quake maps, scenes with boxes for eyes, rows of files, charts, what things take.
 
 pub mod bits;
 pub mod chart;
 pub mod child;
 pub mod codings;
-pub mod cpu;
+pub mod front;
+pub mod measure;
 pub mod path;
 pub mod program;
 pub mod quake;

@@ -1,5 +1,6 @@
 //! What the programs of the benches share: arguments, exit codes, files of rows.
 
+use sightlines::formats::files::atomic_write;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -71,13 +72,13 @@ impl Files {
     }
 }
 
-/// Writes a file, if one was named.
+/// Writes a file as a whole, if one was named.
 ///
 /// # Errors
 /// With the name of the file.
 pub fn save(path: Option<&Path>, text: impl FnOnce() -> String) -> Result<(), String> {
     match path {
-        Some(path) => std::fs::write(path, text()).map_err(|error| format!("{}: {error}", path.display())),
+        Some(path) => atomic_write(path, text().as_bytes()).map_err(|error| error.to_string()),
         None => Ok(()),
     }
 }

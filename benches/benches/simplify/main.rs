@@ -115,11 +115,11 @@ fn chart(rows: &[Row]) -> String {
                 .map(|r| [r.budget, y(r)])
                 .collect();
             points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
-            Series { name: format!("{scene}, {metric}"), points }
+            Series::line(format!("{scene}, {metric}"), points)
         };
         scenes.iter().map(line).collect()
     };
-    let panel = |title: &str, series: Vec<Series>| Panel { title: title.into(), x_name: "budget".into(), series };
+    let panel = |title: &str, series: Vec<Series>| Panel::of_lines(title, "budget", series);
     let left = |r: &Row| r.left as f64 / r.before as f64;
     let panels = [
         panel("share of triangles left", lines("intercepts", false, left)),

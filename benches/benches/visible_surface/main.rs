@@ -94,9 +94,9 @@ fn chart(rows: &[Row]) -> String {
     let of = |family: &str, method: &str, y: &dyn Fn(&Row) -> f64| {
         let rows = rows.iter().filter(|r| r.family == family && r.method == method);
         let points = rows.map(|r| [r.faces as f64, y(r)]).collect();
-        Series { name: method.to_owned(), points }
+        Series::line(method, points)
     };
-    let panel = |title: &str, series: Vec<Series>| Panel { title: title.into(), x_name: "faces".into(), series };
+    let panel = |title: &str, series: Vec<Series>| Panel::of_lines(title, "faces", series);
     let ms = |r: &Row| r.draw_s * 1e3;
     let panels = [
         panel(

@@ -1,7 +1,7 @@
 //! One method on one map, in a process of its own: its time and its peak of memory are its own.
 
 use super::{MapError, MapSpec, matrix_of};
-use crate::child::memory_of;
+use crate::measure::{CpuClock, Work, peak};
 use sightlines::cells::{CellGraph, Convex};
 use sightlines::pvs::BitMatrix;
 use sightlines::stabtree::{ConvexOptions, ConvexSearch};
@@ -11,7 +11,6 @@ use std::fmt;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::str::FromStr;
-use std::time::Instant;
 
 /// First argument of a process that runs one method and says what it took.
 const JOB: &str = "--quake-job";
@@ -140,11 +139,8 @@ fn answer(args: &[String]) -> Result<Measured, Box<dyn std::error::Error>> {
 /// Runs a method in this process; after `limit` seconds of processor time it is stopped at the next occasion, and what
 /// is not decided by then counts as visible. The peak is that of the process.
 pub fn measure(graph: &CellGraph<Convex>, method: Method, threads: usize, limit: f64) -> (Measured, Answer) {
-    let (wall, cpu) = (Instant::now(), cpu_seconds());
-    let took = || match (cpu, cpu_seconds()) {
-        (Some(before), Some(now)) => now - before,
-        _ => wall.elapsed().as_secs_f64(),
-    };
+    let clock = CpuClock::start(Work::Threads);
+    let took = || clock.elapsed().as_secs_f64();
     let mut measured = Measured { done: 1.0, ..Measured::default() };
     let mut undecided = Vec::new();
     let table = match method {
@@ -184,23 +180,10 @@ pub fn measure(graph: &CellGraph<Convex>, method: Method, threads: usize, limit:
         }
     };
     measured.cpu = took();
-    measured.wall = wall.elapsed().as_secs_f64();
+    measured.wall = clock.wall().as_secs_f64();
     // Before the table is written: only a program that writes files pays for that.
-    measured.peak = memory_of("self", "VmHWM:").unwrap_or(0);
+    measured.peak = peak();
     (measured, Answer { table, undecided })
-}
-
-/// Processor time of all threads that live, in seconds; of Linux. Of the calling thread it is exact to microseconds, of
-/// others to some milliseconds: the system adds up when a thread gives way.
-pub fn cpu_seconds() -> Option<f64> {
-    std::thread::yield_now();
-    let mut sum = 0;
-    for task in std::fs::read_dir("/proc/self/task").ok()? {
-        // A thread may end while it is looked at.
-        let Ok(text) = std::fs::read_to_string(task.ok()?.path().join("schedstat")) else { continue };
-        sum += text.split_whitespace().next()?.parse::<u64>().ok()?;
-    }
-    (sum > 0).then_some(sum as f64 * 1e-9)
 }
 
 /// Runs a method in a process of its own: this program again, whose `main` calls [`serve`] first. `file` is where the

@@ -1,6 +1,7 @@
 //! What was measured, as a file that grows map by map and as a table for people.
 
 use super::job::{Measured, Method};
+use crate::program::read_rows;
 use sightlines::pvs::BitMatrix;
 use std::fmt::Write;
 
@@ -135,11 +136,7 @@ pub fn csv(rows: &[Row]) -> String {
 /// # Errors
 /// The first line that is not one of it.
 pub fn read(text: &str) -> Result<Vec<Row>, String> {
-    let mut lines = text.lines().zip(1..);
-    if lines.next().is_none_or(|(head, _)| head != COLUMNS.join(",")) {
-        return Err("line 1: not what this bench writes".to_owned());
-    }
-    lines.map(|(line, number)| row(line).ok_or_else(|| format!("line {number}: not a row of this bench"))).collect()
+    read_rows(text, &COLUMNS.join(","), row)
 }
 
 /// A number, or none for nothing; an error for anything else.

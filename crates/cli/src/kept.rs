@@ -12,8 +12,8 @@ use std::time::Duration;
 /// The version of the program, which results are of.
 pub(crate) const PROGRAM: &str = env!("CARGO_PKG_VERSION");
 
-/// What units are, and what their results mean: to be raised when a bake is divided otherwise, or decides otherwise, between two versions of the program.
-pub(crate) const UNITS: u32 = 4;
+/// What units are, and what their results mean: to be raised when a bake is divided otherwise, decides otherwise, or keeps results as other bytes, between two versions of the program.
+pub(crate) const UNITS: u32 = 5;
 
 /// Seconds after which a file of results is made, unless an option says otherwise.
 pub(crate) const SAVE_AFTER: u64 = 10;

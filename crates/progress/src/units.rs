@@ -44,6 +44,13 @@ pub enum Halt {
 }
 
 impl Halt {
+    /// What is kept of a unit is no result of it.
+    ///
+    /// * `of`: what it should be a result of
+    pub fn unfit(phase: &str, unit: usize, of: &str) -> Self {
+        Self::Store(format!("the kept result of unit {unit} of the phase '{phase}' does not fit {of}"))
+    }
+
     /// This of a search without a store, which only an observer ends.
     pub fn without_store(self) -> Cancelled {
         Cancelled

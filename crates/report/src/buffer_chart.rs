@@ -1,5 +1,6 @@
 //! A multifocal buffer as people look at it: upright, enlarged, with a title, its window and a scale of its values.
 
+use crate::chart::{Paint, Svg};
 use crate::frame::Px;
 use crate::letters;
 use crate::multifocal::{OPEN, grey};
@@ -7,7 +8,6 @@ use crate::png::{Pixels, encode_small};
 use crate::{PngError, theme};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use std::fmt::Write;
 
 /// The longer side of the buffer in the picture, in pixels, at least.
 const SIZE: f64 = 720.0;
@@ -75,41 +75,29 @@ pub fn buffer_chart_svg(chart: &BufferChart<'_>) -> Result<String, PngError> {
     let [left, top] = [MARGIN + 5.0 * TEXT, MARGIN + 2.5 * TEXT];
     let whole = (left + w).max(480.0) + MARGIN;
     let total = top + h + 7.5 * TEXT;
-    let mut out = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" stroke-linecap=\"round\" \
-         stroke-linejoin=\"round\">\n<title>{title}</title>\n<rect width=\"100%\" height=\"100%\" fill=\"{2}\"/>\n",
-        whole.ceil(),
-        total.ceil(),
-        theme::PAPER
-    );
+    let mut out = Svg::of_lines([whole.ceil(), total.ceil()], title).on_paper();
     let most = whole - 2.0 * MARGIN;
     let large = (1.2 * TEXT).min(1.2 * TEXT * most / letters::width(title, 1.2 * TEXT).max(1.0));
-    words(&mut out, title, [MARGIN, MARGIN + TEXT], large);
-    let _ = writeln!(
-        out,
+    out.letters([MARGIN, MARGIN + TEXT], large, title);
+    out.push(format_args!(
         "<image x=\"{}\" y=\"{}\" width=\"{w}\" height=\"{h}\" preserveAspectRatio=\"none\" image-rendering=\"pixelated\" \
          href=\"data:image/png;base64,{}\"/>",
         Px(left),
         Px(top),
         STANDARD.encode(png)
-    );
-    let _ = writeln!(
-        out,
-        "<rect x=\"{}\" y=\"{}\" width=\"{w}\" height=\"{h}\" fill=\"none\" stroke=\"{}\"/>",
-        Px(left),
-        Px(top),
-        theme::INK
-    );
+    ));
+    let outline = Paint::stroke(theme::INK, 1.0);
+    out.rect([left, top], [w, h], outline);
     // The window: the ends of both axes.
     let [low, high] = [side, up].map(|k| window.map(|corner| corner[k])).map(|ends| ends.map(number));
     let (first, last) = if is_mirrored { (&low[1], &low[0]) } else { (&low[0], &low[1]) };
     let below = top + h + 1.3 * TEXT;
-    words(&mut out, first, [left, below], TEXT);
-    words(&mut out, last, [left + w - letters::width(last, TEXT), below], TEXT);
+    out.letters([left, below], TEXT, first);
+    out.letters([left + w - letters::width(last, TEXT), below], TEXT, last);
     let name = axes[side].to_string();
-    words(&mut out, &name, [left + 0.5 * w, below], TEXT);
+    out.letters([left + 0.5 * w, below], TEXT, &name);
     for (text, y) in [(&high[1], top + TEXT), (&high[0], top + h), (&axes[up].to_string(), top + 0.5 * h)] {
-        words(&mut out, text, [left - 0.5 * TEXT - letters::width(text, TEXT), y], TEXT);
+        out.letters([left - 0.5 * TEXT - letters::width(text, TEXT), y], TEXT, text);
     }
     // The scale of values, and what nothing blocks.
     let (y, bar) = (below + 1.2 * TEXT, 0.45 * w.max(300.0));
@@ -118,37 +106,23 @@ pub fn buffer_chart_svg(chart: &BufferChart<'_>) -> Result<String, PngError> {
         // Each reaches to the end of the scale, below the next one, so that no seams show.
         let along = bar * f64::from(step) / f64::from(STEPS);
         let (x, step_wide) = (left + along, bar - along);
-        let _ = writeln!(
-            out,
+        out.push(format_args!(
             "<rect class=\"scale\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{TEXT}\" fill=\"#{shade:02x}{shade:02x}{shade:02x}\"/>",
             Px(x),
             Px(y),
             Px(step_wide)
-        );
+        ));
     }
-    let _ = writeln!(
-        out,
-        "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{TEXT}\" fill=\"none\" stroke=\"{}\"/>",
-        Px(left),
-        Px(y),
-        Px(bar),
-        theme::INK
-    );
+    out.rect([left, y], [bar, TEXT], outline);
     let end = number(f64::from(white) * unit);
-    words(&mut out, "0", [left, y + 2.3 * TEXT], TEXT);
-    words(&mut out, &end, [left + bar - 0.5 * letters::width(&end, TEXT), y + 2.3 * TEXT], TEXT);
-    words(&mut out, values_are, [left + 1.5 * TEXT, y + 2.3 * TEXT], fitting(values_are, bar - 4.0 * TEXT));
+    out.letters([left, y + 2.3 * TEXT], TEXT, "0");
+    out.letters([left + bar - 0.5 * letters::width(&end, TEXT), y + 2.3 * TEXT], TEXT, &end);
+    out.letters([left + 1.5 * TEXT, y + 2.3 * TEXT], fitting(values_are, bar - 4.0 * TEXT), values_are);
     let [r, g, b] = OPEN;
     let legend = y + 3.2 * TEXT;
-    let _ = writeln!(
-        out,
-        "<rect x=\"{}\" y=\"{}\" width=\"{TEXT}\" height=\"{TEXT}\" fill=\"#{r:02x}{g:02x}{b:02x}\"/>",
-        Px(left),
-        Px(legend)
-    );
-    words(&mut out, "nothing is known to block", [left + 1.6 * TEXT, legend + 0.85 * TEXT], TEXT);
-    out.push_str("</svg>\n");
-    Ok(out)
+    out.rect([left, legend], [TEXT; 2], Paint::fill(&format!("#{r:02x}{g:02x}{b:02x}")));
+    out.letters([left + 1.6 * TEXT, legend + 0.85 * TEXT], TEXT, "nothing is known to block");
+    Ok(out.end())
 }
 
 /// The height of a text that is at most so wide.
@@ -159,16 +133,6 @@ fn fitting(text: &str, most: f64) -> f64 {
 /// A number of four digits.
 pub(crate) fn number(x: f64) -> String {
     format!("{x:.3e}").parse().map_or_else(|_| x.to_string(), |rounded: f64| rounded.to_string())
-}
-
-fn words(out: &mut String, text: &str, at: [f64; 2], size: f64) {
-    let _ = writeln!(
-        out,
-        "<g><title>{text}</title>\n<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\"/></g>",
-        letters::path(text, at, size),
-        theme::INK,
-        Px(letters::stroke(size))
-    );
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@
 //!
 //! - **Owns**: drawings of cells and of what is visible, as a plan ([`plan_svg`]), as a floor plan of a
 //!   scene in space ([`slice_svg`]) and as boxes ([`isometric_svg`]), in SVG, and with the feature `png` in PNG (`svg_to_png`); the JSON export
-//!   ([`export_json`]); summary numbers of a table ([`Summary`], [`ViewerShare`]); the chart of a walk ([`walk_svg`]);
+//!   ([`export_json`]); summary numbers of a table ([`Summary`], [`ViewerShare`]); the chart of a walk ([`walk_svg`]), and what charts are made of ([`chart`]);
 //!   pictures of multifocal buffers ([`buffer_png`]) and of the fields beside them ([`voronoi_png`], [`distance_png`]);
 //!   pictures of what is seen, in a colour for each face ([`faces_png`]), and sheets of them ([`sheet_png`]);
 //!   pictures of soft shadows ([`light_png`]); areas that points see ([`areas_geojson`], [`areas_csv`], [`areas_svg`]);
@@ -17,6 +17,7 @@
 
 mod areas;
 mod buffer_chart;
+pub mod chart;
 mod draw;
 mod export;
 mod faces;

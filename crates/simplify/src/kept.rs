@@ -1,7 +1,8 @@
-//! Results of units of work as bytes. Numbers are little-endian.
+//! Results of units of work as bytes.
 
 use crate::simplified::{Counts, Simplified};
-use sightlines_cells::Scene;
+use sightlines_cells::{Scene, SceneObject};
+use sightlines_progress::{Kept, kept_struct};
 
 /// Appends flags, eight in a byte.
 pub(crate) fn write_flags(flags: &[bool], out: &mut Vec<u8>) {
@@ -15,88 +16,31 @@ pub(crate) fn read_flags(bytes: &mut &[u8], n: usize) -> Option<Vec<bool>> {
     Some((0..n).map(|k| of[k / 8] >> (k % 8) & 1 == 1).collect())
 }
 
-/// Takes an array from the front of `bytes`.
-fn take<const N: usize>(bytes: &mut &[u8]) -> Option<[u8; N]> {
-    let (array, rest) = bytes.split_first_chunk()?;
-    *bytes = rest;
-    Some(*array)
-}
-
-fn take_number(bytes: &mut &[u8]) -> Option<u32> {
-    take(bytes).map(u32::from_le_bytes)
-}
-
-/// Takes a length whose entries take `size` bytes each, if there are as many.
-fn take_length(bytes: &mut &[u8], size: usize) -> Option<usize> {
-    take_number(bytes).map(|n| n as usize).filter(|n| *n <= bytes.len() / size)
-}
-
-/// In place of the origin of a triangle that is new.
-const NEW: u32 = u32::MAX;
-
-/// What is left of a scene.
-pub(crate) fn write_simplified(of: &Simplified) -> Vec<u8> {
-    let Simplified { triangles, origin, hidden, bound, deviation, shift, counts } = of;
-    let Counts { before, without_area, hidden: n_hidden, deleted, collapsed, new, merged_away, merged, left } = *counts;
-    let mut out = Vec::new();
-    for n in [before, without_area, n_hidden, deleted, collapsed, new, merged_away, merged, left] {
-        out.extend((n as u64).to_le_bytes());
-    }
-    [bound, deviation, shift].iter().for_each(|x| out.extend(x.to_le_bytes()));
-    for ((triangles, origin), hidden) in triangles.iter().zip(origin).zip(hidden) {
-        out.extend((triangles.len() as u32).to_le_bytes());
-        triangles.iter().flatten().for_each(|corner| out.extend(corner.to_le_bytes()));
-        origin.iter().for_each(|of| out.extend(of.unwrap_or(NEW).to_le_bytes()));
-        out.extend((hidden.len() as u32).to_le_bytes());
-        hidden.iter().for_each(|triangle| out.extend(triangle.to_le_bytes()));
-    }
-    out
-}
+kept_struct!(Counts { before, without_area, hidden, deleted, collapsed, new, merged_away, merged, left });
+kept_struct!(Simplified { counts, bound, deviation, shift, triangles, origin, hidden });
 
 /// What is left of `scene`; `None` if it cannot be of that.
-pub(crate) fn read_simplified(mut bytes: &[u8], scene: &Scene) -> Option<Simplified> {
-    let bytes = &mut bytes;
-    let mut count = || take(bytes).and_then(|n| usize::try_from(u64::from_le_bytes(n)).ok());
-    let counts = Counts {
-        before: count()?,
-        without_area: count()?,
-        hidden: count()?,
-        deleted: count()?,
-        collapsed: count()?,
-        new: count()?,
-        merged_away: count()?,
-        merged: count()?,
-        left: count()?,
+pub(crate) fn read_simplified(bytes: &[u8], scene: &Scene) -> Option<Simplified> {
+    let of = Simplified::from_bytes(bytes)?;
+    let objects = scene.objects();
+    let n = [of.triangles.len(), of.origin.len(), of.hidden.len()];
+    let fits = |(k, object): (usize, &SceneObject)| {
+        let is_corner = |corner: &u32| (*corner as usize) < object.vertices.len();
+        let is_one = |triangle: &u32| (*triangle as usize) < object.triangles.len();
+        of.origin[k].len() == of.triangles[k].len()
+            && of.triangles[k].iter().flatten().all(is_corner)
+            && of.origin[k].iter().flatten().chain(&of.hidden[k]).all(is_one)
+            && of.hidden[k].is_sorted_by(|a, b| a < b)
     };
-    let [bound, deviation, shift] = [take(bytes)?, take(bytes)?, take(bytes)?].map(f64::from_le_bytes);
-    let (mut triangles, mut origin, mut hidden) = (Vec::new(), Vec::new(), Vec::new());
-    for object in scene.objects() {
-        let [n_vertices, n_triangles] = [object.vertices.len(), object.triangles.len()].map(|n| n as u64);
-        let n = take_length(bytes, 16)?;
-        let corner = |bytes: &mut &[u8]| take_number(bytes).filter(|corner| u64::from(*corner) < n_vertices);
-        let triangle = |bytes: &mut &[u8]| Some([corner(bytes)?, corner(bytes)?, corner(bytes)?]);
-        triangles.push((0..n).map(|_| triangle(bytes)).collect::<Option<Vec<[u32; 3]>>>()?);
-        let is_one = |triangle: &u32| u64::from(*triangle) < n_triangles;
-        let of = |bytes: &mut &[u8]| match take_number(bytes)? {
-            NEW => Some(None),
-            of => Some(Some(of)).filter(|_| is_one(&of)),
-        };
-        origin.push((0..n).map(|_| of(bytes)).collect::<Option<Vec<Option<u32>>>>()?);
-        let n = take_length(bytes, 4)?;
-        let of_object: Vec<u32> = (0..n).map(|_| take_number(bytes).filter(is_one)).collect::<Option<_>>()?;
-        if !of_object.is_sorted_by(|a, b| a < b) {
-            return None;
-        }
-        hidden.push(of_object);
-    }
-    let is_it = bytes.is_empty() && counts.left == triangles.iter().map(Vec::len).sum::<usize>();
-    is_it.then_some(Simplified { triangles, origin, hidden, bound, deviation, shift, counts })
+    let is_it = n == [objects.len(); 3]
+        && objects.iter().enumerate().all(fits)
+        && of.counts.left == of.triangles.iter().map(Vec::len).sum::<usize>();
+    is_it.then_some(of)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sightlines_cells::SceneObject;
 
     #[test]
     fn results_come_back_and_others_are_refused() {
@@ -116,19 +60,28 @@ mod tests {
             shift: 0.0,
             counts: Counts { before: 4, hidden: 3, new: 1, left: 2, ..Counts::default() },
         };
-        let bytes = write_simplified(&made);
-        assert_eq!(read_simplified(&bytes, &scene), Some(made));
+        let bytes = made.to_bytes();
+        assert_eq!(read_simplified(&bytes, &scene), Some(made.clone()));
         assert_eq!(read_simplified(&bytes, &Scene::new(vec![object(3)]).unwrap()), None);
         assert_eq!(read_simplified(&bytes, &Scene::new(vec![object(2), object(1)]).unwrap()), None);
         for n in 0..bytes.len() {
             assert_eq!(read_simplified(&bytes[..n], &scene), None, "{n}");
         }
-        // Behind counts and measures: a length, a corner, an origin.
-        for (at, to) in [(96, 0xff), (100, 4), (127, 1), (128, 3), (136, 3)] {
-            let mut changed = bytes.clone();
-            changed[at] = to;
-            assert_eq!(read_simplified(&changed, &scene), None, "{at}");
-        }
+        let with = |change: fn(&mut Simplified)| {
+            let mut made = made.clone();
+            change(&mut made);
+            read_simplified(&made.to_bytes(), &scene)
+        };
+        assert_eq!(with(|of| of.triangles[0][1] = [1, 2, 4]), None, "a corner");
+        assert_eq!(with(|of| of.origin[0][0] = Some(3)), None, "an origin");
+        assert_eq!(with(|of| of.hidden[0] = vec![1, 0]), None, "an order");
+        assert_eq!(with(|of| of.hidden[1] = vec![1]), None, "a hidden triangle");
+        assert_eq!(with(|of| of.origin[1] = vec![None]), None, "an origin of none");
+        assert_eq!(with(|of| of.counts.left = 3), None, "a count");
+        // Behind counts, measures and the number of objects: how many triangles there are.
+        let mut changed = bytes.clone();
+        changed[34] = 0xff;
+        assert_eq!((bytes[33], bytes[34], read_simplified(&changed, &scene)), (2, 2, None));
         let flags: Vec<bool> = (0..19).map(|k| k % 3 == 0).collect();
         let mut out = Vec::new();
         write_flags(&flags, &mut out);

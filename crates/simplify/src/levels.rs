@@ -7,7 +7,7 @@ mod groups;
 
 use crate::hidden::{HiddenBy, Hider};
 use crate::intercepts::Intercepts;
-use crate::kept::{read_flags, read_simplified, write_flags, write_simplified};
+use crate::kept::{read_flags, read_simplified, write_flags};
 use crate::mesh::Mesh;
 use crate::options::SimplifyOptions;
 use crate::select::{Account, least_visible};
@@ -17,7 +17,7 @@ use crate::views::Views;
 use groups::{Bits, Groups};
 use rayon::prelude::*;
 use sightlines_cells::Scene;
-use sightlines_progress::{Counter, Halt, Observer, Phase, Units};
+use sightlines_progress::{Counter, Halt, Kept, Observer, Phase, Units, read_whole};
 use sightlines_pvs::{CellId, Table};
 use sightlines_visible_surface::Faces;
 use std::collections::BTreeMap;
@@ -178,9 +178,8 @@ impl Levels {
     }
 }
 
-fn unfit(phase: &str, unit: usize) -> Halt {
-    Halt::Store(format!("the kept result of unit {unit} of the phase '{phase}' does not fit this scene"))
-}
+/// What results of units are of.
+const OF: &str = "this scene";
 
 /// The input of levels.
 struct LevelBuilder<'a> {
@@ -204,28 +203,18 @@ impl LevelBuilder<'_> {
         let counter = Counter::new(observer, "visible faces", parts.len());
         let part = |(unit, cells): (usize, &&[CellId])| {
             counter.check().map_err(Halt::from)?;
-            let mut found = None;
-            let result = units.get(FACES, unit, || {
+            let compute = || {
                 let visible = self.hider.may_see(&Views::of_cells(self.table, cells)?)?;
                 let kept: Vec<Bits> = cells
                     .par_iter()
                     .zip(&visible)
                     .map(|(&cell, visible)| self.kept(cell, visible))
                     .collect::<Result<_, SimplifyError>>()?;
-                let mut bytes = Vec::new();
-                if units.are_kept() {
-                    for (visible, kept) in visible.iter().zip(&kept) {
-                        write_flags(visible, &mut bytes);
-                        write_flags(&kept.flags(self.faces.len()), &mut bytes);
-                    }
-                }
-                found = Some(visible.into_iter().zip(kept).collect());
-                Ok::<_, SimplifyError>(bytes)
-            })?;
-            let found = match found {
-                Some(found) => found,
-                None => self.read_seen(&result.ok_or(Halt::Shared)?, cells.len()).ok_or_else(|| unfit(FACES, unit))?,
+                Ok::<Vec<_>, SimplifyError>(visible.into_iter().zip(kept).collect())
             };
+            let read = |bytes: &[u8]| self.read_seen(bytes, cells.len());
+            let (found, _) = units.value((FACES, unit, OF), compute, |found| self.write_seen(found), read)?;
+            let found = found.ok_or(Halt::Shared)?;
             counter.step().map_err(Halt::from)?;
             Ok(found)
         };
@@ -235,11 +224,19 @@ impl LevelBuilder<'_> {
         Ok(found.into_iter().flatten().collect())
     }
 
-    fn read_seen(&self, mut bytes: &[u8], n_cells: usize) -> Option<Vec<(Vec<bool>, Bits)>> {
+    fn write_seen(&self, found: &[(Vec<bool>, Bits)]) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        for (visible, kept) in found {
+            write_flags(visible, &mut bytes);
+            write_flags(&kept.flags(self.faces.len()), &mut bytes);
+        }
+        bytes
+    }
+
+    fn read_seen(&self, bytes: &[u8], n_cells: usize) -> Option<Vec<(Vec<bool>, Bits)>> {
         let n = self.faces.len();
-        let mut one = || Some((read_flags(&mut bytes, n)?, Bits::of(&read_flags(&mut bytes, n)?)));
-        let found = (0..n_cells).map(|_| one()).collect::<Option<_>>()?;
-        bytes.is_empty().then_some(found)
+        let one = |bytes: &mut &[u8]| Some((read_flags(bytes, n)?, Bits::of(&read_flags(bytes, n)?)));
+        read_whole(bytes, |bytes| (0..n_cells).map(|_| one(bytes)).collect())
     }
 
     /// A level, kept or made and then kept.
@@ -249,20 +246,10 @@ impl LevelBuilder<'_> {
         visible: &[Vec<bool>],
         (units, unit): (Units<'_>, usize),
     ) -> Result<Level, SimplifyError> {
-        let mut made = None;
-        let result = units.get(LEVELS, unit, || {
-            let level = self.level(cells, visible)?;
-            let bytes = if units.are_kept() { write_simplified(&level.simplified) } else { Vec::new() };
-            made = Some(level);
-            Ok::<_, SimplifyError>(bytes)
-        })?;
-        match made {
-            Some(level) => Ok(level),
-            None => {
-                let simplified = read_simplified(&result.ok_or(Halt::Shared)?, self.whole);
-                Ok(self.with_size(cells, simplified.ok_or_else(|| unfit(LEVELS, unit))?))
-            }
-        }
+        let read = |bytes: &[u8]| Some(self.with_size(cells, read_simplified(bytes, self.whole)?));
+        let compute = || self.level(cells, visible);
+        let (level, _) = units.value((LEVELS, unit, OF), compute, |level| level.simplified.to_bytes(), read)?;
+        Ok(level.ok_or(Halt::Shared)?)
     }
 
     fn with_size(&self, cells: &[CellId], simplified: Simplified) -> Level {

@@ -1,96 +1,48 @@
-//! Results of units of work as bytes.
+//! Results of units of work: as bytes, and which can be results of a point.
 
 use crate::Run;
+use sightlines_progress::Kept;
 
-/// How results of a kind are kept.
-pub(crate) trait Kept<R>: Sync {
-    /// Appends a result.
-    fn write(&self, result: &R, out: &mut Vec<u8>);
-
-    /// Takes the result of a number from the front of `bytes`; `None` if there is none. Memory in proportion to the bytes.
-    fn read(&self, bytes: &mut &[u8], k: usize) -> Option<R>;
-}
-
-/// Appends a number: seven bits in a byte, the low ones first, and a top bit that is set if more follow.
-pub(crate) fn write_number(mut x: u32, out: &mut Vec<u8>) {
-    while x >= 0x80 {
-        out.push(x as u8 | 0x80);
-        x >>= 7;
-    }
-    out.push(x as u8);
-}
-
-/// Takes a number from the front of `bytes`.
-pub(crate) fn read_number(bytes: &mut &[u8]) -> Option<u32> {
-    let mut x = 0u64;
-    for shift in (0..u32::BITS).step_by(7) {
-        let (&byte, rest) = bytes.split_first()?;
-        *bytes = rest;
-        x |= u64::from(byte & 0x7F) << shift;
-        if byte < 0x80 {
-            return u32::try_from(x).ok();
-        }
-    }
-    None
-}
-
-/// A number of points and some values.
-pub(crate) struct Values<const N: usize> {
-    /// The most points that count.
-    pub(crate) n_points: u32,
-}
-
-impl<const N: usize> Kept<(u32, [f64; N])> for Values<N> {
-    fn write(&self, (n, values): &(u32, [f64; N]), out: &mut Vec<u8>) {
-        write_number(*n, out);
-        values.iter().for_each(|x| out.extend_from_slice(&x.to_le_bytes()));
+/// A list has of each run how far it begins behind the one before, and its length.
+impl Kept for Run {
+    fn write(&self, out: &mut Vec<u8>) {
+        Self::write_all(&[*self], out);
     }
 
-    fn read(&self, bytes: &mut &[u8], _: usize) -> Option<(u32, [f64; N])> {
-        let n = read_number(bytes).filter(|n| *n <= self.n_points)?;
-        let mut values = [0.0; N];
-        for value in &mut values {
-            let (x, rest) = bytes.split_first_chunk()?;
-            *bytes = rest;
-            *value = f64::from_le_bytes(*x);
-        }
-        values.iter().all(|x| x.is_finite()).then_some((n, values))
+    fn read(bytes: &mut &[u8]) -> Option<Self> {
+        Self::read_all(bytes, 1)?.pop()
     }
-}
 
-/// What points see.
-pub(crate) struct Rows {
-    pub(crate) n_points: u32,
-}
-
-impl Kept<Box<[Run]>> for Rows {
-    fn write(&self, row: &Box<[Run]>, out: &mut Vec<u8>) {
-        write_number(row.len() as u32, out);
-        let mut end = 0;
-        for run in row {
-            write_number(run.start - end, out);
-            write_number(run.end - run.start, out);
-            end = run.end;
+    fn write_all(all: &[Self], out: &mut Vec<u8>) {
+        let mut before = 0;
+        for Self { start, end } in all {
+            [start - before, end - start].write(out);
+            before = *end;
         }
     }
 
-    fn read(&self, bytes: &mut &[u8], point: usize) -> Option<Box<[Run]>> {
-        // Each takes two bytes at least.
-        let n = read_number(bytes).filter(|n| *n as usize <= bytes.len() / 2)?;
-        let (mut row, mut last) = (Vec::with_capacity(n as usize), 0u32);
-        for k in 0..n {
-            let start = last.checked_add(read_number(bytes)?)?;
-            let end = start.checked_add(read_number(bytes)?).filter(|end| *end <= self.n_points)?;
-            // Runs do not touch, and the point is in none of them.
-            let has_point = (start as usize..end as usize).contains(&point);
-            if start >= end || has_point || k > 0 && start == last {
-                return None;
-            }
-            row.push(Run { start, end });
-            last = end;
-        }
-        Some(row.into())
+    fn read_all(bytes: &mut &[u8], n: usize) -> Option<Vec<Self>> {
+        let mut before = 0u32;
+        let mut next = |(gap, length): (u32, u32)| {
+            let start = before.checked_add(gap)?;
+            before = start.checked_add(length)?;
+            Some(Self { start, end: before })
+        };
+        <(u32, u32)>::read_all(bytes, n)?.into_iter().map(&mut next).collect()
     }
+}
+
+/// Whether a number of points and some values can be of a graph of so many points.
+pub(crate) fn fits_values<const N: usize>((n, values): &(u32, [f64; N]), n_points: usize) -> bool {
+    *n as usize <= n_points && values.iter().all(|x| x.is_finite())
+}
+
+/// Whether runs can be what a point sees of so many points: they do not touch, and the point is in none of them.
+pub(crate) fn fits_row(row: &[Run], point: usize, n_points: usize) -> bool {
+    let has_point = |run: &Run| (run.start as usize..run.end as usize).contains(&point);
+    row.iter().all(|run| run.start < run.end && !has_point(run))
+        && row.windows(2).all(|pair| pair[0].end < pair[1].start)
+        && row.last().is_none_or(|last| last.end as usize <= n_points)
 }
 
 #[cfg(test)]
@@ -100,34 +52,27 @@ mod tests {
     #[test]
     fn results_come_back_and_only_where_they_fit() {
         let run = |start, end| Run { start, end };
-        let (rows, row) = (Rows { n_points: 400 }, Box::<[Run]>::from([run(0, 3), run(4, 5), run(200, 400)]));
-        let mut bytes = Vec::new();
-        rows.write(&row, &mut bytes);
-        let mut rest = &bytes[..];
-        assert_eq!((rows.read(&mut rest, 3), rest.len()), (Some(row), 0));
-        assert_eq!(rows.read(&mut &bytes[..], 4), None, "a point that sees itself");
-        assert_eq!(Rows { n_points: 399 }.read(&mut &bytes[..], 3), None);
-        assert!((0..bytes.len()).all(|n| rows.read(&mut &bytes[..n], 3).is_none()));
-        assert_eq!(rows.read(&mut &[2, 0, 1, 0, 1][..], 9), None, "two runs that are one");
+        let row = Box::<[Run]>::from([run(0, 3), run(4, 5), run(200, 400)]);
+        let bytes = row.to_bytes();
+        let read = |bytes: &[u8], point: usize, n_points: usize| {
+            Box::<[Run]>::from_bytes(bytes).filter(|row| fits_row(row, point, n_points))
+        };
+        assert_eq!(read(&bytes, 3, 400), Some(row));
+        assert_eq!(read(&bytes, 4, 400), None, "a point that sees itself");
+        assert_eq!(read(&bytes, 3, 399), None);
+        assert!((0..bytes.len()).all(|n| read(&bytes[..n], 3, 400).is_none()));
+        assert_eq!(read(&[2, 0, 1, 0, 1], 9, 400), None, "two runs that are one");
+        assert_eq!(run(7, 9).to_bytes(), [7, 2]);
+        assert_eq!(Run::from_bytes(&[7, 2]), Some(run(7, 9)));
+        assert_eq!(Box::<[Run]>::from_bytes(&[1, 0xFF, 0xFF, 0xFF, 0xFF, 0x0F, 1]), None, "too far");
 
-        let (values, some) = (Values { n_points: 300 }, (300, [0.5, -1.0]));
-        let mut bytes = Vec::new();
-        values.write(&some, &mut bytes);
-        assert_eq!(values.read(&mut &bytes[..], 0), Some(some));
-        assert_eq!(Values::<2> { n_points: 299 }.read(&mut &bytes[..], 0), None);
-        assert!((0..bytes.len()).all(|n| values.read(&mut &bytes[..n], 0).is_none()));
-        values.write(&(1, [f64::NAN, 0.0]), &mut bytes);
-        assert_eq!(values.read(&mut &bytes[18..], 0), None, "not a number");
-    }
-
-    #[test]
-    fn numbers_have_32_bits() {
-        for x in [0, 127, 128, 1 << 21, u32::MAX] {
-            let mut bytes = Vec::new();
-            write_number(x, &mut bytes);
-            assert_eq!(read_number(&mut &bytes[..]), Some(x));
-        }
-        assert_eq!(read_number(&mut &[0xFF, 0xFF, 0xFF, 0xFF, 0x1F][..]), None);
-        assert_eq!(read_number(&mut &[0x80; 6][..]), None);
+        let some = (300, [0.5, -1.0]);
+        let bytes = some.to_bytes();
+        let read = |bytes: &[u8], n_points: usize| {
+            <(u32, [f64; 2])>::from_bytes(bytes).filter(|values| fits_values(values, n_points))
+        };
+        assert_eq!((read(&bytes, 300), read(&bytes, 299)), (Some(some), None));
+        assert!((0..bytes.len()).all(|n| read(&bytes[..n], 300).is_none()));
+        assert_eq!(read(&(1_u32, [f64::NAN, 0.0]).to_bytes(), 300), None, "not a number");
     }
 }

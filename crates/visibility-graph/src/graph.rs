@@ -1,6 +1,6 @@
 //! The graph: for each point the points that it sees, as runs of consecutive numbers.
 
-use crate::bytes::Rows;
+use crate::bytes::fits_row;
 use crate::work::Stage;
 use crate::{Effort, Run};
 use sightlines_progress::{Cancelled, Halt};
@@ -72,8 +72,13 @@ impl VisibilityGraph {
             runs_of(list, point, runs);
             ascends.then(|| Box::<[Run]>::from(&runs[..])).ok_or(GraphError::Row { point, n_points })
         };
-        let (cost, kept) = (&|_| 1.0, &Rows { n_points });
-        let stage = Stage { title: "what points see", phase: "sight", size: UNIT, cost, kept };
+        let stage = Stage::<Box<[Run]>> {
+            title: "what points see",
+            phase: "sight",
+            size: UNIT,
+            cost: &|_| 1.0,
+            fits: &|row, point| fits_row(row, point, n_points as usize),
+        };
         Ok(Self { rows: effort.each(&stage, n_points as usize, state, row)? })
     }
 

@@ -1,6 +1,6 @@
 //! Local measures: what a point's neighbourhood in the graph is like.
 
-use crate::bytes::Values;
+use crate::bytes::fits_values;
 use crate::work::Stage;
 use crate::{Effort, Points, Run, UNDEFINED, VisibilityGraph};
 use sightlines_progress::Halt;
@@ -51,8 +51,8 @@ impl LocalMeasures {
         let degrees: Vec<u32> = (0..n as u32).map(|p| graph.n_seen(p)).collect();
         let row =
             |sight: &mut Sight<'_>, point: usize| Ok::<_, Halt>(one(graph, points, &degrees, point as u32, sight));
-        let (cost, kept) = (&|point: usize| f64::from(degrees[point]), &Values { n_points: n as u32 });
-        let stage = Stage { title: "local measures", phase: "local-measures", size: UNIT, cost, kept };
+        let (cost, fits) = (&|point: usize| f64::from(degrees[point]), &|row: &_, _| fits_values(row, n));
+        let stage = Stage { title: "local measures", phase: "local-measures", size: UNIT, cost, fits };
         let rows = effort.each(&stage, n, || Sight::new(graph), row)?;
         let column = |k: usize| rows.iter().map(|(_, values)| values[k]).collect();
         Ok(Self {

@@ -1,6 +1,6 @@
 //! Shortest paths through the graph, by length and by turns.
 
-use crate::bytes::Values;
+use crate::bytes::fits_values;
 use crate::functions::{quarter_turns, quarter_turns_at_least};
 use crate::work::Stage;
 use crate::{Effort, Points, Run, VisibilityGraph};
@@ -112,8 +112,8 @@ impl MetricMeasures {
             let mean = |sum: f64| sum / f64::from(n);
             Ok::<_, Halt>((n, [mean(length) * points.unit(), mean(angle), mean(straight) * points.unit()]))
         };
-        let (cost, kept) = (&|_| 1.0, &Values { n_points: points.len() as u32 });
-        let stage = Stage { title: "metric depths", phase: "metric-paths", size: UNIT, cost, kept };
+        let (cost, fits) = (&|_| 1.0, &|row: &_, _| fits_values(row, points.len()));
+        let stage = Stage { title: "metric depths", phase: "metric-paths", size: UNIT, cost, fits };
         let rows = effort.each(&stage, points.len(), || Room::new(points.len()), one)?;
         let column = |k: usize| rows.iter().map(|(_, values)| values[k]).collect();
         Ok(Self {
@@ -172,8 +172,8 @@ impl AngularMeasures {
             }
             Ok::<_, Halt>((n, [total]))
         };
-        let (cost, kept) = (&|_| 1.0, &Values { n_points: points.len() as u32 });
-        let stage = Stage { title: "angular depths", phase: "angular-paths", size: UNIT, cost, kept };
+        let (cost, fits) = (&|_| 1.0, &|row: &_, _| fits_values(row, points.len()));
+        let stage = Stage { title: "angular depths", phase: "angular-paths", size: UNIT, cost, fits };
         let rows = effort.each(&stage, points.len(), || Room::new(points.len()), one)?;
         Ok(Self {
             node_count: rows.iter().map(|&(n, _)| n).collect(),

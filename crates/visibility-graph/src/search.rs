@@ -9,10 +9,9 @@
 //! A run costs the same whatever its length: the union over its points is that of two unions over a power of two of points, which are
 //! computed once for each step; and what all its points get is handed to two such groups, and on from these at the end.
 
-use crate::bytes::{Kept, read_number, write_number};
 use crate::work::Stage;
 use crate::{Effort, Run, VisibilityGraph};
-use sightlines_progress::Halt;
+use sightlines_progress::{Halt, Kept};
 
 /// Words of a set.
 const WORDS: usize = 4;
@@ -38,29 +37,28 @@ impl Depths {
             counts.pop();
         }
     }
+
+    /// Whether they can be of a batch of so many points.
+    fn fit(&self, batch: usize, n_points: usize) -> bool {
+        let n_searches = (n_points - batch * WIDTH).min(WIDTH);
+        let fits = |search: usize| {
+            let found: u64 = self.counts.iter().skip(search).step_by(WIDTH).map(|&count| u64::from(count)).sum();
+            self.counts[search] == u32::from(search < n_searches) && found <= n_points as u64
+        };
+        self.counts.len() >= WIDTH && (0..WIDTH).all(fits)
+    }
 }
 
-/// Depths of so many points, as bytes.
-struct DepthsOf {
-    n_points: usize,
-}
-
-impl Kept<Depths> for DepthsOf {
-    fn write(&self, depths: &Depths, out: &mut Vec<u8>) {
-        write_number((depths.counts.len() / WIDTH) as u32, out);
-        depths.counts.iter().for_each(|&count| write_number(count, out));
+/// How many depths there are, and all counts.
+impl Kept for Depths {
+    fn write(&self, out: &mut Vec<u8>) {
+        (self.counts.len() / WIDTH).write(out);
+        u32::write_all(&self.counts, out);
     }
 
-    fn read(&self, bytes: &mut &[u8], batch: usize) -> Option<Depths> {
-        let n = read_number(bytes)? as usize;
-        let n = n.checked_mul(WIDTH).filter(|n| (WIDTH..=bytes.len()).contains(n))?;
-        let counts: Vec<u32> = (0..n).map(|_| read_number(bytes)).collect::<Option<_>>()?;
-        let n_searches = (self.n_points - batch * WIDTH).min(WIDTH);
-        let fits = |search: usize| {
-            let found: u64 = counts.iter().skip(search).step_by(WIDTH).map(|&count| u64::from(count)).sum();
-            counts[search] == u32::from(search < n_searches) && found <= self.n_points as u64
-        };
-        (0..WIDTH).all(fits).then_some(Depths { counts })
+    fn read(bytes: &mut &[u8]) -> Option<Self> {
+        let n = usize::read(bytes)?.checked_mul(WIDTH)?;
+        Some(Self { counts: u32::read_all(bytes, n)? })
     }
 }
 
@@ -84,7 +82,8 @@ pub(crate) fn depths(graph: &VisibilityGraph, radius: Option<u32>, effort: &Effo
         let first = batch * WIDTH;
         Ok(search(graph, &components, first..(first + WIDTH).min(n), radius.unwrap_or(u32::MAX), room))
     };
-    let stage = Stage { title: "depths", phase: "depths", size: 1, cost: &|_| 1.0, kept: &DepthsOf { n_points: n } };
+    let fits = &|depths: &Depths, batch: usize| depths.fit(batch, n);
+    let stage = Stage { title: "depths", phase: "depths", size: 1, cost: &|_| 1.0, fits };
     effort.each(&stage, n.div_ceil(WIDTH), room, batch)
 }
 

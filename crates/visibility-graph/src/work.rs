@@ -1,8 +1,7 @@
 //! Threads, observers and stores of long work.
 
-use crate::bytes::Kept;
 use rayon::prelude::*;
-use sightlines_progress::{Counter, Halt, Observer, Phase, Units, shares_of};
+use sightlines_progress::{Counter, Halt, Kept, Observer, Phase, Units, read_whole, shares_of};
 use std::ops::Range;
 
 /// How long work is done: by how many threads, who is told, and where results are kept. None of them changes a result.
@@ -35,8 +34,8 @@ pub(crate) struct Stage<'a, R> {
     pub(crate) size: usize,
     /// The predicted cost of each result.
     pub(crate) cost: &'a (dyn Fn(usize) -> f64 + Sync),
-    /// Results as bytes.
-    pub(crate) kept: &'a dyn Kept<R>,
+    /// Whether something can be the result of a number.
+    pub(crate) fits: &'a (dyn Fn(&R, usize) -> bool + Sync),
 }
 
 /// Why there is no result of a unit.
@@ -54,7 +53,7 @@ impl<E> From<Halt> for Stop<E> {
 impl Effort<'_> {
     /// Applies `one` to the numbers below `n`, each with a state that `state` makes once for some of them, and returns the results in
     /// order, or the error of the lowest number.
-    pub(crate) fn each<S, R: Send, E: From<Halt> + Send>(
+    pub(crate) fn each<S, R: Kept + Send, E: From<Halt> + Send>(
         &self,
         stage: &Stage<'_, R>,
         n: usize,
@@ -77,7 +76,7 @@ impl Effort<'_> {
         self.on_threads(all)?.into_iter().collect()
     }
 
-    fn each_in_units<S, R: Send, E: From<Halt> + Send>(
+    fn each_in_units<S, R: Kept + Send, E: From<Halt> + Send>(
         &self,
         stage: &Stage<'_, R>,
         n: usize,
@@ -91,34 +90,31 @@ impl Effort<'_> {
         let counter = Counter::new(self.observer, stage.title, ranges.len());
         let step = |state: &mut Option<S>, unit: usize| -> Result<Result<Vec<R>, E>, Halt> {
             counter.check()?;
-            let mut computed = None;
-            let result = self.units.get(stage.phase, unit, || {
+            let compute = || {
                 let state = state.get_or_insert_with(&state_of);
-                let (mut all, mut bytes) = (Vec::with_capacity(ranges[unit].len()), Vec::new());
-                for k in ranges[unit].clone() {
+                let of = |k: usize| {
                     counter.check().map_err(Halt::from)?;
-                    let result = one(state, k).map_err(Stop::Error)?;
-                    stage.kept.write(&result, &mut bytes);
-                    all.push(result);
-                }
-                computed = Some(all);
-                Ok(bytes)
-            });
-            let result = match result {
-                Ok(result) => result,
+                    one(state, k).map_err(Stop::Error)
+                };
+                ranges[unit].clone().map(of).collect::<Result<Vec<R>, Stop<E>>>()
+            };
+            let write = |all: &Vec<R>| {
+                let mut bytes = Vec::new();
+                R::write_all(all, &mut bytes);
+                bytes
+            };
+            let read = |bytes: &[u8]| {
+                let all = read_whole(bytes, |bytes| R::read_all(bytes, ranges[unit].len()))?;
+                ranges[unit].clone().zip(&all).all(|(k, one)| (stage.fits)(one, k)).then_some(all)
+            };
+            let (found, is_kept) = match self.units.value((stage.phase, unit, "this analysis"), compute, write, read) {
+                Ok(found) => found,
                 Err(Stop::Halt(halt)) => return Err(halt),
                 Err(Stop::Error(error)) => return Ok(Err(error)),
             };
-            let is_kept = computed.is_none();
-            let found = match (computed, result) {
-                (None, Some(bytes)) => {
-                    read(stage.kept, &bytes, ranges[unit].clone()).ok_or_else(|| unfit(stage.phase, unit))?
-                }
-                // Those of another process are missing, and the end of the phase says so.
-                (computed, _) => computed.unwrap_or_default(),
-            };
             counter.step_by(shares[unit], is_kept)?;
-            Ok(Ok(found))
+            // Those of another process are missing, and the end of the phase says so.
+            Ok(Ok(found.unwrap_or_default()))
         };
         let all = || {
             let units = (0..ranges.len()).into_par_iter().with_max_len(1);
@@ -137,13 +133,4 @@ impl Effort<'_> {
             Err(_) => all(),
         }
     }
-}
-
-fn read<R>(kept: &dyn Kept<R>, mut bytes: &[u8], range: Range<usize>) -> Option<Vec<R>> {
-    let found = range.map(|k| kept.read(&mut bytes, k)).collect::<Option<Vec<R>>>()?;
-    bytes.is_empty().then_some(found)
-}
-
-fn unfit(phase: &str, unit: usize) -> Halt {
-    Halt::Store(format!("the kept result of unit {unit} of the phase '{phase}' does not fit this analysis"))
 }

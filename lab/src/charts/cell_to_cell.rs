@@ -5,7 +5,6 @@ use super::older::{
     shadow_volumes,
 };
 use super::panels::time_against_over;
-use super::plot::Panel;
 use super::row::Row;
 use super::slow_stabbers::{ByProgram, Limited};
 use super::{ChartError, Family, Settings};
@@ -20,6 +19,7 @@ use sightlines::pvs::BitMatrix;
 use sightlines::scenes::{OfficeOptions, doom_like, maze, office};
 use sightlines::sightline::{AxialStabber, Funnel, Stabber};
 use sightlines::stabtree::{Network, SearchOptions, Zones, axial_visibility, planar_visibility, visible_zones};
+use sightlines_benches::chart::Panel;
 use sightlines_benches::quake::MapSpec;
 use sightlines_benches::quake::job::{self, Method};
 use sightlines_benches::spec::SceneSpec;

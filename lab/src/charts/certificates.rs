@@ -1,6 +1,5 @@
 //! Proofs of whole tables: their size, and the time to find and to check them.
 
-use super::plot::{Panel, Point, Series};
 use super::row::Row;
 use super::{ChartError, Family, Settings};
 use sightlines::bake::{
@@ -13,6 +12,7 @@ use sightlines::scenes::world::{QuakeLikeOptions, quake_like};
 use sightlines::scenes::{OfficeOptions, TowerOptions, office, tower};
 use sightlines::stabtree::{CertifyOptions, ConvexOptions};
 use sightlines::verify::check_proofs;
+use sightlines_benches::chart::{Panel, Point, Series};
 use sightlines_tests::world_files::prt_of_world;
 
 const NAME: &str = "certificates";

@@ -2,7 +2,6 @@
 
 use super::older::BoxTreeN;
 use super::panels::time_against_over;
-use super::plot::Panel;
 use super::row::Row;
 use super::{ChartError, Family, Settings};
 use sightlines::bake::quake::bake_map;
@@ -15,6 +14,8 @@ use sightlines::pvs::{CellId, ObjectId, Table};
 use sightlines::scenes::{OfficeOptions, office};
 use sightlines::visible_surface::{Camera, FaceMask, Faces, RayCaster, RenderInput, VisibleSurface};
 use sightlines::walkthrough::{CameraPose, wander};
+use sightlines_benches::chart::Panel;
+use sightlines_benches::measure::median;
 use sightlines_benches::spec::SceneSpec;
 use std::convert::Infallible;
 use std::hint::black_box;
@@ -131,13 +132,6 @@ struct Found {
     missed_cells: u64,
 }
 
-impl Found {
-    fn median(&mut self) -> f64 {
-        self.times.sort_unstable_by(f64::total_cmp);
-        self.times.get(self.times.len() / 2).copied().unwrap_or(f64::NAN)
-    }
-}
-
 fn one_place(settings: &Settings, place: &Place, rows: &mut Vec<Row>) -> Result<(), Failure> {
     let table = &place.table;
     let cells = TableCells::new(table);
@@ -222,7 +216,7 @@ fn one_place(settings: &Settings, place: &Place, rows: &mut Vec<Row>) -> Result<
                 size: if is_cells { table.n_cells() as u64 } else { table.objects().len() as u64 },
                 size_of: if is_cells { "cells" } else { "objects" }.to_owned(),
                 repeats: 3,
-                seconds: Some(found.median()),
+                seconds: Some(median(found.times.clone())),
                 reported: Some(if is_cells { found.cells } else { found.polygons }),
                 truth: Some(needed),
                 truth_by: by.to_owned(),

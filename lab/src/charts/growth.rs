@@ -1,13 +1,13 @@
 //! Time and memory against the size of scenes, with fitted exponents; each run in a process of its own.
 
-use super::clock::{SHORT, timed};
-use super::plot::{Panel, Point, Series};
 use super::row::Row;
 use super::{ChartError, Family, Settings};
 use sightlines::bake::{PlanBakeOptions, SceneBakeOptions, bake_plan, bake_scene};
 use sightlines::scenes::{OfficeOptions, TowerOptions, office, tower};
 use sightlines::stabtree::{ConvexOptions, ConvexSearch};
-use sightlines_benches::chart::exponent;
+use sightlines_benches::chart::{Panel, Point, Series, exponent};
+use sightlines_benches::child::serve_jobs;
+use sightlines_benches::measure::{SHORT, peak, timed};
 use sightlines_benches::quake::MapSpec;
 use std::process::{Command, Stdio};
 
@@ -112,33 +112,15 @@ impl Family for Growth {
 
 /// If this process was started to run one job, runs it and ends; else does nothing. To be called first by the program.
 pub fn serve() {
-    let args: Vec<String> = std::env::args().skip(1).collect();
-    let [job, kind, size] = &args[..] else { return };
-    if job != JOB {
-        return;
-    }
-    let run = || -> Result<String, Failure> {
+    let run = |kind: &str, size: &str| -> Result<String, Failure> {
         let kind = KINDS.iter().find(|k| k.name == kind).ok_or("no such kind of scenes")?;
         let (n_cells, n_pairs, seconds) = (kind.run)(size.parse()?)?;
         Ok(format!("{n_cells} {n_pairs} {seconds} {}", peak()))
     };
-    match run() {
-        Ok(text) => {
-            println!("{text}");
-            std::process::exit(0);
-        }
-        Err(error) => {
-            eprintln!("{error}");
-            std::process::exit(2);
-        }
-    }
-}
-
-/// The most memory that this process had in use, in bytes; 0 where the system does not tell.
-fn peak() -> u64 {
-    let text = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let line = text.lines().find_map(|l| l.strip_prefix("VmHWM:"));
-    line.and_then(|l| l.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()).map_or(0, |kib| kib * 1024)
+    serve_jobs(JOB, |args| {
+        let [kind, size] = args else { return Err("a job has two parts".into()) };
+        run(kind, size).map_err(|error| -> Box<dyn std::error::Error> { error })
+    });
 }
 
 /// One run; short ones again, of which the quickest counts.

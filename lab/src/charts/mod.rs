@@ -1,27 +1,27 @@
 //! Charts of speed against accuracy: each family of methods measured on the same scenes, and pictures of that.
 //!
 //! Measuring and drawing are separate. Measuring writes one CSV for each family ([`row`]); drawing reads nothing else and
-//! gives the same bytes for the same rows ([`plot`], [`page`]). Times differ from machine to machine, so each row says on
+//! gives the same bytes for the same rows ([`chart`], [`page`]). Times differ from machine to machine, so each row says on
 //! which it was measured, and by which state of the program; shares do not.
 
 pub mod cell_to_cell;
 pub mod certificates;
-mod clock;
 pub mod eye_to_cell;
-pub mod front;
 pub mod growth;
 pub mod multifocal;
 pub mod older;
 pub mod packed;
 pub mod page;
 pub mod panels;
-pub mod plot;
 pub mod row;
 pub mod simplify;
 mod slow_stabbers;
 pub mod visible_surface;
 
 use row::{Row, RowError};
+use sightlines::formats::files::{WriteError, atomic_write};
+use sightlines_benches::chart;
+use sightlines_benches::measure::quickest;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -43,7 +43,7 @@ pub trait Family {
     fn measure(&self, settings: &Settings) -> Result<Vec<Row>, ChartError>;
 
     /// The panels of its picture, from rows alone.
-    fn panels(&self, rows: &[Row]) -> Vec<plot::Panel>;
+    fn panels(&self, rows: &[Row]) -> Vec<chart::Panel>;
 }
 
 /// All families, in the order of the page.
@@ -77,7 +77,7 @@ pub struct Settings {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ChartError {
-    /// A file that cannot be read or written.
+    /// A file that cannot be read, or a folder that cannot be made.
     #[error("{}: {source}", path.display())]
     File {
         /// Its path.
@@ -85,6 +85,9 @@ pub enum ChartError {
         /// Why not.
         source: std::io::Error,
     },
+    /// A file that cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
     /// A file that is no chart's.
     #[error("{}: {source}", path.display())]
     Row {
@@ -93,9 +96,6 @@ pub enum ChartError {
         /// What is wrong with it.
         source: RowError,
     },
-    /// A picture that cannot be drawn.
-    #[error(transparent)]
-    Plot(#[from] plot::PlotError),
     /// No family has that name.
     #[error("there is no family '{name}', only {known}")]
     Family {
@@ -154,7 +154,7 @@ pub fn run(task: &Task, settings: &Settings) -> Result<(), ChartError> {
             let start = Instant::now();
             let rows = family.measure(settings)?;
             eprintln!("{}: {} rows in {:.1} s", family.name(), rows.len(), start.elapsed().as_secs_f64());
-            save(&task.out.join(family.name()).with_extension("csv"), &row::write(&rows))?;
+            atomic_write(task.out.join(family.name()).with_extension("csv"), row::write(&rows).as_bytes())?;
         }
     }
     draw(&task.out, &families)
@@ -174,15 +174,16 @@ pub fn draw(out: &Path, families: &[Box<dyn Family>]) -> Result<(), ChartError> 
         let text = std::fs::read_to_string(&path).map_err(|source| ChartError::File { path: path.clone(), source })?;
         let rows = row::read(&text).map_err(|source| ChartError::Row { path: path.clone(), source })?;
         let panels = family.panels(&rows);
-        let svg = plot::svg(family.title(), &panels)?;
+        let svg = chart::svg(family.title(), &panels);
         front.extend(panels.into_iter().filter(|panel| is_in_front(family.name(), &panel.title)));
-        save(&path.with_extension("svg"), &svg)?;
+        atomic_write(path.with_extension("svg"), svg.as_bytes())?;
         sections.push(page::Section { name: family.name(), title: family.title(), about: family.about(), svg, rows });
     }
     if !front.is_empty() {
-        save(&out.join("front.svg"), &plot::svg("Speed against accuracy, and growth", &front)?)?;
+        let svg = chart::svg("Speed against accuracy, and growth", &front);
+        atomic_write(out.join("front.svg"), svg.as_bytes())?;
     }
-    save(&out.join("index.html"), &page::html(&sections))
+    Ok(atomic_write(out.join("index.html"), page::html(&sections).as_bytes())?)
 }
 
 /// Whether a panel is one of the few that matter most: a scene of each kind, and how time grows.
@@ -193,13 +194,6 @@ fn is_in_front(family: &str, title: &str) -> bool {
         _ => &[],
     };
     first.iter().any(|first| title.starts_with(first))
-}
-
-/// Writes a file beside and renames it, so that no reader sees half of one.
-fn save(path: &Path, text: &str) -> Result<(), ChartError> {
-    let beside = path.with_extension("part");
-    let saved = std::fs::write(&beside, text).and_then(|()| std::fs::rename(&beside, path));
-    saved.map_err(|source| ChartError::File { path: path.to_owned(), source })
 }
 
 impl Settings {
@@ -229,15 +223,8 @@ impl Settings {
 
     /// What something gives, the seconds of the quickest run, and of how many. Those below a second are repeated, 3 times in the
     /// quick form and 5 times else.
-    pub(crate) fn best_of<T>(&self, mut run: impl FnMut() -> T) -> (T, f64, u32) {
-        let (mut value, mut seconds) = clock::timed(&mut run);
-        let mut repeats = 1;
-        while repeats < self.pick(3, 5) && seconds < clock::SHORT {
-            let (again, time) = clock::timed(&mut run);
-            (value, seconds) = (again, seconds.min(time));
-            repeats += 1;
-        }
-        (value, seconds, repeats)
+    pub(crate) fn best_of<T>(&self, run: impl FnMut() -> T) -> (T, f64, u32) {
+        quickest(self.pick(3, 5), run)
     }
 }
 

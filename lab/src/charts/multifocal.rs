@@ -1,7 +1,6 @@
 //! What is hidden from whole volumes of viewpoints: multifocal buffers in their forms, beside older methods.
 
 use super::panels::time_against_over;
-use super::plot::Panel;
 use super::row::Row;
 use super::{ChartError, Family, Settings};
 use sightlines::cells::Scene;
@@ -16,6 +15,7 @@ use sightlines::multifocal::{
 };
 use sightlines::multifocal_cpu::{Fast, Reference};
 use sightlines::scenes::{CityOptions, TowerOptions, city, city_crossings, tower, tower_rooms};
+use sightlines_benches::chart::Panel;
 use sightlines_testkit::RayScene;
 use std::sync::Arc;
 use std::time::Instant;

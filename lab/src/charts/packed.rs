@@ -1,13 +1,13 @@
 //! Codings of tables: bytes against the time to read a row.
 
 use super::panels::{Layout, by_scene};
-use super::plot::Panel;
 use super::row::Row;
 use super::{ChartError, Family, Settings};
 use sightlines::bake::{PlanBakeOptions, PrtOptions, SceneBakeOptions, bake_plan, bake_prt, bake_scene};
 use sightlines::packed::{Distinct, PackOptions, Packed, pack_report};
 use sightlines::pvs::{CellId, Table};
 use sightlines::scenes::doom_like;
+use sightlines_benches::chart::Panel;
 use sightlines_benches::codings::{CodedRows, RowCoding, unpack_runs, zero_runs};
 use sightlines_benches::quake::MapSpec;
 use sightlines_benches::spec::SceneSpec;

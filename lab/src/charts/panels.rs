@@ -1,7 +1,7 @@
 //! From rows to panels: what most families draw.
 
-use super::plot::{Panel, Point, Series};
 use super::row::Row;
+use sightlines_benches::chart::{Panel, Point, Series};
 
 /// The method of a row without its setting: what stands before the first colon.
 pub fn base_name(method: &str) -> &str {

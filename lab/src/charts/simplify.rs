@@ -1,7 +1,6 @@
 //! Fewer triangles for a volume of viewpoints: what rays find changed, against what is left and against time.
 
 use super::panels::{Layout as PanelLayout, by_scene};
-use super::plot::Panel;
 use super::row::Row;
 use super::{ChartError, Family, Settings};
 use sightlines::cells::Scene;
@@ -13,6 +12,7 @@ use sightlines::scenes::{CityOptions, TowerOptions, city, city_crossings, tower,
 use sightlines::simplify::{
     HiddenBy, MeasureOptions, Prepared, Simplified, SimplifyOptions, Views, geometric, measure,
 };
+use sightlines_benches::chart::Panel;
 use std::sync::Arc;
 use std::time::Instant;
 

@@ -1,8 +1,8 @@
 //! The linear program as a stabber, and stabbers that stop when their time is over.
 
-use super::clock::Start;
 use sightlines::geometry::{Aabb, Adaptive, AxialDoor, Orient2d, Point2, Portal2};
 use sightlines::sightline::{LimitReached, Stabber, Verdict};
+use sightlines_benches::measure::{CpuClock, Work};
 use sightlines_testkit::lp::{self, LpAnswer};
 use std::convert::Infallible;
 use std::sync::Arc;
@@ -107,7 +107,7 @@ impl<P: Programmed> Stabber for ByProgram<P> {
 #[derive(Debug, Clone)]
 pub(crate) struct Limited<S> {
     stabber: S,
-    start: Start,
+    start: CpuClock,
     limit: Duration,
     n_pushes: u64,
     is_over: Arc<AtomicBool>,
@@ -115,7 +115,7 @@ pub(crate) struct Limited<S> {
 
 impl<S: Stabber> Limited<S> {
     pub(crate) fn new(stabber: S, limit: Duration) -> Self {
-        Self { stabber, start: Start::now(), limit, n_pushes: 0, is_over: Arc::default() }
+        Self { stabber, start: CpuClock::start(Work::Process), limit, n_pushes: 0, is_over: Arc::default() }
     }
 
     /// Of this and all copies.

@@ -1,7 +1,7 @@
 //! What is measured is written, read and drawn; the same rows give the same bytes.
 
 use super::*;
-use crate::charts::plot::Panel;
+use sightlines_benches::chart::Panel;
 
 /// A family that takes no time.
 struct Made;
@@ -40,7 +40,7 @@ fn drawing_reads_rows_alone_and_repeats() {
     let folder = tempfile::tempdir().unwrap();
     let settings = Settings::here(true, None);
     let rows = Made.measure(&settings).unwrap();
-    save(&folder.path().join("made.csv"), &row::write(&rows)).unwrap();
+    std::fs::write(folder.path().join("made.csv"), row::write(&rows)).unwrap();
     let families: Vec<Box<dyn Family>> = vec![Box::new(Made)];
     let files = || ["made.svg", "index.html"].map(|name| std::fs::read(folder.path().join(name)).unwrap());
     draw(folder.path(), &families).unwrap();
@@ -50,10 +50,10 @@ fn drawing_reads_rows_alone_and_repeats() {
     let svg = String::from_utf8(first[0].clone()).unwrap();
     assert_eq!(svg.matches("r=\"9\"").count(), 2, "two of three points are on the front");
     // Another row, another picture.
-    save(&folder.path().join("made.csv"), &row::write(&rows[1..])).unwrap();
+    std::fs::write(folder.path().join("made.csv"), row::write(&rows[1..])).unwrap();
     draw(folder.path(), &families).unwrap();
     assert_ne!(files(), first);
-    save(&folder.path().join("made.csv"), "nonsense").unwrap();
+    std::fs::write(folder.path().join("made.csv"), "nonsense").unwrap();
     let error = draw(folder.path(), &families).unwrap_err().to_string();
     assert!(error.ends_with("made.csv: line 1: not the columns of a chart"), "{error}");
 }

@@ -1,7 +1,6 @@
 //! What one eye sees, by every classical method: wrong pixels against time.
 
 use super::panels::{Layout, by_scene};
-use super::plot::Panel;
 use super::row::Row;
 use super::{ChartError, Family, Settings};
 use sightlines::cells::Scene;
@@ -12,6 +11,7 @@ use sightlines::visible_surface::{
     Bsp, BspOptions, Camera, DepthFormat, FaceMask, Faces, Newell, Painter, RayCaster, RenderInput, Schumacker,
     SchumackerOptions, VisibleSurface, ZBuffer, compare,
 };
+use sightlines_benches::chart::Panel;
 
 const NAME: &str = "speed_visible_surface";
 

@@ -1,6 +1,6 @@
 //! The whole of it: sweeps to CSV, CSV to pictures and a page, and whether all is as it must be.
 
-use super::draw::{DrawError, svg};
+use super::draw::svg;
 use super::method::{Kind, Outcome};
 use super::page::{Part, page, summary, sums};
 use super::sweep::{Finding, Sweep};
@@ -51,15 +51,9 @@ pub enum RunError {
         #[source]
         source: TableError,
     },
-    /// A picture could not be drawn.
-    #[error("{}: {source}", path.display())]
-    Draw {
-        /// Of which file.
-        path: PathBuf,
-        /// Why.
-        #[source]
-        source: DrawError,
-    },
+    /// There is nothing to draw in a CSV file.
+    #[error("{}: there are no rows", .0.display())]
+    Empty(PathBuf),
 }
 
 /// Measures and draws; returns what is to be printed, and complaints: an empty list is success.
@@ -86,8 +80,7 @@ pub fn run(sweeps: &[Sweep], options: &Options) -> Result<(String, Vec<String>),
         }
         // What is drawn is what was written.
         let rows = read(&path)?;
-        let picture = svg(sweep.name, sweep.parameter, &rows);
-        let picture = picture.map_err(|source| RunError::Draw { path: path.clone(), source })?;
+        let picture = svg(sweep.name, sweep.parameter, &rows).ok_or_else(|| RunError::Empty(path.clone()))?;
         atomic_write(path.with_extension("svg"), picture.as_bytes())?;
         tables.push(rows);
     }

@@ -3,7 +3,7 @@
 use super::{Done, MapStatus, RejectSummary};
 use sightlines_formats::doom::{MapLump, MapLumps};
 use sightlines_formats::{RejectTable, Wad};
-use sightlines_progress::{Halt, Units};
+use sightlines_progress::{Halt, Kept, Units, kept_struct};
 
 pub(crate) const PHASE: &str = "maps";
 
@@ -38,6 +38,15 @@ pub(crate) fn get<E: From<Halt>>(
     }
 }
 
+kept_struct!(RejectSummary {
+    n_rejected,
+    n_effects,
+    n_disputed_cells,
+    n_lines_without_length,
+    n_rounded_crossings,
+    n_dropped_pieces,
+});
+
 fn encode((n_sectors, status, table): &Done) -> Vec<u8> {
     let tag = match status {
         MapStatus::KeptHandMade => KEPT,
@@ -46,43 +55,25 @@ fn encode((n_sectors, status, table): &Done) -> Vec<u8> {
         MapStatus::Written(_) => WRITTEN,
     };
     let mut bytes = vec![tag];
-    bytes.extend(n_sectors.to_le_bytes());
-    if let MapStatus::Written(did) = status {
-        let counts = [did.n_disputed_cells, did.n_lines_without_length, did.n_rounded_crossings, did.n_dropped_pieces];
-        let counts = [did.n_rejected, did.n_effects].into_iter().chain(counts.map(|n| n as u64));
-        counts.for_each(|n| bytes.extend(n.to_le_bytes()));
+    n_sectors.write(&mut bytes);
+    if let MapStatus::Written(summary) = status {
+        summary.write(&mut bytes);
         bytes.extend(table.iter().flatten());
     }
     bytes
 }
 
-fn decode(bytes: &[u8]) -> Option<Done> {
-    let (tag, rest) = bytes.split_first()?;
-    let (n_sectors, mut rest) = rest.split_first_chunk()?;
-    let n_sectors = u32::from_le_bytes(*n_sectors);
-    match *tag {
+fn decode(mut bytes: &[u8]) -> Option<Done> {
+    let (tag, n_sectors) = Kept::read(&mut bytes)?;
+    match tag {
         KEPT => Some((n_sectors, MapStatus::KeptHandMade, None)),
         SKIPPED => Some((n_sectors, MapStatus::SkippedUnsupported, None)),
         WRITTEN => {
-            let mut next = || {
-                let (number, later) = rest.split_first_chunk()?;
-                rest = later;
-                Some(u64::from_le_bytes(*number))
-            };
-            let [n_rejected, n_effects] = [next()?, next()?];
-            let mut count = || usize::try_from(next()?).ok();
-            let summary = RejectSummary {
-                n_rejected,
-                n_effects,
-                n_disputed_cells: count()?,
-                n_lines_without_length: count()?,
-                n_rounded_crossings: count()?,
-                n_dropped_pieces: count()?,
-            };
+            let summary = RejectSummary::read(&mut bytes)?;
             // As it was computed; whoever makes effects may make it what they like.
             let is_sound = |table: RejectTable| summary.n_effects > 0 || !table.has_hand_made_effects();
-            let table = RejectTable::from_bytes(n_sectors, rest).ok();
-            table.is_some_and(is_sound).then(|| (n_sectors, MapStatus::Written(summary), Some(rest.to_vec())))
+            let table = RejectTable::from_bytes(n_sectors, bytes).ok();
+            table.is_some_and(is_sound).then(|| (n_sectors, MapStatus::Written(summary), Some(bytes.to_vec())))
         }
         _ => None,
     }

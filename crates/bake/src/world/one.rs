@@ -7,6 +7,7 @@ use crate::request::{BakeRequest, Runtime};
 use crate::tile::{NearTile, Tile, bake_far, bake_tile};
 use sightlines_checkpoint::KeyHasher;
 use sightlines_geometry::Aabb;
+use sightlines_progress::Kept;
 use sightlines_tiles::{TilePart, far_bytes, near_bytes, table_bytes};
 use std::path::Path;
 use std::sync::Arc;
@@ -61,14 +62,13 @@ impl Files {
         self.0.iter().map(|(part, bytes)| (*part, &**bytes))
     }
 
-    /// As bytes, for a store: of each file the place in the list of parts, the length and the content.
+    /// As bytes, for a store: of each file the place in the list of parts and the content.
     pub(super) fn to_bytes(&self) -> Vec<u8> {
         let mut out = Vec::new();
         for (part, bytes) in &self.0 {
             let place = TilePart::ALL.iter().position(|other| other == part).unwrap_or_default();
-            out.push(place as u8);
-            out.extend((bytes.len() as u64).to_le_bytes());
-            out.extend(bytes);
+            place.write(&mut out);
+            bytes.write(&mut out);
         }
         out
     }
@@ -76,11 +76,9 @@ impl Files {
     /// `None` if these are no bytes of files.
     pub(super) fn from_bytes(mut bytes: &[u8]) -> Option<Self> {
         let mut files = Vec::new();
-        while let Some((&place, rest)) = bytes.split_first() {
-            let (n, rest) = rest.split_first_chunk()?;
-            let (content, rest) = rest.split_at_checked(usize::try_from(u64::from_le_bytes(*n)).ok()?)?;
-            files.push((*TilePart::ALL.get(usize::from(place))?, content.to_vec()));
-            bytes = rest;
+        while !bytes.is_empty() {
+            let (place, content) = <(usize, Vec<u8>)>::read(&mut bytes)?;
+            files.push((*TilePart::ALL.get(place)?, content));
         }
         Some(Self(files))
     }

@@ -3,6 +3,7 @@
 mod pixels;
 
 use crate::buffer_chart::number;
+use crate::chart::Svg;
 use crate::draw::{MAX_SIZE, MIN_SIZE};
 use crate::frame::{Frame, Px};
 use crate::png::{Pixels, encode_small};
@@ -61,50 +62,31 @@ pub fn field_colour(place: f64) -> [u8; 3] {
 pub fn field_svg(field: &Field<'_>) -> String {
     let drawn = Layout::of(field);
     let [width, height] = drawn.size;
-    let mut out = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
-         stroke-linecap=\"round\" stroke-linejoin=\"round\">\n<title>{}</title>\n",
-        escaped(field.title)
-    );
+    let mut out = Svg::of_lines([width, height].map(f64::from), field.title);
     let [_, top, ..] = drawn.legend;
-    let _ = writeln!(
-        out,
-        "<rect y=\"{}\" width=\"{width}\" height=\"{}\" fill=\"{}\"/>",
-        Px(top),
-        Px(f64::from(height) - top),
-        theme::PAPER
-    );
+    let (top, below, paper) = (Px(top), Px(f64::from(height) - top), theme::PAPER);
+    out.push(format_args!("<rect y=\"{top}\" width=\"{width}\" height=\"{below}\" fill=\"{paper}\"/>"));
     let mut paths: BTreeMap<[u8; 3], String> = BTreeMap::new();
     for ([left, top, right, bottom], colour) in drawn.squares.iter().chain(&drawn.scale) {
         let path = paths.entry(*colour).or_default();
         let _ = write!(path, "M{} {}H{}V{}H{}Z", Px(*left), Px(*top), Px(*right), Px(*bottom), Px(*left));
     }
     for ([r, g, b], path) in paths {
-        let _ = writeln!(out, "<path fill=\"#{r:02x}{g:02x}{b:02x}\" shape-rendering=\"crispEdges\" d=\"{path}\"/>");
+        out.push(format_args!("<path fill=\"#{r:02x}{g:02x}{b:02x}\" shape-rendering=\"crispEdges\" d=\"{path}\"/>"));
     }
     let mut lines = String::new();
     for [[ax, ay], [bx, by]] in &drawn.walls {
         let _ = write!(lines, "M{} {}L{} {}", Px(*ax), Px(*ay), Px(*bx), Px(*by));
     }
     for (colour, width) in drawn.strokes() {
-        let _ = writeln!(
-            out,
-            "<path class=\"walls\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{}\" d=\"{lines}\"/>",
-            Px(width)
-        );
+        let width = Px(width);
+        let paint = format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\"");
+        out.push(format_args!("<path class=\"walls\" {paint} d=\"{lines}\"/>"));
     }
     for (text, at, size) in &drawn.texts {
-        let _ = writeln!(
-            out,
-            "<g><title>{}</title>\n<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\"/></g>",
-            escaped(text),
-            letters::path(text, *at, *size),
-            theme::INK,
-            Px(letters::stroke(*size))
-        );
+        out.letters(*at, *size, text);
     }
-    out.push_str("</svg>\n");
-    out
+    out.end()
 }
 
 /// Draws values as a PNG with transparency, like [`field_svg`].
@@ -140,11 +122,6 @@ pub fn field_png(field: &Field<'_>) -> Result<Vec<u8>, PngError> {
 fn parsed(colour: &str) -> [u8; 3] {
     let part = |k: usize| u8::from_str_radix(&colour[2 * k + 1..2 * k + 3], 16).unwrap_or_default();
     std::array::from_fn(part)
-}
-
-/// A text in XML.
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 /// Left, top, right and bottom, in pixels.

@@ -4,7 +4,7 @@
 
 use super::AxialSearch;
 use super::pairs::Pair;
-use sightlines_progress::Halt;
+use sightlines_progress::read_whole;
 use sightlines_pvs::runs::{read_runs, runs_of, write_runs};
 use std::ops::Range;
 
@@ -13,10 +13,8 @@ pub(super) const PAIRS: &str = "pairs";
 /// The phase of objects.
 pub(super) const OBJECTS: &str = "objects";
 
-/// A result that is none of this unit.
-pub(super) fn unfit(phase: &str, unit: usize) -> Halt {
-    Halt::Store(format!("the kept result of unit {unit} of the phase '{phase}' does not fit this bake"))
-}
+/// What results are of.
+pub(super) const OF: &str = "this bake";
 
 impl AxialSearch<'_> {
     fn places_of(&self, node: u32) -> Range<usize> {
@@ -47,14 +45,16 @@ impl AxialSearch<'_> {
     }
 
     /// Marks the pairs of a result; `None` if it is of other groups, and then some may be marked.
-    pub(super) fn restore_pairs(&self, [a, b]: Pair, mut bytes: &[u8]) -> Option<()> {
+    pub(super) fn restore_pairs(&self, [a, b]: Pair, bytes: &[u8]) -> Option<()> {
         let (rows, cols) = (self.places_of(a), self.places_of(b));
-        for row in rows {
-            for col in read_runs(&mut bytes, cols.len() as u32)?.into_iter().flatten() {
-                self.join(row, cols.start + col as usize);
+        read_whole(bytes, |bytes| {
+            for row in rows {
+                for col in read_runs(bytes, cols.len() as u32)?.into_iter().flatten() {
+                    self.join(row, cols.start + col as usize);
+                }
             }
-        }
-        bytes.is_empty().then_some(())
+            Some(())
+        })
     }
 
     /// From which places an object is seen, once that is decided.
@@ -65,11 +65,11 @@ impl AxialSearch<'_> {
     }
 
     /// Marks the places of a result; `None` if it is of another object.
-    pub(super) fn restore_object(&self, object: usize, mut bytes: &[u8]) -> Option<()> {
-        let places = read_runs(&mut bytes, self.cell_at.len() as u32)?;
+    pub(super) fn restore_object(&self, object: usize, bytes: &[u8]) -> Option<()> {
+        let places = read_whole(bytes, |bytes| read_runs(bytes, self.cell_at.len() as u32))?;
         places.into_iter().flatten().for_each(|place| {
             self.objects.set(object, place as usize);
         });
-        bytes.is_empty().then_some(())
+        Some(())
     }
 }

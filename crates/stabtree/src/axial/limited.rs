@@ -51,17 +51,15 @@ impl AxialSearch<'_> {
                         let place = next.fetch_add(1, Relaxed);
                         let (unit, task) = begun[place];
                         let before = worker.shaft.counters();
-                        let (mut rest, mut is_computed) = (Vec::new(), false);
-                        let result = units.get(kept::PAIRS, unit, || {
-                            is_computed = true;
-                            rest = self.settle_below(task, worker, shares.next_unit(), allowance);
-                            Ok::<_, Halt>(if units.are_kept() { self.result_of_pairs(task) } else { Vec::new() })
-                        })?;
-                        if let Some(bytes) = result.filter(|_| !is_computed) {
-                            self.restore_pairs(task, &bytes).ok_or_else(|| kept::unfit(kept::PAIRS, unit))?;
-                        }
+                        let (rest, is_kept) = units.value(
+                            (kept::PAIRS, unit, kept::OF),
+                            || Ok::<_, Halt>(self.settle_below(task, worker, shares.next_unit(), allowance)),
+                            |_| self.result_of_pairs(task),
+                            |bytes| self.restore_pairs(task, bytes).map(|()| Vec::new()),
+                        )?;
+                        let rest = rest.unwrap_or_default();
                         if is_first {
-                            counter.step_by(PAIRS * shares_of_time[unit], !is_computed)?
+                            counter.step_by(PAIRS * shares_of_time[unit], is_kept)?
                         } else {
                             counter.check()?
                         }
@@ -151,17 +149,15 @@ impl AxialSearch<'_> {
                         let place = next.fetch_add(1, Relaxed);
                         let (object, nodes) = (begun[place].0, begun[place].1.clone());
                         let before = worker.shaft.counters();
-                        let (mut rest, mut is_computed) = (Vec::new(), false);
-                        let result = units.get(kept::OBJECTS, object, || {
-                            is_computed = true;
-                            rest = self.settle_object(object, worker, nodes, shares.next_unit(), allowance);
-                            Ok::<_, Halt>(if units.are_kept() { self.result_of_object(object) } else { Vec::new() })
-                        })?;
-                        if let Some(bytes) = result.filter(|_| !is_computed) {
-                            self.restore_object(object, &bytes).ok_or_else(|| kept::unfit(kept::OBJECTS, object))?;
-                        }
+                        let (rest, is_kept) = units.value(
+                            (kept::OBJECTS, object, kept::OF),
+                            || Ok::<_, Halt>(self.settle_object(object, worker, nodes, shares.next_unit(), allowance)),
+                            |_| self.result_of_object(object),
+                            |bytes| self.restore_object(object, bytes).map(|()| Vec::new()),
+                        )?;
+                        let rest = rest.unwrap_or_default();
                         if is_first {
-                            counter.step_by((1.0 - PAIRS) * shares_of_time[object], !is_computed)?
+                            counter.step_by((1.0 - PAIRS) * shares_of_time[object], is_kept)?
                         } else {
                             counter.check()?
                         }

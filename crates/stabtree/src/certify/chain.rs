@@ -2,8 +2,7 @@
 //! that those before it have proven. So the units are a chain: a run that goes on takes again what the units before have found, each line
 //! and each walk checked again, and then searches on.
 
-use sightlines_progress::{Counter, Halt, Phase, Units};
-use sightlines_pvs::runs::{read_varint, write_varint};
+use sightlines_progress::{Counter, Halt, Kept, Phase, Units};
 use std::ops::Range;
 
 /// A search for lines and walks, in steps: lines that are shot, searches for lines, walks. What a step finds depends on the steps before it
@@ -127,7 +126,7 @@ pub(crate) fn through<S: Steps>(
             // All that comes later builds on this unit, which is for another process.
             let Some(result) = result else { return Ok(()) };
             if !is_computed {
-                chain.repeat(unit, &result).ok_or_else(|| super::unfit(phase, place))?;
+                chain.repeat(unit, &result).ok_or_else(|| Halt::unfit(phase, place, super::OF))?;
                 let n = if let Unit::Seeks(part) | Unit::Walks(part) = unit { part.len() } else { 0 };
                 (0..n).try_for_each(|_| count(true))?;
             }
@@ -163,7 +162,7 @@ impl<S: Steps> Chain<S> {
         }
         let mut out = Vec::new();
         if is_kept {
-            write_varint(self.steps.spent() - spent, &mut out);
+            (self.steps.spent() - spent).write(&mut out);
             out.append(&mut self.steps.taken_since(n_taken));
         }
         Ok(out)
@@ -183,7 +182,7 @@ impl<S: Steps> Chain<S> {
     /// Takes what a unit has found; `None` if it cannot have found that. Then the search is of no more use.
     fn repeat(&mut self, unit: &Unit, mut bytes: &[u8]) -> Option<()> {
         let (Unit::Seeks(part) | Unit::Walks(part)) = unit else { return self.shoot_again(unit, bytes) };
-        let (spent, [n_lines, n_walks]) = (read_varint(&mut bytes)?, self.steps.n_taken());
+        let (spent, [n_lines, n_walks]) = (u64::read(&mut bytes)?, self.steps.n_taken());
         if !self.steps.spend(spent, part.len()) || !self.steps.take_again(bytes) {
             return None;
         }
@@ -211,22 +210,16 @@ impl<S: Steps> Chain<S> {
 
 /// How many were taken; for each the difference to the one before, twice, plus the form.
 fn shots_to_bytes(taken: &[[usize; 2]]) -> Vec<u8> {
-    let (mut out, mut before) = (Vec::new(), 0);
-    write_varint(taken.len() as u64, &mut out);
-    for &[shot, form] in taken {
-        write_varint((2 * (shot - before) + form) as u64, &mut out);
-        before = shot;
-    }
-    out
+    let mut before = 0;
+    let code = |&[shot, form]: &[usize; 2]| 2 * (shot - std::mem::replace(&mut before, shot)) + form;
+    taken.iter().map(code).collect::<Vec<usize>>().to_bytes()
 }
 
-fn shots_from_bytes(mut bytes: &[u8]) -> Option<Vec<[usize; 2]>> {
-    let n = usize::try_from(read_varint(&mut bytes)?).ok().filter(|n| *n <= bytes.len())?;
-    let (mut taken, mut before) = (Vec::with_capacity(n), 0_usize);
-    for _ in 0..n {
-        let code = usize::try_from(read_varint(&mut bytes)?).ok()?;
+fn shots_from_bytes(bytes: &[u8]) -> Option<Vec<[usize; 2]>> {
+    let mut before = 0_usize;
+    let taken = |code: usize| {
         before = before.checked_add(code / 2)?;
-        taken.push([before, code % 2]);
-    }
-    bytes.is_empty().then_some(taken)
+        Some([before, code % 2])
+    };
+    Vec::from_bytes(bytes)?.into_iter().map(taken).collect()
 }

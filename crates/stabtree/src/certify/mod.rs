@@ -86,7 +86,5 @@ impl<N: Error + 'static> From<Halt> for CertifyError<N> {
 /// The phase of lines and walks, and in space of pairs of groups of cells.
 pub(crate) const PHASE: &str = "proofs";
 
-/// A result that is none of this unit.
-fn unfit(phase: &str, unit: usize) -> Halt {
-    Halt::Store(format!("the kept result of unit {unit} of the phase '{phase}' does not fit these cells"))
-}
+/// What results are of.
+const OF: &str = "these cells";

@@ -9,9 +9,9 @@
 use super::beams::Traced;
 use super::pairs::PairVerdict;
 use super::{ConvexCounters, ConvexSearch, ConvexState, FEW, Gates, N_STAGES, PAIRS};
-use sightlines_progress::{Halt, Observer, Phase, Units};
+use sightlines_progress::{Halt, Kept, Observer, Phase, Units, kept_struct, read_whole};
 use sightlines_pvs::BitMatrix;
-use sightlines_pvs::runs::{read_runs, read_varint, runs_of, write_runs, write_varint};
+use sightlines_pvs::runs::{read_runs, runs_of, write_runs};
 use sightlines_sightline::{LimitReached, Verdict};
 use std::ops::Range;
 
@@ -61,9 +61,10 @@ impl Before {
 /// Cells of a unit of pairs.
 const CELLS: usize = 16;
 
-fn unfit(phase: &str, unit: usize) -> Halt {
-    Halt::Store(format!("the kept result of unit {unit} of the phase '{phase}' does not fit this bake"))
-}
+/// What results are of.
+const OF: &str = "this bake";
+
+kept_struct!(ConvexCounters { clips, lines, programs, beams, sequences });
 
 impl ConvexSearch {
     /// Takes all steps of a search that has not begun, with results that are kept; reports as [`ConvexSearch::run`] does.
@@ -96,7 +97,7 @@ impl ConvexSearch {
                 Ok::<_, Halt>(self.first_result())
             })?;
             if let Some(bytes) = result.filter(|_| !is_computed) {
-                self.restore_first(&bytes).ok_or_else(|| unfit(FIRST, 0))?;
+                self.restore_first(&bytes).ok_or_else(|| Halt::unfit(FIRST, 0, OF))?;
             }
             Ok(())
         })
@@ -105,20 +106,18 @@ impl ConvexSearch {
     /// The state behind the first two stages.
     fn first_result(&self) -> Vec<u8> {
         let mut out = Vec::new();
-        write_varint(u64::from(self.state.stage), &mut out);
-        [&self.order, &self.rank].into_iter().flatten().for_each(|&x| write_varint(u64::from(x), &mut out));
+        self.state.stage.write(&mut out);
+        [&self.order, &self.rank].into_iter().for_each(|all| u32::write_all(all, &mut out));
         for matrix in [&self.state.visible, &self.state.possible, &self.state.through] {
             (0..matrix.n_rows()).for_each(|row| write_row(matrix.row(row), &mut out));
         }
-        write_counters(self.state.counters, &mut out);
+        self.state.counters.write(&mut out);
         out
     }
 
     fn restore_first(&mut self, mut bytes: &[u8]) -> Option<()> {
-        let stage = u32::try_from(read_varint(&mut bytes)?).ok().filter(|stage| [2, N_STAGES].contains(stage))?;
-        let mut below = |n: usize| -> Option<Vec<u32>> {
-            (0..n).map(|_| read_varint(&mut bytes).filter(|x| *x < n as u64).map(|x| x as u32)).collect()
-        };
+        let stage = u32::read(&mut bytes).filter(|stage| [2, N_STAGES].contains(stage))?;
+        let mut below = |n: usize| u32::read_all(&mut bytes, n).filter(|all| all.iter().all(|x| (*x as usize) < n));
         (self.order, self.rank) = (below(self.gates.len())?, below(self.gates.n_cells())?);
         let state = &mut self.state;
         for matrix in [&mut state.visible, &mut state.possible, &mut state.through] {
@@ -128,8 +127,8 @@ impl ConvexSearch {
         if ![&state.visible, &state.possible].iter().all(|matrix| matrix.is_symmetric()) {
             return None;
         }
-        (state.counters, state.stage, state.done) = (read_counters(&mut bytes)?, stage, 0);
-        bytes.is_empty().then_some(())
+        (state.counters, state.stage, state.done) = (ConvexCounters::from_bytes(bytes)?, stage, 0);
+        Some(())
     }
 
     fn beams_in_units(&mut self, observer: Option<&dyn Observer>, units: Units<'_>) -> Result<(), Halt> {
@@ -163,23 +162,15 @@ impl ConvexSearch {
         is_done: &mut [bool],
         units: Units<'_>,
     ) -> Result<(), Halt> {
-        let (mut found, n_cells) = (None, self.gates.n_cells());
-        let result = units.get(phase, unit, || {
+        let compute = || {
             let (traced, counters): (Vec<Traced>, Vec<ConvexCounters>) =
                 self.beams_of(range.clone()).into_iter().unzip();
             let mut all = ConvexCounters::default();
             counters.into_iter().for_each(|counters| all += counters);
-            let bytes = beams_to_bytes(&traced, all);
-            found = Some((traced, all));
-            Ok::<_, Halt>(bytes)
-        })?;
-        let found = match (found, result) {
-            (None, Some(bytes)) => {
-                let read = beams_from_bytes(&bytes, range.len(), n_cells, &self.gates);
-                Some(read.ok_or_else(|| unfit(phase, unit))?)
-            }
-            (found, _) => found,
+            Ok::<_, Halt>((traced, all))
         };
+        let read = |bytes: &[u8]| beams_from_bytes(bytes, range.len(), &self.gates);
+        let (found, _) = units.value((phase, unit, OF), compute, beams_to_bytes, read)?;
         self.state.done = range.end as u64;
         if let Some((traced, counters)) = found {
             self.state.counters += counters;
@@ -205,7 +196,7 @@ impl ConvexSearch {
                             Ok::<_, Halt>(self.decide_cells(cells))
                         })?;
                         if let Some(bytes) = result.filter(|_| !is_computed) {
-                            self.restore_cells(cells, &bytes).ok_or_else(|| unfit(phase, unit))?;
+                            self.restore_cells(cells, &bytes).ok_or_else(|| Halt::unfit(phase, unit, OF))?;
                         }
                         self.state.done += cells.len() as u64;
                         self.tell(observer)?;
@@ -221,7 +212,7 @@ impl ConvexSearch {
     /// Decides the pairs in doubt of some cells, and returns the verdicts.
     fn decide_cells(&mut self, cells: &[u32]) -> Vec<u8> {
         let mut all = ConvexCounters::default();
-        let (mut out, mut n) = (Vec::new(), 0);
+        let (mut out, mut n) = (Vec::new(), 0_u64);
         let pairs: Vec<[u32; 2]> = cells.iter().flat_map(|&cell| self.pairs_in_doubt(cell)).collect();
         for batch in pairs.chunks(PAIRS) {
             // A line of an earlier batch may have settled some.
@@ -235,20 +226,19 @@ impl ConvexSearch {
             }
         }
         self.state.counters += all;
-        let mut bytes = Vec::new();
-        write_varint(n, &mut bytes);
+        let mut bytes = n.to_bytes();
         bytes.append(&mut out);
-        write_counters(all, &mut bytes);
+        all.write(&mut bytes);
         bytes
     }
 
     fn restore_cells(&mut self, cells: &[u32], mut bytes: &[u8]) -> Option<()> {
-        for _ in 0..read_varint(&mut bytes)? {
+        for _ in 0..u64::read(&mut bytes)? {
             let (pair, sight) = read_verdict(&mut bytes, &self.gates).filter(|([a, _], _)| cells.contains(a))?;
             self.apply_verdict(pair, &sight);
         }
-        self.state.counters += read_counters(&mut bytes)?;
-        bytes.is_empty().then_some(())
+        self.state.counters += ConvexCounters::from_bytes(bytes)?;
+        Some(())
     }
 }
 
@@ -263,75 +253,51 @@ fn read_row(bytes: &mut &[u8], matrix: &mut BitMatrix, row: usize) -> Option<()>
     Some(())
 }
 
-fn write_counters(counters: ConvexCounters, out: &mut Vec<u8>) {
-    let ConvexCounters { clips, lines, programs, beams, sequences } = counters;
-    [clips, lines, programs, beams, sequences].into_iter().for_each(|n| write_varint(n, out));
-}
-
-fn read_counters(bytes: &mut &[u8]) -> Option<ConvexCounters> {
-    let mut next = || read_varint(bytes);
-    Some(ConvexCounters { clips: next()?, lines: next()?, programs: next()?, beams: next()?, sequences: next()? })
-}
-
-fn write_chain(chain: &[u32], out: &mut Vec<u8>) {
-    write_varint(chain.len() as u64, out);
-    chain.iter().for_each(|&gate| write_varint(u64::from(gate), out));
-}
-
 fn read_chain(bytes: &mut &[u8], gates: &Gates) -> Option<Vec<u32>> {
-    let n = usize::try_from(read_varint(bytes)?).ok().filter(|n| *n <= bytes.len())?;
-    let chain: Option<Vec<u32>> =
-        (0..n).map(|_| read_varint(bytes).filter(|gate| *gate < gates.len() as u64).map(|gate| gate as u32)).collect();
+    let is_gate = |chain: &Vec<u32>| chain.iter().all(|gate| (*gate as usize) < gates.len());
     // A line goes from cell to cell.
-    chain.filter(|chain| chain.windows(2).all(|pair| gates.get(pair[0]).to == gates.get(pair[1]).from))
+    let is_line = |chain: &Vec<u32>| chain.windows(2).all(|pair| gates.get(pair[0]).to == gates.get(pair[1]).from);
+    Vec::read(bytes).filter(is_gate).filter(is_line)
 }
 
-fn beams_to_bytes(traced: &[Traced], counters: ConvexCounters) -> Vec<u8> {
+fn beams_to_bytes((traced, counters): &(Vec<Traced>, ConvexCounters)) -> Vec<u8> {
     let mut out = Vec::new();
     for Traced { hidden, chains } in traced {
         write_row(hidden, &mut out);
-        write_varint(chains.len() as u64, &mut out);
-        chains.iter().for_each(|chain| write_chain(chain, &mut out));
+        chains.write(&mut out);
     }
-    write_counters(counters, &mut out);
+    counters.write(&mut out);
     out
 }
 
-fn beams_from_bytes(
-    mut bytes: &[u8],
-    n: usize,
-    n_cells: usize,
-    gates: &Gates,
-) -> Option<(Vec<Traced>, ConvexCounters)> {
-    let mut all = Vec::with_capacity(n);
-    for _ in 0..n {
+fn beams_from_bytes(bytes: &[u8], n: usize, gates: &Gates) -> Option<(Vec<Traced>, ConvexCounters)> {
+    let n_cells = gates.n_cells();
+    let traced = |bytes: &mut &[u8]| {
         let mut hidden = vec![0u64; n_cells.div_ceil(64)];
-        let runs = read_runs(&mut bytes, n_cells as u32)?;
+        let runs = read_runs(bytes, n_cells as u32)?;
         runs.into_iter().flatten().for_each(|cell| hidden[cell as usize / 64] |= 1 << (cell % 64));
-        let n_chains = usize::try_from(read_varint(&mut bytes)?).ok().filter(|n| *n <= bytes.len())?;
-        let chains: Option<Vec<Vec<u32>>> = (0..n_chains).map(|_| read_chain(&mut bytes, gates)).collect();
-        all.push(Traced { hidden, chains: chains? });
-    }
-    let counters = read_counters(&mut bytes)?;
-    bytes.is_empty().then_some((all, counters))
+        let n_chains = usize::read(bytes)?;
+        let chains = (0..n_chains).map(|_| read_chain(bytes, gates)).collect::<Option<_>>()?;
+        Some(Traced { hidden, chains })
+    };
+    read_whole(bytes, |bytes| Some(((0..n).map(|_| traced(bytes)).collect::<Option<_>>()?, Kept::read(bytes)?)))
 }
 
-fn write_verdict([a, b]: [u32; 2], sight: &PairVerdict, out: &mut Vec<u8>) {
-    [a, b].into_iter().for_each(|cell| write_varint(u64::from(cell), out));
+fn write_verdict(pair: [u32; 2], sight: &PairVerdict, out: &mut Vec<u8>) {
+    pair.write(out);
     match sight {
-        Verdict::Hidden(()) => write_varint(0, out),
-        Verdict::Undecided(LimitReached) => write_varint(1, out),
+        Verdict::Hidden(()) => out.push(0),
+        Verdict::Undecided(LimitReached) => out.push(1),
         Verdict::Visible(chain) => {
-            write_varint(2, out);
-            write_chain(chain, out);
+            out.push(2);
+            chain.write(out);
         }
     }
 }
 
 fn read_verdict(bytes: &mut &[u8], gates: &Gates) -> Option<([u32; 2], PairVerdict)> {
-    let mut cell = || read_varint(bytes).filter(|cell| *cell < gates.n_cells() as u64).map(|cell| cell as u32);
-    let pair = [cell()?, cell()?];
-    let sight = match read_varint(bytes)? {
+    let pair = <[u32; 2]>::read(bytes).filter(|pair| pair.iter().all(|cell| (*cell as usize) < gates.n_cells()))?;
+    let sight = match u8::read(bytes)? {
         0 => Verdict::Hidden(()),
         1 => Verdict::Undecided(LimitReached),
         2 => Verdict::Visible(read_chain(bytes, gates)?),

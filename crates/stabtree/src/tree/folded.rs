@@ -4,7 +4,7 @@ use super::gate_graph::GateGraph;
 use super::grow::Grown;
 use super::share::Shared;
 use sightlines_cells::CellId;
-use sightlines_pvs::runs::{read_varint, write_varint};
+use sightlines_progress::{Kept, write_list};
 
 /// Numbers of the trees of all cells, before equal ones are shared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -76,19 +76,15 @@ impl Folded {
     /// Nodes with children before their parents, then the root.
     pub(super) fn to_bytes(&self) -> Vec<u8> {
         let mut out = Vec::new();
-        let list = |nodes: &[u32], out: &mut Vec<u8>| {
-            write_varint(nodes.len() as u64, out);
-            nodes.iter().for_each(|&node| write_varint(u64::from(node), out));
-        };
-        write_varint(self.shared.len() as u64, &mut out);
+        self.shared.len().write(&mut out);
         for node in 0..self.shared.len() as u32 {
             let (gate, open) = (self.shared.gates[node as usize], self.shared.open[node as usize]);
-            write_varint(u64::from(gate) << 1 | u64::from(open), &mut out);
-            list(self.shared.children(node), &mut out);
+            (u64::from(gate) << 1 | u64::from(open)).write(&mut out);
+            write_list(self.shared.children(node), &mut out);
         }
-        list(&self.roots, &mut out);
-        write_varint(u64::from(self.root_open), &mut out);
-        write_varint(self.counts.n_undecided, &mut out);
+        self.roots.write(&mut out);
+        self.root_open.write(&mut out);
+        self.counts.n_undecided.write(&mut out);
         out
     }
 
@@ -96,8 +92,8 @@ impl Folded {
     pub(super) fn from_bytes(mut bytes: &[u8], ways: &GateGraph<'_>, cell: CellId, max_nodes: usize) -> Option<Self> {
         let mut shared = Shared::default();
         let mut nodes = Vec::new();
-        for node in 0..read_varint(&mut bytes)? {
-            let gate = read_varint(&mut bytes)?;
+        for node in 0..u64::read(&mut bytes)? {
+            let gate = u64::read(&mut bytes)?;
             let (gate, open) = (u32::try_from(gate >> 1).ok()?, gate & 1 == 1);
             let here = ways.ends(gate)?[1];
             read_nodes(&mut bytes, &shared, ways, here, &mut nodes)?;
@@ -106,10 +102,9 @@ impl Folded {
             }
         }
         read_nodes(&mut bytes, &shared, ways, cell, &mut nodes)?;
-        let root_open = read_varint(&mut bytes).filter(|open| *open < 2)? == 1;
-        let n_undecided = read_varint(&mut bytes)?;
+        let (root_open, n_undecided) = <(bool, u64)>::from_bytes(bytes)?;
         let folded = Self::of(shared, nodes, root_open, n_undecided);
-        (bytes.is_empty() && folded.counts.n_largest <= max_nodes as u64).then_some(folded)
+        (folded.counts.n_largest <= max_nodes as u64).then_some(folded)
     }
 }
 
@@ -122,8 +117,8 @@ fn read_nodes(
     nodes: &mut Vec<u32>,
 ) -> Option<()> {
     nodes.clear();
-    for _ in 0..read_varint(bytes)? {
-        let node = u32::try_from(read_varint(bytes)?).ok().filter(|node| (*node as usize) < shared.len())?;
+    for _ in 0..u64::read(bytes)? {
+        let node = u32::read(bytes).filter(|node| (*node as usize) < shared.len())?;
         let is_next = nodes.last().is_none_or(|last| *last < node);
         if !is_next || ways.ends(shared.gates[node as usize])?[0] != from {
             return None;

@@ -106,21 +106,13 @@ pub fn stab_trees<C: Space, F: Follower>(
     let counter = Counter::new(options.progress, "stab trees", n);
     let one = |follower: &mut F, cell: usize| -> Result<Option<Folded>, Halt> {
         counter.check()?;
-        let (id, mut computed) = (CellId(cell as u32), None);
-        let result = units.get(PHASE, cell, || {
-            let folded = Folded::new(&grow(&ways, id, follower, max_nodes));
-            let bytes = if units.are_kept() { folded.to_bytes() } else { Vec::new() };
-            computed = Some(folded);
-            Ok::<_, Halt>(bytes)
-        })?;
-        let is_kept = computed.is_none();
-        let folded = match (computed, result) {
-            (None, Some(bytes)) => {
-                let read = Folded::from_bytes(&bytes, &ways, id, max_nodes);
-                Some(read.ok_or_else(|| unfit(cell))?)
-            }
-            (computed, _) => computed,
-        };
+        let id = CellId(cell as u32);
+        let (folded, is_kept) = units.value(
+            (PHASE, cell, "this bake"),
+            || Ok::<_, Halt>(Folded::new(&grow(&ways, id, follower, max_nodes))),
+            Folded::to_bytes,
+            |bytes| Folded::from_bytes(bytes, &ways, id, max_nodes),
+        )?;
         counter.step_by(shares[cell], is_kept)?;
         Ok(folded)
     };
@@ -153,10 +145,6 @@ pub fn stab_trees<C: Space, F: Follower>(
         (forest.gates, forest.children, forest.open) = (shared.gates, shared.children, shared.open);
         Ok((forest, summary))
     })
-}
-
-fn unfit(cell: usize) -> Halt {
-    Halt::Store(format!("the kept result of unit {cell} of the phase '{PHASE}' does not fit this bake"))
 }
 
 /// [`stab_trees`] of a planar graph: exact.

@@ -7,8 +7,8 @@
 //! each other, is not found. Source: after Airey, Rohlf and Brooks, I3D 1990; passing each pair once is our own choice.
 
 use super::{Opening, PortalGraph};
-use crate::charts::clock::Start;
 use sightlines::pvs::BitMatrix;
+use sightlines_benches::measure::{CpuClock, Work};
 use std::time::Duration;
 
 /// Which cells are seen from which, cells by cells. Errs towards visible: barriers are decided exactly, so in the plane
@@ -18,7 +18,7 @@ use std::time::Duration;
 ///
 /// O(exits² · edges³) at worst.
 pub fn shadow_volumes<O: Opening>(graph: &PortalGraph<O>, limit: Duration) -> Option<BitMatrix> {
-    let start = Start::now();
+    let start = CpuClock::start(Work::Process);
     let n = graph.n_cells();
     let mut seen = BitMatrix::identity(n);
     let mut is_lit = vec![u32::MAX; graph.edges.len()];

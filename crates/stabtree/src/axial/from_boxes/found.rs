@@ -8,6 +8,7 @@ use crate::search::ones;
 use rayon::prelude::*;
 use sightlines_cells::{Axial, CellGraph};
 use sightlines_geometry::Aabb;
+use sightlines_progress::read_whole;
 use sightlines_pvs::BitMatrix;
 use sightlines_pvs::runs::{read_runs, runs_of, write_runs};
 use sightlines_sightline::{Blockers, FreeLine};
@@ -139,12 +140,13 @@ impl FoundVisible<'_> {
     }
 
     /// Marks what a box sees by a result; `None` if it is of other boxes, and then some may be marked.
-    pub(super) fn restore(&self, eye: usize, mut bytes: &[u8]) -> Option<()> {
-        let boxes = read_runs(&mut bytes, self.of_boxes.boxes.len() as u32)?;
-        let objects = read_runs(&mut bytes, self.of_objects.boxes.len() as u32)?;
+    pub(super) fn restore(&self, eye: usize, bytes: &[u8]) -> Option<()> {
+        let [n_boxes, n_objects] = [&self.of_boxes, &self.of_objects].map(|of| of.boxes.len() as u32);
+        let [boxes, objects] =
+            read_whole(bytes, |bytes| Some([read_runs(bytes, n_boxes)?, read_runs(bytes, n_objects)?]))?;
         boxes.into_iter().flatten().for_each(|other| self.see(Kind::Box, eye, other as usize));
         objects.into_iter().flatten().for_each(|object| self.see(Kind::Object, eye, object as usize));
-        bytes.is_empty().then_some(())
+        Some(())
     }
 
     /// Marks that a box sees something of a kind.

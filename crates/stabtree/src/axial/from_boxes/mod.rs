@@ -11,7 +11,7 @@ mod found;
 mod targets;
 
 use super::atomic_bits::AtomicBitMatrix;
-use super::kept::unfit;
+use super::kept::OF;
 use super::on_threads;
 use super::opaque::opaque_rectangles;
 use super::pairs::{CELL_BUDGET, GROUP_BUDGET, apart};
@@ -138,20 +138,19 @@ pub fn box_visibility(
                     || Shaft::new(&blockers),
                     |shaft, from| {
                         counter.check()?;
-                        let (eye, mut found) = (from.eye, None);
-                        let result = units.get(PHASE, eye, || {
-                            found = Some(one(shaft, from, shares.next_unit()));
-                            Ok::<_, Halt>(if units.are_kept() { known.result_of(eye, asked) } else { Vec::new() })
-                        })?;
-                        if let Some(bytes) = result.filter(|_| found.is_none()) {
-                            known.restore(eye, &bytes).ok_or_else(|| unfit(PHASE, eye))?;
-                        }
+                        let eye = from.eye;
+                        let (found, is_kept) = units.value(
+                            (PHASE, eye, OF),
+                            || Ok::<_, Halt>(Some(one(shaft, from, shares.next_unit()))),
+                            |_| known.result_of(eye, asked),
+                            |bytes| known.restore(eye, bytes).map(|()| None),
+                        )?;
                         if is_first {
-                            counter.step_by(shares_of_time[eye], found.is_none())?
+                            counter.step_by(shares_of_time[eye], is_kept)?
                         } else {
                             counter.check()?
                         }
-                        Ok(found)
+                        Ok(found.flatten())
                     },
                 );
                 for (rest, n_assumed, counters) in found.collect::<Result<Vec<_>, Halt>>()?.into_iter().flatten() {

@@ -3,7 +3,7 @@
 mod lines;
 mod terms;
 
-use super::{CertifyError, CertifyOptions, PHASE, through, unfit};
+use super::{CertifyError, CertifyOptions, OF, PHASE, through};
 use crate::axial::{AtomicBitMatrix, halves_first, on_threads, opaque_without_solid};
 use rayon::prelude::*;
 use sightlines_cells::{Axial, CellGraph};
@@ -278,19 +278,15 @@ impl<'a> Search<'a> {
         let counted: Vec<AtomicBool> = costs.iter().map(|_| AtomicBool::new(false)).collect();
         let work = |shaft: &mut Shaft<'a>, unit: usize| {
             counter.check()?;
-            let mut found = None;
-            let result = units.get(phase, unit, || {
+            let compute = || {
                 let all = find(shaft, unit);
                 // Whoever was cancelled has found a part.
                 counter.check()?;
-                let bytes = if units.are_kept() { CheckedProof::all_to_bytes(&all) } else { Vec::new() };
-                found = Some(all);
-                Ok::<_, Halt>(bytes)
-            })?;
-            let is_kept = found.is_none();
-            if let Some(bytes) = result.filter(|_| is_kept && units.has_all(phase)) {
-                found = Some(maker.check_bytes(&bytes).ok_or_else(|| unfit(phase, unit))?);
-            }
+                Ok::<_, Halt>(all)
+            };
+            let read = |bytes: &[u8]| if units.has_all(phase) { maker.check_bytes(bytes) } else { Some(Vec::new()) };
+            let (found, is_kept) =
+                units.value((phase, unit, OF), compute, |all| CheckedProof::all_to_bytes(all), read)?;
             match (units.are_kept(), counted[unit].swap(true, Relaxed)) {
                 (_, true) => counter.check()?,
                 (true, false) => counter.step_by(share, is_kept)?,
