@@ -132,8 +132,8 @@ pub(crate) fn check_writable(path: &Path) -> Result<()> {
     Ok(try_beside().map_err(|source| WriteError { path: path.to_owned(), source })?)
 }
 
-/// A coordinate for people: with as few digits as single precision needs if it is such a number, else rounded to 15 digits, so that what was
-/// computed does not show how doubles round. Programs get all digits.
+/// A coordinate for people: as it is if that takes few digits; else with those that single precision needs if it is such a number, or rounded
+/// to 15, so that what was computed does not show how doubles round. Programs get all digits.
 pub(crate) fn coordinate(x: f64) -> String {
     near(x, x.abs())
 }
@@ -160,11 +160,16 @@ fn is_single(x: f64) -> bool {
 
 /// A number to the decimals that 15 digits of `size` have; all digits of what is not finite.
 fn near(x: f64, size: f64) -> String {
+    let exact = x.to_string();
+    // Decimals that were written by hand are short; a number of single precision that was not takes more in a double.
+    if exact.bytes().filter(u8::is_ascii_digit).count() <= 12 {
+        return exact;
+    }
     if is_single(x) {
         return (x as f32).to_string();
     }
     if !(size.is_finite() && size > 0.0) {
-        return x.to_string();
+        return exact;
     }
     // A double has fewer than 400 places on either side of the point.
     let decimals = (14.0 - size.log10().floor()).clamp(0.0, 400.0) as usize;
@@ -239,13 +244,17 @@ mod tests {
     fn coordinates_are_written_as_they_were_meant() {
         let single = |x: f32| f64::from(x);
         assert_eq!([0.1, 9.42, single(0.452), -2.0, 1e-3].map(coordinate), ["0.1", "9.42", "0.452", "-2", "0.001"]);
-        assert_eq!([1.718_750_000_000_000_4, 0.1 + 0.2].map(coordinate), ["1.71875", "0.3"]);
+        assert_eq!(
+            [1.718_750_000_000_000_4, 0.1 + 0.2, 9.972_656_25].map(coordinate),
+            ["1.71875", "0.3", "9.97265625"]
+        );
         // The impostor: written out, the differences show how doubles round.
         assert_eq!([(9.42 - 9.0).to_string(), distance(9.0, 9.42)], ["0.41999999999999993", "0.42"]);
         assert_eq!([(1009.42 - 1009.0f64).to_string(), distance(1009.0, 1009.42)], ["0.41999999999995907", "0.42"]);
         assert_eq!([distance(single(-0.15), 8.0), distance(single(0.1), single(0.3))], ["8.15", "0.2"]);
         assert_eq!(point(&[single(0.1), -4e-18, 12.570_312_500_000_002]), "(0.1, 0, 12.5703125)");
         assert_eq!([f64::NAN, f64::INFINITY, -0.0, 1e300, 1e-300].map(coordinate)[..3], ["NaN", "inf", "-0"]);
+        assert_eq!(coordinate(single(203.833_3)), "203.8333");
         // What was given with at most 15 digits is written as it was given.
         for text in ["123456789.012345", "0.000123456789012345", "-98765.4321", "500002.25", "5400001.1"] {
             assert_eq!(coordinate(text.parse().unwrap()), text);

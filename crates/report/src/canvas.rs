@@ -52,9 +52,10 @@ impl Canvas {
                 }));
                 crossings.sort_unstable_by(f64::total_cmp);
                 for span in crossings.chunks_exact(2) {
-                    for column in span[0].floor() as usize..(span[1].ceil() as usize).min(width) {
+                    let columns = span[0].floor() as usize..span[1].ceil() as usize;
+                    for (part, column) in cover[columns.clone()].iter_mut().zip(columns) {
                         let x = column as f64;
-                        cover[column] += (span[1].min(x + 1.0) - span[0].max(x)) / SAMPLES as f64;
+                        *part += (span[1].min(x + 1.0) - span[0].max(x)) / SAMPLES as f64;
                     }
                 }
             }
