@@ -354,8 +354,8 @@ mod tests {
         for (x, y) in [(0.05, 0.8), (1.5, 0.8)] {
             assert_eq!(at(x, y), opaque(paper), "at {x}, {y}");
         }
-        let (dot, wall) = (at(0.5, 0.25), at(1.0, 1.0));
-        assert_eq!(dot, opaque(parsed(theme::FROM)));
-        assert_eq!(wall, opaque(parsed(theme::WALL)));
+        assert_eq!(at(0.5, 0.25), opaque(parsed(theme::FROM)));
+        // A thin line covers its pixels in part.
+        assert!(at(1.0, 1.0)[0] < paper[0] / 2 + 30, "{:?}", at(1.0, 1.0));
     }
 }
