@@ -147,10 +147,9 @@ pub(crate) fn point(p: &[f64]) -> String {
 
 /// The distance of two coordinates for people, to as many digits as these have.
 pub(crate) fn distance(low: f64, high: f64) -> String {
-    if [low, high].into_iter().all(is_single) {
-        return ((high - low) as f32).to_string();
-    }
-    near(high - low, low.abs().max(high.abs()))
+    let x = high - low;
+    let digits = if [low, high].into_iter().all(is_single) { 7.0 } else { 15.0 };
+    if is_short(x) { x.to_string() } else { rounded(x, low.abs().max(high.abs()), digits) }
 }
 
 /// Whether single precision holds a number.
@@ -158,21 +157,29 @@ fn is_single(x: f64) -> bool {
     f64::from(x as f32) == x
 }
 
-/// A number to the decimals that 15 digits of `size` have; all digits of what is not finite.
+/// Whether all digits of a number are few. Decimals that were written by hand are; a number of single precision that was not takes more in a double.
+fn is_short(x: f64) -> bool {
+    x.to_string().bytes().filter(u8::is_ascii_digit).count() <= 12
+}
+
+/// A number to the decimals that 15 digits of `size` have, unless it takes fewer.
 fn near(x: f64, size: f64) -> String {
-    let exact = x.to_string();
-    // Decimals that were written by hand are short; a number of single precision that was not takes more in a double.
-    if exact.bytes().filter(u8::is_ascii_digit).count() <= 12 {
-        return exact;
+    if is_short(x) {
+        x.to_string()
+    } else if is_single(x) {
+        (x as f32).to_string()
+    } else {
+        rounded(x, size, 15.0)
     }
-    if is_single(x) {
-        return (x as f32).to_string();
-    }
+}
+
+/// A number to the decimals that so many digits of `size` have; all digits of what is not finite.
+fn rounded(x: f64, size: f64, digits: f64) -> String {
     if !(size.is_finite() && size > 0.0) {
-        return exact;
+        return x.to_string();
     }
     // A double has fewer than 400 places on either side of the point.
-    let decimals = (14.0 - size.log10().floor()).clamp(0.0, 400.0) as usize;
+    let decimals = (digits - 1.0 - size.log10().floor()).clamp(0.0, 400.0) as usize;
     let rounded = format!("{x:.decimals$}").parse().unwrap_or(x);
     // Minus zero is zero.
     (rounded + 0.0).to_string()
