@@ -164,11 +164,7 @@ fn read_and_bake(
     })?;
     match result {
         Ok(done) => baked(Ok(done)),
-        // All others name it.
-        Err(Failed::Read(failure)) if matches!(*failure, BakeableError::Kind) => {
-            Err(error(format!("{}: {failure}", name.display())))
-        }
-        Err(Failed::Read(failure)) => Err(bakeable_failed(&failure)),
+        Err(Failed::Read(failure)) => Err(bakeable_failed(name, &failure)),
         Err(Failed::Bake(failure)) => Err(error(format!("{}: {failure}", name.display()))),
     }
 }

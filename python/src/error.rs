@@ -48,9 +48,11 @@ pub(crate) fn read_failed(failure: &ReadError) -> PyErr {
     }
 }
 
-pub(crate) fn bakeable_failed(failure: &BakeableError) -> PyErr {
+/// Why the file `name` is not baked; all other errors of reading name it themselves.
+pub(crate) fn bakeable_failed(name: &Path, failure: &BakeableError) -> PyErr {
     match failure {
         BakeableError::Read(failure) => read_failed(failure),
+        BakeableError::Kind => error(format_args!("{}: {failure}", name.display())),
         _ => error(failure),
     }
 }

@@ -58,8 +58,13 @@ pub(crate) fn explain(
     let mut found = match (graph, graph.and_then(Explainer::new)) {
         _ if a == b => of_answer([a, b], Answer::Same),
         (_, Some(explainer)) => of_answer([a, b], explainer.explain([a, b], &options).answer),
-        (None, None) => silent([a, b], table, "this table does not have the shapes of its cells and portals"),
-        (Some(_), None) if scene.is_none() => silent([a, b], table, "the cells of this table have no portals"),
+        (None, None) => {
+            silent([a, b], table, "why is not known: the table does not have the shapes of its cells and portals")
+        }
+        (Some(_), None) if scene.is_none() => {
+            let why = "its cells have no portals to look through: with scene=, the file that it was made of, rays look for a line";
+            silent([a, b], table, why)
+        }
         (Some(_), None) => of_answer([a, b], sightlines_bake::explain::explain(table, scene, [a, b], &options)?.answer),
     };
     if let (Some(line), Some(frame)) = (&mut found.line, table.frame()) {
@@ -75,10 +80,7 @@ pub(crate) fn explain(
 
 fn silent([a, b]: [CellId; 2], table: &Table, why: &str) -> Explanation {
     let listed = if table.sees(a, b) { "may see" } else { "does not see" };
-    Explanation {
-        text: format!("by the table, cell {a} {listed} cell {b}; {why}, so there is no reason"),
-        ..Explanation::default()
-    }
+    Explanation { text: format!("by the table, cell {a} {listed} cell {b}; {why}"), ..Explanation::default() }
 }
 
 fn numbers(portals: &[PortalId]) -> Vec<u32> {

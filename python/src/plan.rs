@@ -93,7 +93,7 @@ impl Plan {
                 let file = read_plan_file(&path, &options).map_err(|failure| read_failed(&failure))?;
                 return Ok((Self::from(file.plan), (file.crs, file.layers, file.warnings)));
             }
-            match Bakeable::read(&Source::File(&path), map).map_err(|failure| bakeable_failed(&failure))? {
+            match Bakeable::read(&Source::File(&path), map).map_err(|failure| bakeable_failed(&path, &failure))? {
                 Bakeable::Plan { plan, .. } => Ok((Self::from(plan), Stated::default())),
                 _ => {
                     Err(error(format!("{}: this is no plan: use sightlines.bake for scenes in space", path.display())))

@@ -320,6 +320,12 @@ impl Table {
         matrix(py, flags, [n, n])
     }
 
+    /// Of all pairs of different cells, the share that may see each other.
+    #[getter]
+    fn visible_share(&self) -> f64 {
+        self.table.mean_visible_share()
+    }
+
     /// How many cells each cell sees, itself included.
     fn counts<'py>(&self, py: Python<'py>) -> Ids<'py> {
         let counts = py.detach(|| {

@@ -37,6 +37,8 @@ def test_the_matrix_the_rows_and_the_pairs_agree(tower):
     assert (matrix == matrix.T).all() and matrix.diagonal().all()
     assert 0 < (~matrix).sum()
     assert (matrix.sum(axis=1) == tower.counts).all()
+    n = len(matrix)
+    assert tower.visible_share == pytest.approx((matrix.sum() - n) / (n * (n - 1)))
     every = np.arange(tower.n_cells)
     assert (tower.sees(every[:, None], every[None, :]) == matrix).all()
     for cell in range(0, tower.n_cells, 7):
@@ -179,8 +181,10 @@ def test_ids_are_checked(rooms_table):
     with pytest.raises(TypeError, match="whole numbers"):
         rooms_table.sees([0.5], [0])
     assert rooms_table.sees([], []).shape == (0,)
-    with pytest.raises(TypeError, match="made by"):
+    with pytest.raises(TypeError, match="sightlines.load reads one"):
         sl.Table()
+    with pytest.raises(TypeError, match="sightlines.load reads one"):
+        sl.Table("tower.pvs")
 
 
 @pytest.mark.parametrize("eye", [(1,), (1, 2, 3), [[1, 2, 3]], "ab", None, (np.nan, 0), (np.inf, 0), [[0, 0], [0, np.nan]], [[[0, 0]]]])

@@ -74,6 +74,7 @@ pub use limit::LimitReport;
 pub use live::{LiveScene, LiveUpdate};
 pub use needs::portals_need;
 pub use options::{ParseSceneMethodError, Recipe, SceneMethod};
+pub use places::PlaceOptions;
 pub use plan::{PlanBakeOptions, bake_plan};
 pub use prepared::{Decisions, Prepared, StatedViewers};
 pub use quake::{PrtBakeError, PrtOptions, VisMap, bake_map, bake_prt, vis_map};

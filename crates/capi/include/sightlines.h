@@ -345,7 +345,7 @@ typedef struct sl_table_info {
      */
     struct sl_box bounds;
     /**
-     * The share of all cells that a cell sees, averaged over all cells.
+     * Of all pairs of different cells, the share that may see each other, from 0 to 1; 0 for fewer than two cells.
      */
     double mean_visible_share;
 } sl_table_info;

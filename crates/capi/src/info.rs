@@ -81,7 +81,7 @@ pub struct SlTableInfo {
     pub digest_seen: [u8; 16],
     /// The box around all cells, along the axes of the table; all 0 without cells.
     pub bounds: SlBox,
-    /// The share of all cells that a cell sees, averaged over all cells.
+    /// Of all pairs of different cells, the share that may see each other, from 0 to 1; 0 for fewer than two cells.
     pub mean_visible_share: f64,
 }
 

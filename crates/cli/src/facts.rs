@@ -9,7 +9,7 @@ use sightlines::report::Summary;
 use std::fmt;
 use std::time::Duration;
 
-/// Cells, portals, visible pairs, and what has to be drawn; a share of the floor that is not a number is unknown.
+/// Cells, portals, visible pairs, and what has to be drawn, unless the share of the floor is not known, and so no number.
 pub(crate) struct Facts<'a>(pub(crate) &'a Summary);
 
 impl fmt::Display for Facts<'_> {
@@ -23,13 +23,12 @@ impl fmt::Display for Facts<'_> {
             writeln!(f, "objects        {}", s.n_objects)?;
         }
         let all = s.n_cells as u64 * (s.n_cells as u64).saturating_sub(1) / 2;
-        writeln!(f, "visible pairs  {} of {all}", s.n_visible_pairs)?;
-        let [cells, floor] = [s.mean_cell_share, s.mean_floor_share].map(percent);
+        writeln!(f, "visible pairs  {} of {all}, {}", s.n_visible_pairs, percent(s.visible_share))?;
         if s.mean_floor_share.is_nan() {
-            return writeln!(f, "to draw        {cells} of the cells on average");
+            return Ok(());
         }
         let what = if s.dimension == 2 { "floor" } else { "volume" };
-        writeln!(f, "to draw        {floor} of the {what} on average ({cells} of the cells)")
+        writeln!(f, "to draw        {} of the {what} on average", percent(s.mean_floor_share))
     }
 }
 

@@ -42,6 +42,7 @@ mod surfaces;
 mod tables;
 mod threads;
 mod unproven;
+mod up;
 mod view;
 mod vis_program;
 mod walk_path;

@@ -60,6 +60,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             }
         }
     }
-    println!("a viewer draws {:.0} % of the rooms on average", 100.0 * table.mean_visible_share());
+    println!("{:.0} % of the pairs of rooms may see each other", 100.0 * table.mean_visible_share());
     Ok(())
 }

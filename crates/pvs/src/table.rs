@@ -332,11 +332,13 @@ impl Table {
         });
     }
 
-    /// The share of all cells that a cell sees, averaged over all cells: what a viewer has to draw, if all cells are
-    /// equal. 0 for a table without cells.
+    /// The *visible share*: of all pairs of different cells, those that may see each other, from 0 to 1. That is also the share of the other
+    /// cells that a cell sees, averaged over all cells. 0 for fewer than two cells.
     pub fn mean_visible_share(&self) -> f64 {
-        let n = self.n_cells() as f64;
-        if n == 0.0 { 0.0 } else { self.parts.rows.count_ones() as f64 / (n * n) }
+        let n = self.n_cells() as u64;
+        let n_ordered = n.saturating_mul(n.saturating_sub(1));
+        // Each cell sees itself, which is no pair.
+        if n_ordered == 0 { 0.0 } else { (self.parts.rows.count_ones() - n) as f64 / n_ordered as f64 }
     }
 
     fn may_contain(&self, cell: &CellRecord, p: [f64; 3]) -> bool {

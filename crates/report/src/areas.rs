@@ -1,8 +1,10 @@
 //! What is seen from points of a plan, such as isovists: areas as GeoJSON, their numbers as CSV, and pictures in one hue.
 
+use crate::canvas::{Canvas, parsed};
 use crate::draw::{MAX_SIZE, MIN_SIZE};
 use crate::frame::{Frame, Px};
-use crate::{letters, theme};
+use crate::png::{Pixels, encode_small};
+use crate::{PngError, letters, theme};
 use sightlines_geometry::{Aabb, Point2, Segment2};
 use std::fmt::Write;
 
@@ -148,14 +150,7 @@ pub fn seen_csv(all: &[SeenInSpace], names: &[&str]) -> String {
 /// * `size`: pixels of the longer side of the plan, brought to [`MIN_SIZE`] to [`MAX_SIZE`]
 /// * `legend`: a line of text below
 pub fn areas_svg(areas: &[Area], walls: &[Segment2], size: u32, legend: &str) -> String {
-    let ends = walls.iter().flat_map(|wall| [wall.a, wall.b]).map(|p| [p.x, p.y]);
-    let eyes = areas.iter().map(|area| [area.eye.x, area.eye.y]);
-    let frame = Frame::around(Aabb::around(ends.chain(eyes)), size.clamp(MIN_SIZE, MAX_SIZE));
-    let longer = f64::from(frame.width.max(frame.height));
-    let (text, stroke) = ((longer / 45.0).clamp(11.0, 26.0), (longer / 600.0).max(1.2));
-    let width = f64::from(frame.width).max(letters::width(legend, text) + 2.0 * text).ceil();
-    let top = f64::from(frame.height);
-    let height = (top + 3.0 * text).ceil();
+    let Layout { frame, text, stroke, size: [width, height] } = Layout::of(areas, walls, size, legend);
     let mut out = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
          stroke-linecap=\"round\" stroke-linejoin=\"round\">\n<title>{legend}</title>\n\
@@ -163,7 +158,7 @@ pub fn areas_svg(areas: &[Area], walls: &[Segment2], size: u32, legend: &str) ->
         theme::PAPER
     );
     // Walls beyond the frame of the plan end no view, and what is seen beyond them is cut off by the picture.
-    let opacity = (1.0 / areas.len().max(1) as f64).clamp(0.06, 0.55);
+    let opacity = opacity(areas.len());
     for area in areas {
         let mut path = String::new();
         frame.polygon(&mut path, &area.outline);
@@ -171,14 +166,7 @@ pub fn areas_svg(areas: &[Area], walls: &[Segment2], size: u32, legend: &str) ->
             writeln!(out, "<path class=\"area\" fill=\"{}\" fill-opacity=\"{opacity:.3}\" d=\"{path}\"/>", theme::AREA);
     }
     let mut open = String::new();
-    for area in areas {
-        let next = area.outline.iter().skip(1).chain(area.outline.first());
-        for ((&a, &b), edge) in area.outline.iter().zip(next).zip(&area.edges) {
-            if !matches!(edge, AreaEdge::Wall(_)) {
-                frame.polyline(&mut open, &[a, b]);
-            }
-        }
-    }
+    open_edges(areas).for_each(|ends| frame.polyline(&mut open, &ends));
     let _ = writeln!(
         out,
         "<path class=\"open\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" stroke-dasharray=\"{} {}\" d=\"{open}\"/>",
@@ -208,11 +196,83 @@ pub fn areas_svg(areas: &[Area], walls: &[Segment2], size: u32, legend: &str) ->
     let _ = writeln!(
         out,
         "<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\"/>\n</svg>",
-        letters::path(legend, [text, top + 1.5 * text], text),
+        letters::path(legend, [text, f64::from(frame.height) + 1.5 * text], text),
         theme::INK,
         Px(letters::stroke(text))
     );
     out
+}
+
+/// Draws the same as PNG.
+///
+/// # Errors
+/// [`PngError`]
+///
+/// # Cost
+/// O(pixels) for each area, and 4 bytes of memory for each pixel.
+pub fn areas_png(areas: &[Area], walls: &[Segment2], size: u32, legend: &str) -> Result<Vec<u8>, PngError> {
+    let Layout { frame, text, stroke, size } = Layout::of(areas, walls, size, legend);
+    let [paper, hue, wall, from, ink] = [theme::PAPER, theme::AREA, theme::WALL, theme::FROM, theme::INK].map(parsed);
+    let pixels = size.map(|x| x as u32);
+    let mut canvas = Canvas::new(pixels);
+    canvas.fill([0.0, 0.0, size[0], size[1]], paper);
+    for area in areas {
+        let corners: Vec<[f64; 2]> = area.outline.iter().map(|&p| frame.place(p)).collect();
+        canvas.fill_polygon(&corners, opacity(areas.len()), hue);
+    }
+    for ends in open_edges(areas) {
+        let [a, b] = ends.map(|p| frame.place(p));
+        // Dashes and gaps are equally long.
+        let (dash, length) = (3.0 * stroke, (b[0] - a[0]).hypot(b[1] - a[1]));
+        let at = |along: f64| [0, 1].map(|k| a[k] + (b[k] - a[k]) * (along.min(length) / length));
+        let n = (length / (2.0 * dash)).ceil() as u32;
+        (0..n).map(|k| 2.0 * dash * f64::from(k)).for_each(|along| {
+            canvas.stroke([at(along), at(along + dash)], 0.7 * stroke, hue);
+        });
+    }
+    walls.iter().for_each(|line| canvas.stroke([frame.place(line.a), frame.place(line.b)], stroke, wall));
+    areas.iter().for_each(|area| canvas.stroke([frame.place(area.eye); 2], 5.0 * stroke, from));
+    for line in letters::lines(legend, [text, f64::from(frame.height) + 1.5 * text], text) {
+        line.windows(2).for_each(|ends| canvas.stroke([ends[0], ends[1]], letters::stroke(text), ink));
+    }
+    encode_small(pixels, canvas.bytes(), Pixels::Rgba)
+}
+
+/// Where everything is in a picture of areas.
+struct Layout {
+    frame: Frame,
+    /// Height of the legend's letters, in pixels.
+    text: f64,
+    /// Width of walls, in pixels.
+    stroke: f64,
+    /// Width and height of the picture, whole pixels.
+    size: [f64; 2],
+}
+
+impl Layout {
+    fn of(areas: &[Area], walls: &[Segment2], size: u32, legend: &str) -> Self {
+        let ends = walls.iter().flat_map(|wall| [wall.a, wall.b]).map(|p| [p.x, p.y]);
+        let eyes = areas.iter().map(|area| [area.eye.x, area.eye.y]);
+        let frame = Frame::around(Aabb::around(ends.chain(eyes)), size.clamp(MIN_SIZE, MAX_SIZE));
+        let longer = f64::from(frame.width.max(frame.height));
+        let (text, stroke) = ((longer / 45.0).clamp(11.0, 26.0), (longer / 600.0).max(1.2));
+        let width = f64::from(frame.width).max(letters::width(legend, text) + 2.0 * text).ceil();
+        Self { frame, text, stroke, size: [width, (f64::from(frame.height) + 3.0 * text).ceil()] }
+    }
+}
+
+/// How opaque each of so many areas is.
+fn opacity(n_areas: usize) -> f64 {
+    (1.0 / n_areas.max(1) as f64).clamp(0.06, 0.55)
+}
+
+/// The ends of the edges that are no wall.
+fn open_edges(areas: &[Area]) -> impl Iterator<Item = [Point2; 2]> + '_ {
+    areas.iter().flat_map(|area| {
+        let next = area.outline.iter().skip(1).chain(area.outline.first());
+        let edges = area.outline.iter().zip(next).zip(&area.edges);
+        edges.filter(|(_, edge)| !matches!(edge, AreaEdge::Wall(_))).map(|((&a, &b), _)| [a, b])
+    })
 }
 
 #[cfg(test)]
@@ -266,5 +326,36 @@ mod tests {
         );
         assert_eq!((svg.matches("class=\"area\"").count(), svg.matches("class=\"eye\"").count()), (2, 2));
         assert!(svg.contains("fill-opacity=\"0.500\""));
+    }
+
+    /// The pixels of both kinds of pictures agree where nothing but areas and paper is.
+    #[test]
+    fn pixels_are_filled_as_far_as_areas_reach() {
+        let walls =
+            [Segment2::new(Point2::ZERO, Point2::new(2.0, 0.0)), Segment2::new((0.0, 1.0).into(), (2.0, 1.0).into())];
+        let png = areas_png(&[area(None), area(None)], &walls, 400, "two isovists").unwrap();
+        let picture = image::load_from_memory_with_format(&png, image::ImageFormat::Png).unwrap().to_rgba8();
+        let layout = Layout::of(&[area(None)], &walls, 400, "two isovists");
+        assert_eq!([picture.width(), picture.height()].map(f64::from), layout.size);
+        let at = |x: f64, y: f64| {
+            let [x, y] = layout.frame.place((x, y).into()).map(|x| x as u32);
+            picture.get_pixel(x, y).0
+        };
+        let [[r, g, b], paper] = [theme::AREA, theme::PAPER].map(parsed);
+        let opaque = |[r, g, b]: [u8; 3]| [r, g, b, 255];
+        // Twice half of the hue is three quarters of it.
+        let mixed: [u8; 3] =
+            std::array::from_fn(|k| (0.75 * f64::from([r, g, b][k]) + 0.25 * f64::from(paper[k])).round() as u8);
+        let near = |found: [u8; 4], wanted: [u8; 4]| found.iter().zip(wanted).all(|(a, b)| a.abs_diff(b) <= 1);
+        for (x, y) in [(0.4, 0.6), (1.0, 0.3), (1.4, 0.2)] {
+            assert!(near(at(x, y), opaque(mixed)), "{:?} at {x}, {y}, where {mixed:?} was expected", at(x, y));
+        }
+        // The twin: outside of the area there is paper.
+        for (x, y) in [(0.05, 0.8), (1.5, 0.8)] {
+            assert_eq!(at(x, y), opaque(paper), "at {x}, {y}");
+        }
+        assert_eq!(at(0.5, 0.25), opaque(parsed(theme::FROM)));
+        // A thin line covers its pixels in part.
+        assert!(at(1.0, 1.0)[0] < paper[0] / 2 + 30, "{:?}", at(1.0, 1.0));
     }
 }

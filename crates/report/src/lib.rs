@@ -9,7 +9,7 @@
 //!   ([`export_json`]); summary numbers of a table ([`Summary`], [`ViewerShare`]); the chart of a walk ([`walk_svg`]), and what charts are made of ([`chart`]);
 //!   pictures of multifocal buffers ([`buffer_png`]) and of the fields beside them ([`voronoi_png`], [`distance_png`]);
 //!   pictures of what is seen, in a colour for each face ([`faces_png`]), and sheets of them ([`sheet_png`]);
-//!   pictures of soft shadows ([`light_png`]); areas that points see ([`areas_geojson`], [`areas_csv`], [`areas_svg`]);
+//!   pictures of soft shadows ([`light_png`]); areas that points see ([`areas_geojson`], [`areas_csv`], [`areas_svg`], [`areas_png`]);
 //!   pictures and tables of values at points ([`field_svg`], [`field_png`], [`points_csv`], [`points_geojson`]).
 //! - **Out of scope**: how a table was made, files, how the numbers are worded.
 //! - **Invariants**: a table is only read, and pictures show only what it contains; the same table and options
@@ -17,6 +17,7 @@
 
 mod areas;
 mod buffer_chart;
+mod canvas;
 pub mod chart;
 mod draw;
 mod export;
@@ -35,7 +36,7 @@ mod summary;
 mod theme;
 mod walk;
 
-pub use areas::{Area, AreaEdge, SeenInSpace, areas_csv, areas_geojson, areas_svg, seen_csv};
+pub use areas::{Area, AreaEdge, SeenInSpace, areas_csv, areas_geojson, areas_png, areas_svg, seen_csv};
 pub use buffer_chart::{BufferChart, buffer_chart_svg};
 pub use draw::{
     DrawError, DrawOptions, Drawing, IsometricOptions, MAX_SIZE, MIN_SIZE, Sight, SliceOptions, Surfaces, Up, View,

@@ -9,7 +9,7 @@ use sightlines_pvs::{CellId, Table};
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct ViewerShare {
-    /// Of the cells.
+    /// Of the cells, the viewer's own among them.
     pub cells: f64,
     /// Of the objects.
     pub objects: f64,

@@ -25,8 +25,8 @@ pub struct Summary {
     pub n_visible_pairs: u64,
     /// The most cells that one cell sees, itself included.
     pub most_visible: u64,
-    /// The share of all cells that a cell sees, averaged over cells, from 0 to 1.
-    pub mean_cell_share: f64,
+    /// `n_visible_pairs` as a share of all unordered pairs of different cells, from 0 to 1.
+    pub visible_share: f64,
     /// The share of the floor (in space: of the volume) that a viewer has to draw, averaged over the
     /// places where a viewer may stand, from 0 to 1: each cell counts by its size, as viewer and as viewed.
     #[cfg_attr(feature = "schemars", schemars(with = "Option<f64>"))]
@@ -60,7 +60,7 @@ impl Summary {
             n_groups: groups.len(),
             n_visible_pairs: (ids().map(ones).sum::<u64>() - n_cells as u64) / 2,
             most_visible: ids().map(ones).max().unwrap_or(0),
-            mean_cell_share: table.mean_visible_share(),
+            visible_share: table.mean_visible_share(),
             mean_floor_share: ids().map(|cell| share(cell) * drawn(cell)).sum(),
             floor,
             n_bytes: table.to_bytes().len(),

@@ -115,7 +115,7 @@ class Model {
     return states;
   }
 
-  /** For each cell what share of the cells it sees, and of the polygons; computed when it is first asked for. */
+  /** For each cell what share of the other cells it sees, and of all polygons; computed when it is first asked for. */
   measure() {
     if (this.shares) return this.shares;
     const { table } = this;
@@ -124,7 +124,7 @@ class Model {
     const [cells, polygons] = [new Float64Array(n), new Float64Array(n)];
     for (let a = 0; a < n; a++) {
       const visible = table.visibleCells([a]);
-      cells[a] = visible.length / n;
+      cells[a] = n > 1 ? (visible.length - 1) / (n - 1) : 0;
       const objects = all > 0 ? table.visibleObjects([a], visible) : [];
       polygons[a] = objects.reduce((sum, o) => sum + table.objects[o].polygons, 0) / (all || 1);
     }

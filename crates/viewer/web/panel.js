@@ -282,14 +282,14 @@ class Panel {
     const { table } = model;
     const { cells, polygons, hasPolygons } = model.measure();
     const n = table.cells.length;
-    const pairs = cells.reduce((sum, share) => sum + share * n, 0);
+    const pairs = cells.reduce((sum, share) => sum + share * (n - 1), 0) / 2;
+    const all = (n * (n - 1)) / 2;
     const mean = (list) => list.reduce((sum, x) => sum + x, 0) / Math.max(list.length, 1);
     const rows = [
       ["cells", n.toLocaleString("en")],
       ["portals", table.portals.length.toLocaleString("en")],
       ["objects", table.objects.length.toLocaleString("en")],
-      ["visible pairs of cells, in both directions", Math.round(pairs).toLocaleString("en")],
-      ["cells that a cell sees, on average", percent(mean(cells))],
+      ["visible pairs of cells", `${Math.round(pairs).toLocaleString("en")} of ${all.toLocaleString("en")}, ${percent(mean(cells))}`],
     ];
     if (hasPolygons) rows.push(["polygons that a cell sees, on average", percent(mean(polygons))]);
     const body = rows.map(([key, value]) =>

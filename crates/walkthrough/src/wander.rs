@@ -1,7 +1,7 @@
 //! A random walk through a scene, for measuring.
 
 use sightlines_eye_to_cell::CellSource;
-use sightlines_geometry::{Aabb, Random};
+use sightlines_geometry::{Aabb, BoxTree, Random};
 use sightlines_pvs::{CellId, PortalId};
 
 /// The position and direction of the viewer in a frame.
@@ -20,7 +20,10 @@ const INERTIA: f64 = 0.875;
 /// looking ahead, with smooth turns; now and then the walk restarts elsewhere, so that long walks see most of a scene.
 /// `step` is the distance between frames in scene units.
 ///
-/// The same arguments give the same walk on every machine. Empty if no cell has a portal.
+/// If no cell has a portal, as where cells were given, the walk goes from box to box where two touch on an area (in a plane, on a length), and
+/// from place to place in a cell that touches no other. A place in the box of a planar cell may be outside of the cell.
+///
+/// The same arguments give the same walk on every machine. Empty if there are no cells.
 ///
 /// # Errors
 /// The first error of the source.
@@ -30,39 +33,60 @@ pub fn wander<S: CellSource + ?Sized>(
     step: f64,
     seed: u64,
 ) -> Result<Vec<CameraPose>, S::Error> {
-    let mut chance = Random::new(seed);
-    let mut frames = Vec::with_capacity(n_frames);
-    let n_cells = source.n_cells();
-    // Consecutive attempts without finding a portal.
-    let mut n_failed = 0;
-    while frames.len() < n_frames && n_failed < 16 * n_cells {
-        let mut cell = CellId(below(&mut chance, n_cells) as u32);
-        let mut doors = doors(source, cell)?;
-        let Some(mut place) = middle(&doors) else {
-            n_failed += 1;
-            continue;
-        };
-        n_failed = 0;
-        let mut came_by = None;
-        let mut dir = [0.0; 3];
-        for _ in 0..40 {
-            let others: Vec<&Door> = doors.iter().filter(|door| Some(door.portal) != came_by).collect();
-            let &next = match others.len() {
-                0 => &doors[below(&mut chance, doors.len())],
-                n => others[below(&mut chance, n)],
-            };
-            (cell, came_by) = (next.to, Some(next.portal));
-            doors = self::doors(source, cell)?;
-            let inside = middle(&doors).unwrap_or(next.at);
-            for goal in [next.at, inside] {
-                go(&mut place, &mut dir, goal, step, n_frames, &mut frames);
-            }
-        }
+    let mut frames = stroll(source, &Ways::Portals, n_frames, step, seed)?;
+    if frames.is_empty() {
+        frames = stroll(source, &Ways::between_boxes(source)?, n_frames, step, seed)?;
     }
     if let Some(frame) = source.frame() {
         frames.iter_mut().for_each(|pose| {
             *pose = CameraPose { eye: frame.to_scene(pose.eye), dir: frame.to_scene(pose.dir) };
         });
+    }
+    Ok(frames)
+}
+
+/// A walk along the axes of the source.
+fn stroll<S: CellSource + ?Sized>(
+    source: &S,
+    ways: &Ways,
+    n_frames: usize,
+    step: f64,
+    seed: u64,
+) -> Result<Vec<CameraPose>, S::Error> {
+    let mut chance = Random::new(seed);
+    let mut frames = Vec::with_capacity(n_frames);
+    let n_cells = source.n_cells();
+    // Consecutive attempts without a place to begin at, or without a frame.
+    let mut n_failed = 0;
+    while frames.len() < n_frames && n_failed < 16 * n_cells {
+        let mut cell = CellId(below(&mut chance, n_cells) as u32);
+        let mut here = ways.out_of(source, cell)?;
+        let Some(mut place) = here.middle else {
+            n_failed += 1;
+            continue;
+        };
+        let n_before = frames.len();
+        let mut came_by = None;
+        let mut dir = [0.0; 3];
+        for _ in 0..40 {
+            let others: Vec<&Door> = here.doors.iter().filter(|door| Some(door.way) != came_by).collect();
+            let &next = match (others.len(), here.doors.len()) {
+                (0, 0) => {
+                    let goal = ways.place_in(cell, &mut chance).unwrap_or(place);
+                    go(&mut place, &mut dir, goal, step, n_frames, &mut frames);
+                    continue;
+                }
+                (0, n) => &here.doors[below(&mut chance, n)],
+                (n, _) => others[below(&mut chance, n)],
+            };
+            (cell, came_by) = (next.to, Some(next.way.back(cell)));
+            here = ways.out_of(source, cell)?;
+            let inside = here.middle.unwrap_or(next.at);
+            for goal in [next.at, inside] {
+                go(&mut place, &mut dir, goal, step, n_frames, &mut frames);
+            }
+        }
+        n_failed = if frames.len() == n_before { n_failed + 1 } else { 0 };
     }
     Ok(frames)
 }
@@ -114,28 +138,93 @@ fn go(
     }
 }
 
-/// A portal out of a cell.
+/// How cells are left.
+enum Ways {
+    /// Through portals.
+    Portals,
+    /// Where boxes touch: the boxes of all cells, and their tree.
+    Boxes(Vec<Aabb<3>>, BoxTree<3>),
+}
+
+/// What is left by: a portal, or the border to another cell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Way {
+    Portal(PortalId),
+    To(CellId),
+}
+
+impl Way {
+    /// The way back into `from`.
+    fn back(self, from: CellId) -> Self {
+        match self {
+            Self::Portal(portal) => Self::Portal(portal),
+            Self::To(_) => Self::To(from),
+        }
+    }
+}
+
+/// A way out of a cell.
 #[derive(Debug, Clone, Copy)]
 struct Door {
-    portal: PortalId,
+    way: Way,
     to: CellId,
     /// Its middle.
     at: [f64; 3],
 }
 
-fn doors<S: CellSource + ?Sized>(source: &S, cell: CellId) -> Result<Vec<Door>, S::Error> {
-    let mut doors = Vec::new();
-    source.portal_edges(cell, &mut |way| {
-        if let Some(at) = mean(way.corners.iter().copied()) {
-            doors.push(Door { portal: way.portal, to: way.to, at });
-        }
-    })?;
-    Ok(doors)
+/// The ways out of a cell.
+struct Exits {
+    doors: Vec<Door>,
+    /// A point of the cell: between its portals, which is on none of them if there are several on different sides, or in the middle of its
+    /// box. `None` without a portal, or without a box.
+    middle: Option<[f64; 3]>,
 }
 
-/// A point of the convex cell between its portals. Not on a portal if there are several on different sides.
-fn middle(doors: &[Door]) -> Option<[f64; 3]> {
-    mean(doors.iter().map(|door| door.at))
+impl Ways {
+    fn between_boxes<S: CellSource + ?Sized>(source: &S) -> Result<Self, S::Error> {
+        let boxes: Result<Vec<_>, _> = (0..source.n_cells() as u32).map(|cell| source.cell_box(CellId(cell))).collect();
+        let boxes = boxes?;
+        let tree = BoxTree::build(&boxes, 4);
+        Ok(Self::Boxes(boxes, tree))
+    }
+
+    fn out_of<S: CellSource + ?Sized>(&self, source: &S, cell: CellId) -> Result<Exits, S::Error> {
+        let mut doors = Vec::new();
+        let Self::Boxes(boxes, tree) = self else {
+            source.portal_edges(cell, &mut |edge| {
+                if let Some(at) = mean(edge.corners.iter().copied()) {
+                    doors.push(Door { way: Way::Portal(edge.portal), to: edge.to, at });
+                }
+            })?;
+            let middle = mean(doors.iter().map(|door| door.at));
+            return Ok(Exits { doors, middle });
+        };
+        let here = boxes[cell.idx()];
+        let most_flat = if source.dimension() == 2 { 2 } else { 1 };
+        let touching = |other: &Aabb<3>| !common(&here, other).is_empty();
+        tree.visit(touching, |other| {
+            let border = common(&here, &boxes[other as usize]);
+            let n_flat = (0..3).filter(|&k| border.min[k] == border.max[k]).count();
+            if other != cell.0 && !border.is_empty() && n_flat <= most_flat {
+                let to = CellId(other);
+                doors.extend(mean([border.min, border.max].into_iter()).map(|at| Door { way: Way::To(to), to, at }));
+            }
+        });
+        doors.sort_unstable_by_key(|door| door.to);
+        let middle = mean([here.min, here.max].into_iter()).filter(|_| !here.is_empty());
+        Ok(Exits { doors, middle })
+    }
+
+    /// Any place in the box of a cell.
+    fn place_in(&self, cell: CellId, chance: &mut Random) -> Option<[f64; 3]> {
+        let Self::Boxes(boxes, _) = self else { return None };
+        Some(chance.point(&boxes[cell.idx()]))
+    }
+}
+
+/// What two boxes have in common; empty if that is nothing.
+fn common(a: &Aabb<3>, b: &Aabb<3>) -> Aabb<3> {
+    Aabb { min: std::array::from_fn(|k| a.min[k].max(b.min[k])), max: std::array::from_fn(|k| a.max[k].min(b.max[k])) }
 }
 
 fn mean(points: impl ExactSizeIterator<Item = [f64; 3]>) -> Option<[f64; 3]> {

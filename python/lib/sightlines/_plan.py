@@ -231,8 +231,8 @@ class Plan:
         """Visibility graph analysis: a grid of points, who sees whom (exact), and the measures of space syntax, as depthmapX defines them.
 
         :param spacing: of the points, which lie at its multiples
-        :param seeds: points from which the grid is filled, up to the walls; by default all points that walls enclose, the insides of
-            pillars among them, or, where an outer door is open, the largest part with walls around it
+        :param seeds: points from which the grid is filled, up to the walls. By default all areas that walls enclose are filled, also the
+            insides of pillars; if an outer door is open, so that the largest area is not enclosed, only that area
         :param measures: names of measures, or of groups: ``"local"`` (connectivity, first_moment, second_moment, clustering, control,
             controllability), ``"global"`` (node_count, mean_depth, integration_hh, integration_tekl, integration_p, entropy,
             relativised_entropy), ``"metric"`` and ``"angular"`` (lengths and turns of paths; slower)

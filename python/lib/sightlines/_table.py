@@ -55,8 +55,8 @@ class Table:
     #: The coordinate reference system of the plan that it was made of; not written to files.
     crs: Any
 
-    def __init__(self) -> None:
-        raise TypeError("tables are made by sightlines.bake, Plan.bake, sightlines.load and Table.from_bytes")
+    def __init__(self, *_: Any, **__: Any) -> None:
+        raise TypeError("Table makes no tables: sightlines.load reads one from a file, sightlines.bake and Plan.bake make one")
 
     @classmethod
     def _of(cls, native: _native.Table, said: tuple[int, int, int] | None = None, crs: Any = None) -> Table:
@@ -282,6 +282,14 @@ class Table:
     def visibility(self) -> NDArray[np.bool_]:
         """Which cells may see which: a matrix (n_cells, n_cells), made anew each time."""
         return self._inner.visibility()
+
+    @property
+    def visible_share(self) -> float:
+        """Of all pairs of different cells, the share that may see each other, from 0 to 1; 0 for fewer than two cells.
+
+        The program's ``info`` and the page of ``view`` print the same number. ``visibility.mean()`` is larger: each cell sees itself.
+        """
+        return self._inner.visible_share
 
     @property
     def counts(self) -> NDArray[np.int64]:

@@ -3,9 +3,10 @@
 use crate::command::{Done, Verbosity};
 use crate::error::{ErrorAbout, Result, anyhow};
 use crate::input::{self, refuse};
-use crate::output::{self, bytes};
+use crate::output::{self, bytes, coordinate};
 use crate::plans::PlanArgs;
 use crate::surfaces::SurfaceArgs;
+use crate::up::UpArgs;
 use schemars::JsonSchema;
 use serde::Serialize;
 use sightlines::bake::{Bakeable, FloorCut, floor_cut};
@@ -31,6 +32,8 @@ pub(crate) struct PlanCommandArgs {
     #[command(flatten)]
     surfaces: SurfaceArgs,
     #[command(flatten)]
+    up: UpArgs,
+    #[command(flatten)]
     plans: PlanArgs,
     /// The plan to write
     #[arg(short, long, help_heading = "Output", value_name = "OUT.geojson")]
@@ -48,7 +51,8 @@ pub(crate) fn run(args: &PlanCommandArgs, _: Verbosity) -> Result<Done> {
         refuse(path, &[("--height", args.height.is_some())], "scenes in space", "none")?;
         refuse(path, &args.surfaces.given(), "scenes in space", "none")?;
     }
-    let read = input::read(path, map, &args.surfaces.options(), &args.plans.options(path)?)?;
+    let mut read = input::read(path, map, &args.surfaces.options(), &args.plans.options(path)?)?;
+    args.up.put_into(path, &mut read)?;
     let (text, outcome) = match read {
         Input::Scene(file) => {
             let cut = cut(path, &file, args.height)?;
@@ -74,8 +78,8 @@ fn cut(path: &Path, file: &SceneFile, height: Option<f64>) -> Result<FloorCut> {
         anyhow!(
             "{}: --height is missing: at which height is the scene cut? It is from {} to {}",
             path.display(),
-            bounds.min[up],
-            bounds.max[up]
+            coordinate(bounds.min[up]),
+            coordinate(bounds.max[up])
         )
     })?;
     floor_cut(&file.scene, file.info.up, height).in_file(path)

@@ -226,3 +226,22 @@ fn damaged_proofs_are_refused() {
     let error = folder.refused(&["verify", "t.pvs", "office.geojson"]);
     assert!(error.contains("t.cert: byte ") && error.contains("the checksum is wrong"), "{error}");
 }
+
+/// Two slanted roofs: without walls along axes, the cells that can be proven hide nothing, and the program tells.
+#[test]
+fn scenes_without_axis_aligned_walls_are_warned_of() {
+    let folder = Folder::new();
+    folder.write(
+        "hall.obj",
+        "v 0 0 0\nv 24 0 0\nv 24 6 5\nv 0 6 5\nv 0 0 10\nv 24 0 10\nf 1 2 3\nf 1 3 4\nf 5 6 3\nf 5 3 4\n",
+    );
+    let run = folder.run(&["build", "hall.obj", "-o", "t.pvs", "--certify", "--json"]).expect(0);
+    assert_eq!(run.json()["n_cells"], 1);
+    assert!(run.err.contains("hall.obj: few walls are axis-aligned"), "{}", run.err);
+    // The twins: cells that are named, and a scene whose walls are axis-aligned.
+    let run = folder.run(&["build", "hall.obj", "--method", "sightlines", "-o", "t.pvs", "--certify"]).expect(0);
+    assert!(!run.err.contains("axis-aligned"), "{}", run.err);
+    let folder = Folder::with_tower();
+    let run = folder.run(&["build", "tower.glb", "-o", "t.pvs", "--certify"]).expect(0);
+    assert!(!run.err.contains("axis-aligned"), "{}", run.err);
+}

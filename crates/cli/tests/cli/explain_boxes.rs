@@ -102,7 +102,7 @@ fn a_ray_or_the_methods_are_named() {
     assert!(text(seen, 0).ends_with("the table says that they see each other: no method has hidden them\n"));
     let hidden = text(hidden, 1);
     assert!(
-        hidden.contains("; with --scene rays are shot between them\nhidden by sightlines or multifocal"),
+        hidden.contains("give the scene that it was made of, --scene SCENE, to shoot rays between them\nhidden by sightlines or multifocal"),
         "{hidden}"
     );
     assert!(

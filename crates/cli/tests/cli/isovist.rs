@@ -63,6 +63,19 @@ fn isovists_have_limits() {
     assert!((area(&["--dir", "-1,0", "--fov", "90"]) - 4.0).abs() < 1e-9);
 }
 
+/// A picture in PNG needs no feature of the program, as that of `vga`.
+#[test]
+fn pictures_are_svg_and_png() {
+    let folder = Folder::new();
+    folder.write("rooms.geojson", ROOMS);
+    for out in ["x.svg", "x.png"] {
+        let args = ["isovist", "rooms.geojson", "--at", "500002,5400002", "--size", "300", "-o", out, "--json"];
+        let reply = folder.run(&args).expect(0).json();
+        assert_eq!(reply["n_bytes"], folder.read(out).len(), "{reply}");
+    }
+    assert!(folder.read("x.svg").starts_with(b"<svg ") && folder.read("x.png").starts_with(b"\x89PNG"));
+}
+
 #[test]
 fn faults_are_named() {
     let folder = Folder::new();

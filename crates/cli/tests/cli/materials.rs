@@ -43,7 +43,7 @@ fn glass_is_reported_and_hides_nothing() {
     folder.write("room.mtl", "newmtl wall\nd 1\nnewmtl glass\nd 0.2\n");
     let brief = folder.run(&["build", "room.obj", "--detail-below", "0", "-o", "glass.pvs"]).expect(0).out;
     assert!(brief.starts_with("scene          OBJ in 3D, y up (assumed), unit unknown: 9 objects, "), "{brief}");
-    assert!(brief.lines().count() == 4 && brief.contains(" triangles hide, 1 see-through\n"), "{brief}");
+    assert!(brief.lines().count() == 4 && brief.contains(" axis-aligned, 1 see-through\n"), "{brief}");
     let build = ["build", "room.obj", "--detail-below", "0", "--verbose", "-o"];
     let run = folder.run(&[&build[..], &["glass.pvs"]].concat()).expect(0);
     assert!(run.out.contains("see-through    1 object, classified by d 0.2: pane\n"), "{}", run.out);

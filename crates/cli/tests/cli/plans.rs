@@ -143,3 +143,29 @@ fn a_building_is_cut_at_a_height() {
     assert!(error.starts_with("tower.pvs: neither "), "{error}");
     assert!(!folder.path("x.geojson").exists());
 }
+
+/// A room that is 4 by 5 and 3 high with z up: where up is, is stated once, and all that follows is as for any scene.
+#[test]
+fn up_is_an_option_where_the_file_does_not_state_it() {
+    let folder = Folder::new();
+    let corners = [[0, 0, 0], [4, 0, 0], [4, 5, 0], [0, 5, 0]].map(|[x, y, _]| format!("v {x} {y} 0\nv {x} {y} 3\n"));
+    let walls = [[1, 3, 4, 2], [3, 5, 6, 4], [5, 7, 8, 6], [7, 1, 2, 8]].map(|w| w.map(|k| k.to_string()).join(" "));
+    folder.write("room.obj", corners.concat() + &walls.map(|wall| format!("f {wall}\n")).concat());
+    let build = ["build", "room.obj", "--method", "sightlines", "-o", "room.pvs"];
+    let run = folder.run(&[&build[..], &["--up", "z"]].concat()).expect(0);
+    assert!(run.out.starts_with("scene          OBJ in 3D, z up, unit unknown"), "{}", run.out);
+    assert_eq!(folder.run(&["info", "room.pvs", "--json"]).expect(0).json()["info"]["up"], "z");
+    let floor = ["plan", "room.obj", "--height", "1", "-o", "floor.geojson", "--json"];
+    let cut = folder.run(&[&floor[..], &["--up", "z"]].concat()).expect(0).json();
+    let bounds = parse_plan(&folder.read("floor.geojson")).unwrap().bounds();
+    assert_eq!((&cut["n_walls"], bounds.max[0] - bounds.min[0], bounds.max[1] - bounds.min[1]), (&json!(4), 4.0, 5.0));
+    // The twin: without it y is taken to point up, and the plan is a section.
+    let run = folder.run(&build).expect(0);
+    assert!(run.out.starts_with("scene          OBJ in 3D, y up (assumed), unit unknown"), "{}", run.out);
+    folder.run(&floor).expect(0);
+    let bounds = parse_plan(&folder.read("floor.geojson")).unwrap().bounds();
+    assert_eq!(bounds.max[1] - bounds.min[1], 3.0);
+    let error = folder.refused(&["build", "floor.geojson", "--up", "z", "-o", "x.pvs"]);
+    assert_eq!(error, "floor.geojson: --up is for scenes in space, and this is none");
+    assert_eq!(folder.run(&["build", "room.obj", "--up", "up", "-o", "x.pvs"]).code, 2);
+}

@@ -63,6 +63,9 @@ fn options_that_mean_nothing_are_refused() {
     refused(&["build", "scene.glb", "--grid", "9000,9000,1"], "a grid of 9000 x 9000 x 1 view cells");
     refused(&["build", "scene.glb", "--grid", "2,2,2", "--stab-trees"], "--stab-trees is for cells with portals");
     refused(&["build", "office.geojson", "--method", "multifocal"], "--method is for scenes in space");
+    // The mistake is the option, not its value.
+    refused(&["build", "office.geojson", "--grid", "4,4"], "only scenes in space have a grid");
+    refused(&["build", "office.geojson", "--cells", "none.json"], "--cells is for scenes in space");
     refused(&["build", "scene.glb", "--method", "multifocal", "--texels", "0"], "0 is not in 1..=8192");
     refused(&["build", "scene.glb", "--method", "multifocal", "--texels", "8192"], "bytes for each thread");
 }

@@ -256,9 +256,10 @@ fn walks_are_read_from_files() {
     folder.write("way.json", format!(r#"{{"frames": [{}]}}"#, frames.join(",")));
     let reply = folder.run(&["walk", "office.pvs", "--path", "way.json", "--fov", "360", "--json"]).expect(0).json();
     assert_eq!((&reply["n_full"], &reply["n_outside"]), (&json!(table.n_cells()), &json!(1)));
-    // One frame in each cell, all round: on average what the table has on average.
+    // One frame in each cell, all round: on average what the table has on average, and the cell itself.
     let share = reply["methods"][0]["cells"]["share_of_all"].as_f64().unwrap();
-    assert!((share - table.mean_visible_share()).abs() < 1e-9, "{share}");
+    let n = table.n_cells() as f64;
+    assert!((share - (1.0 + table.mean_visible_share() * (n - 1.0)) / n).abs() < 1e-9, "{share}");
     assert!(reply["step"].is_null());
     for (text, place) in [
         (r#"{"frames": [{"eye": [1, 1], "dir": [1, 0]}, {"eye": [1, 1], "dir": [0, 0]}]}"#, "frame 1: the direction"),
@@ -297,9 +298,18 @@ fn walks_that_cannot_be_are_refused() {
     }
     let error = folder.refused(&["walk", "office.pvs", "--random", "5", "-o", "office.pvs"]);
     assert_eq!(error, "office.pvs: the output would replace the input");
-    // A room without doors is one cell.
+}
+
+/// A walk needs no portals: in one room it goes from place to place, and between given cells where they touch.
+#[test]
+fn a_table_without_portals_is_walked() {
+    let folder = Folder::with_tower();
     folder.write("room.geojson", r#"{"type":"LineString","coordinates":[[-2,-2],[2,-2],[2,2],[-2,2],[-2,-2]]}"#);
     folder.run(&["build", "room.geojson", "-o", "room.pvs"]).expect(0);
-    let error = folder.refused(&["walk", "room.pvs", "--random", "5"]);
-    assert_eq!(error, "room.pvs: no cell has a portal, so there is nowhere to go; name a path with --path");
+    let reply = folder.run(&["walk", "room.pvs", "--random", "50", "--json"]).expect(0).json();
+    assert_eq!((&reply["n_cells"], &reply["n_full"], &reply["n_outside"]), (&json!(1), &json!(50), &json!(0)));
+    folder.run(&["build", "tower.glb", "--grid", "4,1,4", "--method", "shafts", "-o", "grid.pvs"]).expect(0);
+    assert!(table(&folder, "grid.pvs").portals().is_empty());
+    let reply = folder.run(&["walk", "grid.pvs", "--random", "400", "--json"]).expect(0).json();
+    assert_eq!((&reply["n_full"], &reply["n_outside"]), (&json!(400), &json!(0)));
 }

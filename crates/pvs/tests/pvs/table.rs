@@ -167,7 +167,7 @@ fn small_house_answers() {
     assert_eq!(table.strip_geometry().in_dimension().unwrap().at([1.0, 6.5]).cells(), [CellId(4)]);
     assert_eq!(table.in_dimension().unwrap().at([f64::NAN, 1.0]).cells(), []);
     assert_eq!(table.in_dimension().unwrap().at([f64::INFINITY, 1.0]).cells(), []);
-    assert_eq!(table.mean_visible_share(), 15.0 / 25.0);
+    assert_eq!(table.mean_visible_share(), 10.0 / 20.0);
     assert_eq!((table.info_value("method"), table.info_value("missing")), (Some("by hand"), None));
     let at = table.in_dimension().unwrap().at([1.0, 1.0]).inside().unwrap();
     assert!(!at.sees(CellId(1000)) && !at.visible_set().contains(CellId(1000)));

@@ -1,14 +1,12 @@
 //! Values at points of a plan, such as the measures of a visibility graph: a square for each point, in one hue from light to dark.
 
-mod pixels;
-
 use crate::buffer_chart::number;
+use crate::canvas::{Canvas, parsed};
 use crate::chart::Svg;
 use crate::draw::{MAX_SIZE, MIN_SIZE};
 use crate::frame::{Frame, Px};
 use crate::png::{Pixels, encode_small};
 use crate::{PngError, letters, theme};
-use pixels::Canvas;
 use sightlines_geometry::{Aabb, Point2, Segment2};
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -116,12 +114,6 @@ pub fn field_png(field: &Field<'_>) -> Result<Vec<u8>, PngError> {
         }
     }
     encode_small(drawn.size, canvas.bytes(), Pixels::Rgba)
-}
-
-/// A colour `#rrggbb`.
-fn parsed(colour: &str) -> [u8; 3] {
-    let part = |k: usize| u8::from_str_radix(&colour[2 * k + 1..2 * k + 3], 16).unwrap_or_default();
-    std::array::from_fn(part)
 }
 
 /// Left, top, right and bottom, in pixels.

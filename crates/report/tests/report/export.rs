@@ -66,14 +66,14 @@ fn the_summary_counts_and_weighs() {
     let summary = Summary::of(&table);
     assert_eq!((summary.n_cells, summary.n_portals, summary.n_objects, summary.n_groups), (3, 1, 2, 2));
     assert_eq!((summary.n_visible_pairs, summary.most_visible, summary.floor), (1, 2, 32.0));
-    assert_eq!(summary.mean_cell_share, 5.0 / 9.0);
+    assert_eq!(summary.visible_share, 1.0 / 3.0);
     // The large rooms see 16 + 10 of 32 square units, the closed one its own 6.
     let floor = (26.0 * 26.0 + 6.0 * 6.0) / (32.0 * 32.0);
     assert!((summary.mean_floor_share - floor).abs() < 1e-12, "{}", summary.mean_floor_share);
     assert_eq!(summary.n_bytes, table.to_bytes().len());
     assert_eq!(Summary::of(&rooms(true)).n_visible_pairs, 2);
     let empty = Summary::of(&nothing());
-    assert_eq!((empty.n_cells, empty.mean_cell_share, empty.mean_floor_share), (0, 0.0, 0.0));
+    assert_eq!((empty.n_cells, empty.visible_share, empty.mean_floor_share), (0, 0.0, 0.0));
 }
 
 /// A frame stands behind the dimension, and changes nothing else but the version.

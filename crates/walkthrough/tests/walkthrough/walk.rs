@@ -352,6 +352,35 @@ fn wanderers_stay_inside() {
     assert!(sightlines_walkthrough::wander(&TableCells::new(alone), 10, 0.05, 3).unwrap().is_empty());
 }
 
+/// Boxes without portals: two that touch on a face, one that touches these on an edge only, and one apart.
+#[test]
+fn wanderers_without_portals_go_where_boxes_touch() {
+    let corners = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [4.0, 2.0, 0.0], [9.0, 9.0, 9.0]];
+    let cell = |min: [f64; 3]| CellRecord { min, max: min.map(|x| x + 2.0), polygon: Vec::new(), group: None };
+    let n = corners.len();
+    let mut rows = BitMatrix::new(n, n);
+    (0..n * n).for_each(|k| rows.set(k / n, k % n, true));
+    let parts = TableParts {
+        cells: corners.map(cell).to_vec(),
+        rows,
+        cell_objects: vec![Vec::new(); n],
+        locator: Locator::build(&corners.map(cell).map(|cell| (cell.min, cell.max)), 2),
+        ..TableParts::empty(3, TableKind::Unspecified)
+    };
+    let table = Arc::new(Table::new(parts).unwrap());
+    let walk = sightlines_walkthrough::wander(&TableCells::new(Arc::clone(&table)), 4000, 0.1, 3).unwrap();
+    assert_eq!(walk.len(), 4000);
+    let at: Vec<Vec<u32>> =
+        walk.iter().map(|stand| table.place_at(stand.eye).cells().iter().map(|cell| cell.0).collect()).collect();
+    assert!(at.iter().all(|cells| !cells.is_empty()), "a frame is outside of all cells");
+    let visited: BTreeSet<u32> = at.iter().flatten().copied().collect();
+    assert_eq!(visited, BTreeSet::from([0, 1, 2, 3]));
+    // From frame to frame the walk crosses the face; elsewhere it begins anew, after forty cells.
+    let crosses = |from: u32, to: u32| at.windows(2).filter(|w| w[0] == [from] && w[1].contains(&to)).count();
+    assert!(crosses(0, 1) > 20 && crosses(1, 0) > 20, "{} {}", crosses(0, 1), crosses(1, 0));
+    assert!(crosses(1, 2) + crosses(2, 1) < 20, "an edge is no way");
+}
+
 /// One room with mirrors on its upper and lower wall.
 pub(crate) fn hall_of_mirrors() -> Arc<Table> {
     let mut parts = Arc::unwrap_or_clone(rooms(2)).into_parts();

@@ -7,7 +7,8 @@ use crate::progress::Bar;
 use crate::unproven::Unproven;
 use schemars::JsonSchema;
 use serde::Serialize;
-use sightlines::bake::Baked;
+use sightlines::bake::auto::own_cells;
+use sightlines::bake::{BakeInput, BakeRequest, Baked, CellsFrom};
 use sightlines::stabtree::CertifyOptions;
 use sightlines::verify::{ProofError, ProofFindings, ProofViolation, can_be_proven, check_proofs};
 use std::fmt;
@@ -85,6 +86,21 @@ impl CertifyArgs {
             n_excess: found.n_excess,
         };
         Ok(Some(Certified { file: Some(file), unproven: Unproven::new(&baked.table, &found) }))
+    }
+}
+
+/// Warns if the cells of a scene are those of a k-d tree because of `request`, and others would be cut without proofs and stab trees.
+pub(super) fn warn_of_large_cells(path: &Path, request: &BakeRequest, input: BakeInput<'_>) {
+    let is_asked = request.for_proofs && request.method.is_none() && request.cells.is_none();
+    if let BakeInput::Scene(scene, _) = input
+        && is_asked
+        && !matches!(own_cells(scene), CellsFrom::KdTree)
+    {
+        tracing::warn!(
+            "{}: few walls are axis-aligned, and only along these are cells cut that have portals, which --certify and --stab-trees need: the cells \
+             are large, and little is hidden. Without these options `build` cuts smaller cells, and any surface may hide",
+            path.display()
+        );
     }
 }
 

@@ -46,7 +46,9 @@ fn record(path: &Path, door: &DoorBox, table: &Table) -> DoorRecord {
     let portals = table.portals_within(min, max);
     let (path, name) = (path.display(), &door.name);
     if table.portals().is_empty() {
-        tracing::warn!("{path}: the door {name:?} closes nothing: the cells have no portals");
+        tracing::warn!(
+            "{path}: the door {name:?} closes nothing: the cells have no portals; --method sightlines without given cells cuts cells that have some"
+        );
     } else if portals.is_empty() {
         let gap = table.frame().map_or(String::new(), |frame| {
             let wider = 3.0f64.sqrt() * frame.gap();

@@ -35,6 +35,7 @@ use crate::plans::{self, PlanArgs};
 use crate::progress::Bar;
 use crate::surfaces::{SurfaceArgs, Surfaces};
 use crate::tables::Class;
+use crate::up::UpArgs;
 use options::BakeArgs;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -62,6 +63,8 @@ pub(crate) struct BuildArgs {
     #[command(flatten)]
     surfaces: SurfaceArgs,
     #[command(flatten)]
+    up: UpArgs,
+    #[command(flatten)]
     plans: PlanArgs,
     #[command(flatten)]
     pub(crate) bake: BakeArgs,
@@ -72,8 +75,9 @@ pub(crate) struct BuildArgs {
     /// long they take; so is what comes after, such as writing, which does not count. With a limit that is reached, the table depends on the machine and differs from run to run
     #[arg(long, help_heading = "Method", value_name = "DURATION", value_parser = duration, conflicts_with = "resume")]
     pub(crate) time_limit: Option<Duration>,
-    /// A door that is a box: what fills it when it is shut. It is open in the table; a game, or `query --closed NAME`, shuts it, which closes
-    /// the portals that lie wholly within the closed box. In a plan NAME=X0,Y0,X1,Y1. Names may repeat; scenes may have doors of their own
+    /// A door as a box, in scene units. It is open in the table; a game, or `query --closed NAME`, shuts it, which closes the portals that lie
+    /// wholly within the box; `export` lists the corners of all portals. In a plan NAME=X0,Y0,X1,Y1. Names may repeat; scenes may have doors of
+    /// their own
     #[arg(long = "door", help_heading = "Input", value_name = "NAME=X0,Y0,Z0,X1,Y1,Z1", allow_hyphen_values = true)]
     doors: Vec<DoorBox>,
     #[command(flatten)]
@@ -139,8 +143,9 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
         Vec::new()
     };
     let inputs = kept::look(keeping, inputs)?;
-    let input = input::read(path, args.map.as_deref(), &args.surfaces.options(), &reading)?;
+    let mut input = input::read(path, args.map.as_deref(), &args.surfaces.options(), &reading)?;
     args.refuse_meaningless(&input)?;
+    args.up.put_into(path, &mut input)?;
     let chosen = (args.map.as_deref(), args.prt.as_deref());
     let source = Source::new(path, input, chosen, out)?;
     doors::check(path, &source.content, &args.doors)?;
@@ -155,6 +160,7 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
     let prepared = request.prepare(&source.content, &Runtime { progress: Some(&choosing), ..runtime });
     choosing.finish();
     let prepared = prepared.map_err(|error| source.failed(path, error))?;
+    certify::warn_of_large_cells(path, &request, prepared.input());
     let (recipe, decisions) = (prepared.recipe(), prepared.decisions());
     let auto = decisions.choice.clone().map(auto::Chosen::new);
     let is_chosen = request.method.is_none_or(|method| method == SceneMethod::Auto) && !request.for_proofs;
@@ -245,10 +251,10 @@ impl BuildArgs {
     /// What decides the results of units: the files, how they are read, and how they are baked; not the number of threads. A new argument does not
     /// compile until it is decided whether it is part of that.
     fn identity(&self, inputs: &Inputs, source: &Source, recipe: &Recipe) -> Identity {
-        // What `bake` and `region` say is in the recipe, and doors are shut after the bake.
+        // What `bake` and `region` say is in the recipe, what `up` says is part of the scene's content, and doors are shut after the bake.
         #[rustfmt::skip]
         let Self {
-            input: _, map, prt: _, surfaces, plans, bake: _, region: _, time_limit: _, doors: _, memory: _, resume: _, output: _,
+            input: _, map, prt: _, surfaces, up: _, plans, bake: _, region: _, time_limit: _, doors: _, memory: _, resume: _, output: _,
             class: _, stab_trees, certify, json: _,
         } = self;
         let mut identity = kept::identity("build", inputs);
@@ -294,7 +300,8 @@ impl BuildArgs {
         }
         if !matches!(input, Input::Scene(_)) {
             refuse(&self.input, &self.surfaces.given(), "scenes in space", "none")?;
-            refuse(&self.input, &[("--time-limit", self.time_limit.is_some())], "scenes in space", "none")?;
+            let of_scenes = [("--time-limit", self.time_limit.is_some()), ("--cells", self.region.names_a_file())];
+            refuse(&self.input, &of_scenes, "scenes in space", "none")?;
         }
         Ok(())
     }

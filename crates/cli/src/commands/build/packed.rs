@@ -98,6 +98,9 @@ pub(super) struct Outcome {
     n_objects_seen: u64,
     /// Seconds for everything.
     seconds: f64,
+    /// What a cell is.
+    #[serde(skip)]
+    noun: &'static str,
 }
 
 impl Outcome {
@@ -114,6 +117,7 @@ impl Outcome {
             n_visible_pairs: report.n_visible_pairs,
             n_objects_seen: report.n_objects_seen,
             seconds: report.time.as_secs_f64(),
+            noun: if report.places.is_some() { "place" } else { "given cell" },
         }
     }
 
@@ -133,7 +137,7 @@ impl Outcome {
                 count(self.n_triangles as u64, "triangle")
             ),
             method: self.method.clone(),
-            cells: of_cells(self.n_cells, "given cell", 0),
+            cells: of_cells(self.n_cells, self.noun, 0),
             out: self.out.clone(),
             n_bytes: usize::try_from(self.n_bytes).unwrap_or(usize::MAX),
             visible: format!("a cell sees {cells:.0} cells and {objects:.0} objects on average"),
@@ -145,7 +149,7 @@ impl Outcome {
 impl fmt::Display for Outcome {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [cells, objects] = self.means();
-        writeln!(f, "cells          {}", of_cells(self.n_cells, "given cell", 0))?;
+        writeln!(f, "cells          {}", of_cells(self.n_cells, self.noun, 0))?;
         writeln!(f, "method         {}", self.method)?;
         writeln!(f, "visible        {cells:.1} cells and {objects:.1} objects from a cell on average")?;
         writeln!(f, "wrote          {}, {} bytes, {} of them rows", self.out, self.n_bytes, self.n_row_bytes)

@@ -24,9 +24,10 @@ use std::path::Path;
 #[derive(Debug, Clone, clap::Args)]
 pub(crate) struct RegionArgs {
     /// Scenes in space: what decides which cells and objects are visible. All methods err towards visible: a weaker one
-    /// shows more, and hides nothing wrongly. sightlines look through portals, and axis-aligned walls hide; all others look from whole cells, and any
-    /// surface may hide; both hides what either hides. auto, for any input, measures it and chooses; -v prints the reasons. Cells
-    /// that are not named are those of a k-d tree, or, but for sightlines, boxes where few walls are axis-aligned
+    /// shows more, and hides nothing wrongly. With sightlines only axis-aligned walls hide; with the others any surface may hide, from a whole
+    /// cell at once; both hides what either hides. auto measures the input and chooses; -v prints the reasons. What auto calls sheets is
+    /// both --planes 0. Without --grid, --cells, --n-cells and --cell-size, cells are cut along axis-aligned walls; where there are few of these, every method but
+    /// sightlines has boxes instead, cut where views differ
     /// [default: auto; sightlines with --certify and --stab-trees]
     #[arg(long, value_name = "HOW", value_parser = one_of(&SceneMethod::all(), SceneMethod::name, SceneMethod::about))]
     method: Option<SceneMethod>,
@@ -54,7 +55,7 @@ fn counts(text: &str) -> Result<[u32; 3], String> {
     let parts: Vec<u32> = text.split(',').map(|n| n.trim().parse().unwrap_or(0)).collect();
     match <[u32; 3]>::try_from(parts) {
         Ok(n) if n.iter().all(|&n| n > 0) => Ok(n),
-        _ => Err("not three numbers from 1 on, with commas between".to_owned()),
+        _ => Err("not three numbers from 1 on, with commas between; only scenes in space have a grid".to_owned()),
     }
 }
 

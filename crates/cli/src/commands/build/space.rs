@@ -141,10 +141,14 @@ impl Outcome {
 
     pub(super) fn brief(&self) -> Brief {
         let objects = count(self.table.n_objects as u64, "object");
-        let [walls, triangles] = [self.n_axial_triangles, self.n_triangles];
+        let triangles = count(self.n_triangles as u64, "triangle");
+        let walls = match self.n_axial_triangles {
+            n if n == self.n_triangles => "all".to_owned(),
+            n => format!("{n} of them"),
+        };
         Brief {
             kind: "scene",
-            taken: format!("{}: {objects}, {walls} of {triangles} triangles hide", self.stated),
+            taken: format!("{}: {objects}, {triangles}, {walls} axis-aligned", self.stated),
             method: "sightlines".to_owned(),
             cells: of_cells(self.table.n_cells, "cell", self.table.n_portals) + " along walls",
             out: self.out.clone(),

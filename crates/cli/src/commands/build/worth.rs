@@ -30,8 +30,8 @@ pub(super) fn sentence(viewer: &ViewerShare, is_auto: bool) -> Option<String> {
         format!("hardly: {still}; --method auto may find more that hides, such as slanted and curved surfaces")
     } else {
         format!(
-            "hardly: {still}: the scene is open, few walls hide anything; a table saves little here, smaller cells \
-             (--n-cells) a little more"
+            "hardly: {still}: the scene is open, few walls hide anything; a table saves little here; smaller cells \
+             (--n-cells, --cell-size) may save more"
         )
     })
 }

@@ -1,7 +1,7 @@
 //! An explanation for people.
 
 use super::report::Report;
-use crate::output::count;
+use crate::output::{coordinate, count, point};
 use sightlines::bake::GraphKind;
 use sightlines::bake::explain::{Answer, BlockedWay, Blocks, Corner, ExactLine, Reason, SightLine};
 use sightlines::cells::PortalId;
@@ -106,24 +106,20 @@ impl Report<'_> {
     }
 }
 
-fn place([x, y, z]: [f64; 3]) -> String {
-    format!("({x}, {y}, {z})")
-}
-
 fn list(portals: &[PortalId]) -> String {
     portals.iter().map(PortalId::to_string).collect::<Vec<_>>().join(" ")
 }
 
 fn write_line(f: &mut fmt::Formatter<'_>, cell: &str, line: &SightLine, exact: &ExactLine) -> fmt::Result {
     if let (ExactLine::Segment, Some([p, q])) = (exact, line.ends) {
-        return writeln!(f, ": nothing is on the segment from {} to {}", place(p), place(q));
+        return writeln!(f, ": nothing is on the segment from {} to {}", point(&p), point(&q));
     }
     writeln!(f, " through {}", count(line.portals.len() as u64, "portal"))?;
     for ((portal, entered), at) in line.portals.iter().zip(&line.cells[1..]).zip(exact.crossings()) {
         write!(f, "  portal {portal} into {cell} {entered}")?;
         match (exact, at) {
-            (ExactLine::Planar(..), Some([x, y, _])) => writeln!(f, " at ({x}, {y})")?,
-            (_, Some(at)) => writeln!(f, " at {}", place(at))?,
+            (ExactLine::Planar(..), Some([x, y, _])) => writeln!(f, " at {}", point(&[x, y]))?,
+            (_, Some(at)) => writeln!(f, " at {}", point(&at))?,
             (_, None) => writeln!(f)?,
         }
     }
@@ -137,7 +133,7 @@ fn write_line(f: &mut fmt::Formatter<'_>, cell: &str, line: &SightLine, exact: &
         ExactLine::Axial(..) | ExactLine::Segment => line.ends,
     };
     match (ends, exact) {
-        (Some([p, q]), _) => writeln!(f, "along the line from {} to {}", place(p), place(q)),
+        (Some([p, q]), _) => writeln!(f, "along the line from {} to {}", point(&p), point(&q)),
         (None, ExactLine::Axial(witness, _)) => {
             let words = |x: [String; 3]| x.join(", ");
             let point = words(witness.point().each_ref().map(ToString::to_string));
@@ -196,20 +192,27 @@ fn write_walls(f: &mut fmt::Formatter<'_>, found: &AxialProof, n_shown: usize) -
     for (bounds, n_nodes) in found.most_important().into_iter().take(n_shown) {
         let extent = |k: usize| {
             let (name, min, max) = (["x", "y", "z"][k], bounds.min[k], bounds.max[k]);
-            if min == max { format!("{name} = {min}") } else { format!("{name} from {min} to {max}") }
+            let [low, high] = [min, max].map(coordinate);
+            if min == max { format!("{name} = {low}") } else { format!("{name} from {low} to {high}") }
         };
         writeln!(f, "  wall {}, in {}", [0, 1, 2].map(extent).join(", "), count(n_nodes as u64, "step"))?;
     }
     write_more(f, n_walls as u64, n_shown)?;
-    let ProofSize { n_nodes, n_leaves, depth, .. } = found.proof.size();
-    let (steps, ends) = (count(n_nodes as u64, "step"), count(n_leaves as u64, "contradiction"));
-    writeln!(f, "the proof goes past walls in {steps}, {depth} deep, and ends in {ends}")
+    let ProofSize { n_leaves, depth, .. } = found.proof.size();
+    let (cases, walls) = (count(n_leaves as u64, "case"), count(depth as u64, "wall"));
+    writeln!(
+        f,
+        "the proof has {cases}, by the sides on which a line passes up to {walls}; in none of them a line is left"
+    )
 }
 
 fn write_unknown(f: &mut fmt::Formatter<'_>, n_rays: Option<u32>, hidden_by: &[String]) -> fmt::Result {
     match n_rays {
         None => {
-            writeln!(f, "the cells of this table have no portals; with --scene rays are shot between them")?;
+            writeln!(
+                f,
+                "the cells of this table have no portals to look through; give the scene that it was made of, --scene SCENE, to shoot rays between them"
+            )?;
         }
         Some(n) => writeln!(f, "{} from each found no line between them, which proves nothing", count(n, "ray"))?,
     }

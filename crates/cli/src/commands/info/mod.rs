@@ -10,7 +10,7 @@ use crate::command::{Done, Verbosity};
 use crate::error::Result;
 use crate::facts::{DigestFacts, DoorFacts, Facts, FrameFacts, Source, StabFacts, write_doors};
 use crate::input;
-use crate::output::{bytes, count};
+use crate::output::{bytes, count, point};
 use crate::plans::PlanArgs;
 use crate::surfaces::SurfaceArgs;
 use schemars::JsonSchema;
@@ -179,8 +179,8 @@ impl fmt::Display for TableInfo {
         writeln!(f, "{}: visibility table in {dimension}D, {}", self.file, bytes(self.summary.n_bytes as u64))?;
         write!(f, "{}", Facts(&self.summary))?;
         if let Some([low, high]) = self.extent {
-            let [low, high] = [low, high].map(|corner| corner[..usize::from(dimension)].to_vec());
-            writeln!(f, "extent         {low:?} to {high:?}")?;
+            let [low, high] = [low, high].map(|corner| point(&corner[..usize::from(dimension)]));
+            writeln!(f, "extent         {low} to {high}")?;
         }
         self.stab.iter().try_for_each(|stab| write!(f, "{stab}"))?;
         write_sources(f, self.n_objects_with_source)?;

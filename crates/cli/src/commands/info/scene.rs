@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::facts::Stated;
 use crate::input;
-use crate::output::count;
+use crate::output::{coordinate, count, distance, point};
 use crate::surfaces::Surfaces;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -122,15 +122,15 @@ impl fmt::Display for SceneInfo {
                 count(self.movers.len() as u64, "object")
             )?;
         }
-        let ([x0, y0, z0], [x1, y1, z1]) = (self.min, self.max);
-        writeln!(f, "extent         ({x0}, {y0}, {z0}) to ({x1}, {y1}, {z1})")?;
+        writeln!(f, "extent         {} to {}", point(&self.min), point(&self.max))?;
         let size: [f64; 3] = std::array::from_fn(|k| self.max[k] - self.min[k]);
         let longest = size.into_iter().fold(0.0, f64::max);
         let unit = self.stated.unit_name();
-        writeln!(f, "size           {} by {} by {} {unit}", size[0], size[1], size[2])?;
+        let [x, y, z] = [0, 1, 2].map(|k| distance(self.min[k], self.max[k]));
+        writeln!(f, "size           {x} by {y} by {z} {unit}")?;
         let is_in_metres = self.stated.is_in_metres();
         if is_in_metres && longest > 5000.0 {
-            let metres = longest / 1000.0;
+            let metres = coordinate(longest / 1000.0);
             writeln!(f, "               if it was modelled in millimetres, it is {metres} metres: scale it by 0.001")?;
         }
         let far = self.min.into_iter().chain(self.max).fold(0.0, |m: f64, x| m.max(x.abs()));
@@ -139,7 +139,8 @@ impl fmt::Display for SceneInfo {
             let step = (far as f32).next_up() - far as f32;
             writeln!(
                 f,
-                "far away       {far} {unit} from the origin, where single precision has steps of {step} {unit}"
+                "far away       {} {unit} from the origin, where single precision has steps of {step} {unit}",
+                coordinate(far)
             )?;
         }
         Ok(())

@@ -6,7 +6,6 @@ use crate::command::{Done, Verbosity};
 use crate::error::{ErrorAbout, Result, anyhow, bail};
 use crate::input::{self, refuse};
 use crate::output::{self, bytes, count};
-use crate::picture::{PictureKind, save_picture};
 use crate::place::Point;
 use crate::plans::PlanArgs;
 use crate::surfaces::SurfaceArgs;
@@ -19,7 +18,7 @@ use sightlines::formats::scene::SceneReadOptions;
 use sightlines::formats::{Input, InputKind};
 use sightlines::geometry::{Point2, Segment2};
 use sightlines::isovist::{Boundary, Isovist, LimitError, Limits, Measures, Sector, Viewer, WallMesh};
-use sightlines::report::{Area, AreaEdge, MAX_SIZE, MIN_SIZE, areas_csv, areas_geojson, areas_svg};
+use sightlines::report::{Area, AreaEdge, MAX_SIZE, MIN_SIZE, areas_csv, areas_geojson, areas_png, areas_svg};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -82,7 +81,8 @@ pub(crate) struct IsovistArgs {
 enum Kind {
     GeoJson,
     Csv,
-    Picture,
+    Svg,
+    Png,
 }
 
 impl Kind {
@@ -90,10 +90,8 @@ impl Kind {
         match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
             Some("geojson" | "json") => Ok(Self::GeoJson),
             Some("csv") => Ok(Self::Csv),
-            Some("svg" | "png") => {
-                PictureKind::of(path)?;
-                Ok(Self::Picture)
-            }
+            Some("svg") => Ok(Self::Svg),
+            Some("png") => Ok(Self::Png),
             _ => bail!("{}: the name of the result ends in .geojson, .json, .csv, .svg or .png", path.display()),
         }
     }
@@ -123,18 +121,18 @@ pub(crate) fn run(args: &IsovistArgs, _: Verbosity) -> Result<Done> {
     let n_bytes = match kind {
         Kind::GeoJson => save(&args.output, &areas_geojson(&areas, &names, crs.as_deref()))?,
         Kind::Csv => save(&args.output, &areas_csv(&areas, &names))?,
-        Kind::Picture => {
-            let walls: Vec<Segment2> = walls(&plan).collect();
-            let svg = areas_svg(&areas, &walls, args.size, &legend(&areas));
-            save_picture(&svg, &args.output)?;
-            std::fs::metadata(&args.output).map_or(svg.len() as u64, |found| found.len())
+        Kind::Svg => save(&args.output, &areas_svg(&areas, &walls(&plan), args.size, &legend(&areas)))?,
+        Kind::Png => {
+            let png = areas_png(&areas, &walls(&plan), args.size, &legend(&areas)).in_file(&args.output)?;
+            output::save(&args.output, &png)?;
+            png.len() as u64
         }
     };
     let total = |value: &dyn Fn(&Area) -> f64| areas.iter().map(value).sum::<f64>() / areas.len() as f64;
     let outcome = Outcome {
         out: args.output.display().to_string(),
         n_bytes,
-        n_walls: walls(&plan).count(),
+        n_walls: walls(&plan).len(),
         n_isovists: areas.len(),
         mean_area: total(&|area| area.values[0]),
         mean_occlusivity: total(&|area| area.values[2]),
@@ -147,8 +145,8 @@ fn save(path: &Path, text: &str) -> Result<u64> {
     Ok(text.len() as u64)
 }
 
-fn walls(plan: &Plan) -> impl Iterator<Item = Segment2> + '_ {
-    plan.lines().iter().filter(|line| line.opaque).map(|line| Segment2::new(line.a, line.b))
+fn walls(plan: &Plan) -> Vec<Segment2> {
+    plan.lines().iter().filter(|line| line.opaque).map(|line| Segment2::new(line.a, line.b)).collect()
 }
 
 fn legend(areas: &[Area]) -> String {

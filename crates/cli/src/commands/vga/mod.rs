@@ -35,8 +35,8 @@ use std::time::Instant;
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = "Points are the centres of a grid, at multiples of the spacing: those that steps between neighbours reach from the \
-                  seeds without touching a wall. Without a seed these are all that walls enclose, the insides of pillars among them, \
-                  or, where an outer door is open, the largest part with walls around it. Measures are those of depthmapX; -1 in a CSV file, null in GeoJSON, and no \
+                  seeds without touching a wall. Without a seed the grid fills all areas that walls enclose, also the insides of \
+                  pillars; if an outer door is open, so that the largest area is not enclosed, it fills only that area. Measures are those of depthmapX; -1 in a CSV file, null in GeoJSON, and no \
                   square in a picture mean that a point has no value. Metric and angular measures take minutes for some thousand \
                   points."
 )]

@@ -31,7 +31,8 @@ pub(crate) struct WalkArgs {
         conflicts_with = "random"
     )]
     path: Option<PathBuf>,
-    /// Generate a random walk of this many frames, from cell to cell, with occasional jumps
+    /// Generate a random walk of this many frames, from cell to cell, with occasional jumps: through portals, or, if the cells have none, where
+    /// their boxes touch
     #[arg(long, help_heading = "Walk", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     random: Option<u32>,
     /// Seed of the random walk
@@ -110,7 +111,7 @@ fn walk<C: Cells>(cells: &C, args: &WalkArgs, show_progress: bool) -> Result<Don
         }
     };
     if stands.is_empty() {
-        bail!("{}: no cell has a portal, so there is nowhere to go; name a path with --path", file.display());
+        bail!("{}: the table has no cells, so there is nowhere to go", file.display());
     }
     let view = |(k, stand): (usize, &CameraPose)| {
         lens.view(*stand).map_err(|error| refused(args.path.as_deref().unwrap_or(file), k, error))

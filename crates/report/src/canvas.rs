@@ -1,24 +1,24 @@
-//! Pixels with transparency on which rectangles and lines are drawn.
+//! Pixels with transparency on which rectangles, polygons and lines are drawn.
 
 /// A picture of pixels, transparent at first.
-pub(super) struct Canvas {
+pub(crate) struct Canvas {
     size: [usize; 2],
     /// Red, green, blue and the share that is covered, row by row from the upper left corner.
     bytes: Vec<u8>,
 }
 
 impl Canvas {
-    pub(super) fn new(size: [u32; 2]) -> Self {
+    pub(crate) fn new(size: [u32; 2]) -> Self {
         let [width, height] = size.map(|x| x as usize);
         Self { size: [width, height], bytes: vec![0; 4 * width * height] }
     }
 
-    pub(super) fn bytes(&self) -> &[u8] {
+    pub(crate) fn bytes(&self) -> &[u8] {
         &self.bytes
     }
 
     /// Fills a rectangle, from whole pixel to whole pixel: rectangles with a common side leave no gap.
-    pub(super) fn fill(&mut self, [left, top, right, bottom]: [f64; 4], colour: [u8; 3]) {
+    pub(crate) fn fill(&mut self, [left, top, right, bottom]: [f64; 4], colour: [u8; 3]) {
         let [columns, rows] = [(left, right, 0), (top, bottom, 1)].map(|(from, to, k)| {
             let place = |x: f64| x.round().clamp(0.0, self.size[k] as f64) as usize;
             place(from)..place(to)
@@ -30,8 +30,43 @@ impl Canvas {
         }
     }
 
+    /// Fills a polygon as far as it covers pixels, in four rows of samples to a pixel; where it passes over itself, it is left open.
+    ///
+    /// * `opacity`: from 0 to 1
+    pub(crate) fn fill_polygon(&mut self, corners: &[[f64; 2]], opacity: f64, colour: [u8; 3]) {
+        const SAMPLES: usize = 4;
+        let [width, height] = self.size;
+        let (top, bottom) = corners.iter().fold((f64::INFINITY, 0.0f64), |(t, b), p| (t.min(p[1]), b.max(p[1])));
+        let rows = top.clamp(0.0, height as f64).floor() as usize..bottom.clamp(0.0, height as f64).ceil() as usize;
+        let mut cover = vec![0.0; width];
+        let mut crossings = Vec::new();
+        for row in rows {
+            cover.fill(0.0);
+            for sample in 0..SAMPLES {
+                let y = row as f64 + (sample as f64 + 0.5) / SAMPLES as f64;
+                crossings.clear();
+                let ends = corners.iter().zip(corners.iter().cycle().skip(1));
+                crossings.extend(ends.filter(|(a, b)| (a[1] <= y) != (b[1] <= y)).map(|(a, b)| {
+                    let x = a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
+                    x.clamp(0.0, width as f64)
+                }));
+                crossings.sort_unstable_by(f64::total_cmp);
+                for span in crossings.chunks_exact(2) {
+                    let columns = span[0].floor() as usize..span[1].ceil() as usize;
+                    for (part, column) in cover[columns.clone()].iter_mut().zip(columns) {
+                        let x = column as f64;
+                        *part += (span[1].min(x + 1.0) - span[0].max(x)) / SAMPLES as f64;
+                    }
+                }
+            }
+            for (column, &part) in cover.iter().enumerate().filter(|(_, part)| **part > 0.0) {
+                self.blend(column, row, part.min(1.0) * opacity, colour);
+            }
+        }
+    }
+
     /// Draws a line with round ends.
-    pub(super) fn stroke(&mut self, [a, b]: [[f64; 2]; 2], width: f64, colour: [u8; 3]) {
+    pub(crate) fn stroke(&mut self, [a, b]: [[f64; 2]; 2], width: f64, colour: [u8; 3]) {
         let [dx, dy] = [b[0] - a[0], b[1] - a[1]];
         let square = dx * dx + dy * dy;
         let reach = 0.5 * width + 1.0;
@@ -73,4 +108,10 @@ impl Canvas {
             pixel[3] = (all * 255.0).round() as u8;
         }
     }
+}
+
+/// A colour `#rrggbb`.
+pub(crate) fn parsed(colour: &str) -> [u8; 3] {
+    let part = |k: usize| u8::from_str_radix(&colour[2 * k + 1..2 * k + 3], 16).unwrap_or_default();
+    std::array::from_fn(part)
 }
