@@ -1,14 +1,11 @@
 //! The clusters of a Quake map, as `vis` and `build` report them.
 
-use crate::output::{count, percent, seconds};
-use schemars::JsonSchema;
-use serde::Serialize;
+use crate::output::{JsonSchema, Serialize, count, percent, seconds_of};
 use sightlines::bake::ClusterVisibility;
 use sightlines::formats::quake::Prt;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::path::Path;
-use std::time::Duration;
 
 /// Warns of portals that a file has more than once.
 pub(crate) fn warn_of_repeats(path: &Path, prt: &Prt) {
@@ -102,6 +99,6 @@ impl Clusters {
 
     /// Time of the search, in words.
     pub(crate) fn time(&self) -> String {
-        seconds(Duration::from_secs_f64(self.see_seconds))
+        seconds_of(self.see_seconds)
     }
 }

@@ -1,13 +1,10 @@
 //! The lines about tables and scenes that several commands print.
 
-use crate::output::{bytes, count, percent, seconds};
-use schemars::JsonSchema;
-use serde::Serialize;
+use crate::output::{JsonSchema, Serialize, bytes, count, percent, seconds_of};
 use sightlines::formats::scene::{Axis, LengthUnit, SceneFormat, SceneInfo};
 use sightlines::pvs::{DoorRecord, Frame, GeometryDigest, ObjectSource, Table};
 use sightlines::report::Summary;
 use std::fmt;
-use std::time::Duration;
 
 /// Cells, portals, visible pairs, and what has to be drawn; a share of the floor that is not a number is unknown.
 pub(crate) struct Facts<'a>(pub(crate) &'a Summary);
@@ -35,7 +32,7 @@ impl fmt::Display for Facts<'_> {
 
 /// Times to cut and to see.
 pub(crate) fn times(cut_seconds: f64, what: &str, see_seconds: f64) -> String {
-    let [cut, see] = [cut_seconds, see_seconds].map(|s| seconds(Duration::from_secs_f64(s)));
+    let [cut, see] = [cut_seconds, see_seconds].map(seconds_of);
     format!("{cut} to cut the {what}, {see} to compute visibility")
 }
 

@@ -38,6 +38,14 @@ pub(crate) fn size(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A length in scene units that is one.
+pub(crate) fn above_zero(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if x.is_finite() && x > 0.0 => Ok(x),
+        _ => Err("not a number above 0".to_owned()),
+    }
+}
+
 /// A duration: a number of seconds, or one with the unit s, m or h.
 pub(crate) fn duration(text: &str) -> Result<Duration, String> {
     let (number, unit) = match text.trim() {

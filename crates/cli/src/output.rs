@@ -1,8 +1,10 @@
 //! Results: standard output, and files that are written as a whole.
 
+// What the types of all results are derived from.
+pub(crate) use schemars::JsonSchema;
+pub(crate) use serde::Serialize;
+
 use crate::error::{Result, StdoutError, anyhow};
-use schemars::JsonSchema;
-use serde::Serialize;
 use sightlines::formats::{Hidden, WriteError, atomic_write, remove_left};
 use std::fmt;
 use std::fs::{self, OpenOptions};
@@ -158,7 +160,7 @@ pub(crate) fn seconds(time: std::time::Duration) -> String {
 
 /// The same of a number of seconds.
 pub(crate) fn seconds_of(time: f64) -> String {
-    seconds(std::time::Duration::from_secs_f64(time))
+    seconds(std::time::Duration::try_from_secs_f64(time).unwrap_or_default())
 }
 
 /// A number with its noun, in the plural unless it is one.

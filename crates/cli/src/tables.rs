@@ -2,8 +2,7 @@
 
 use crate::error::{ErrorAbout, Result};
 use crate::input;
-use schemars::JsonSchema;
-use serde::Serialize;
+use crate::output::{JsonSchema, Serialize};
 use sightlines::eye_to_cell::{CellSource, TableCells};
 use sightlines::formats::InputKind;
 use sightlines::packed::{Packed, PackedError, SizeClass};
@@ -44,6 +43,17 @@ pub(crate) fn open(path: &Path, cache_bytes: usize) -> Result<Opened> {
 pub(crate) fn packed(path: &Path, cache_bytes: usize) -> Result<Packed<File>> {
     let file = File::open(path).in_file(path)?;
     Packed::open(file, cache_bytes).in_file(path)
+}
+
+/// Bytes of blocks of a packed table that are kept while it is unpacked, or asked again and again.
+pub(crate) const CACHE: usize = 64 << 20;
+
+/// Reads a table of either kind.
+pub(crate) fn read(path: &Path) -> Result<Table> {
+    match input::kind_of(path)? {
+        Some(InputKind::Packed) => packed(path, CACHE)?.to_table().in_file(path),
+        _ => input::table(path),
+    }
 }
 
 /// The class of a file, on a command line and in answers.

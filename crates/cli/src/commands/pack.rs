@@ -1,19 +1,14 @@
 //! `pack` and `unpack`: tables as small files for programs that read them piece by piece, and back.
 
-use crate::command::{Done, Verbosity};
+use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::{ErrorAbout, Result};
-use crate::output::{self, bytes, count, percent};
-use crate::tables::Class;
+use crate::output::{self, JsonSchema, Serialize, bytes, count, percent};
+use crate::tables::{CACHE, Class};
 use crate::{input, tables};
-use schemars::JsonSchema;
-use serde::Serialize;
 use sightlines::packed::{PackOptions, Packed, pack_report};
 use sightlines::pvs::Table;
 use std::fmt;
 use std::path::PathBuf;
-
-/// Bytes of blocks that are kept while a table is unpacked: each is read many times in a row.
-const CACHE: usize = 64 << 20;
 
 /// Arguments of `pack`.
 #[derive(Debug, clap::Args)]
@@ -32,9 +27,8 @@ pub(crate) struct PackArgs {
     /// 65,536 cells]
     #[arg(long, help_heading = "Output", value_enum)]
     class: Option<Class>,
-    /// Print the result as JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
+    #[command(flatten)]
+    json: JsonArg,
 }
 
 /// Arguments of `unpack`.
@@ -46,9 +40,8 @@ pub(crate) struct UnpackArgs {
     /// The table to write
     #[arg(short, long, help_heading = "Output", value_name = "OUT.pvs")]
     output: PathBuf,
-    /// Print the result as JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
+    #[command(flatten)]
+    json: JsonArg,
 }
 
 pub(crate) fn pack(args: &PackArgs, _: Verbosity) -> Result<Done> {

@@ -1,9 +1,7 @@
 //! The frame in which a scene is baked, what it brought, and what became of cells that stand along other axes.
 
 use crate::facts::FrameFacts;
-use crate::output::percent;
-use schemars::JsonSchema;
-use serde::Serialize;
+use crate::output::{JsonSchema, Serialize, percent};
 use sightlines::bake::{Along, Framed, Prepared};
 use std::fmt;
 

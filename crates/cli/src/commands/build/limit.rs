@@ -1,8 +1,6 @@
 //! A limit of time, and what was not decided within it.
 
-use crate::output::{count, seconds};
-use schemars::JsonSchema;
-use serde::Serialize;
+use crate::output::{JsonSchema, Serialize, count, seconds};
 use sightlines::bake::{LimitReport, Report};
 use sightlines::progress::Budget;
 use std::fmt;

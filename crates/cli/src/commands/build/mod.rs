@@ -22,7 +22,7 @@ mod worth;
 
 pub(crate) use source::bake_visibly;
 
-use crate::command::{Done, Verbosity};
+use crate::command::{Done, JsonArg, Verbosity};
 use crate::doors::DoorBox;
 use crate::error::{Result, anyhow, bail};
 use crate::input::{self, refuse};
@@ -30,14 +30,12 @@ use crate::kept::{self, Keeping, Kept, ResumeArgs};
 use crate::map_portals::{MADE, portal_file};
 use crate::memory::MemoryArgs;
 use crate::numbers::duration;
-use crate::output;
+use crate::output::{self, JsonSchema, Serialize};
 use crate::plans::{self, PlanArgs};
 use crate::progress::Bar;
 use crate::surfaces::{SurfaceArgs, Surfaces};
 use crate::tables::Class;
 use options::BakeArgs;
-use schemars::JsonSchema;
-use serde::Serialize;
 use sightlines::bake::{BakeInput, BakeRequest, Bakeable, Baked, Recipe, Report, Runtime, SceneMethod};
 use sightlines::checkpoint::{Identity, Inputs};
 use sightlines::formats::{Input, InputKind, SceneFile};
@@ -97,9 +95,8 @@ pub(crate) struct BuildArgs {
     stab_trees: Option<Option<u32>>,
     #[command(flatten, next_help_heading = "Output")]
     certify: certify::CertifyArgs,
-    /// Print the result as JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
+    #[command(flatten)]
+    json: JsonArg,
 }
 
 pub(crate) fn run(args: &BuildArgs, Verbosity { show_progress, verbose }: Verbosity) -> Result<Done> {
@@ -220,10 +217,7 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
         })
     };
     let made = made();
-    match kept.finish(made.is_ok()) {
-        Some(interrupted) => Err(anyhow!("{interrupted}")),
-        None => made,
-    }
+    kept.end(made)
 }
 
 /// What to do where there is no room for a build.

@@ -2,9 +2,7 @@
 
 use super::brief::{Brief, of_cells};
 use crate::facts::{Facts, times};
-use crate::output::{bytes, count, percent};
-use schemars::JsonSchema;
-use serde::Serialize;
+use crate::output::{JsonSchema, Serialize, bytes, count, percent};
 use sightlines::bake::PlanReport;
 use sightlines::pvs::Table;
 use sightlines::report::Summary;

@@ -8,9 +8,7 @@ use crate::buffers::BufferArgs;
 use crate::error::Result;
 use crate::facts::{Facts, Stated};
 use crate::named::one_of;
-use crate::output::{bytes, count, percent, seconds};
-use schemars::JsonSchema;
-use serde::Serialize;
+use crate::output::{JsonSchema, Serialize, bytes, count, percent, seconds_of};
 use sightlines::bake::places::{PlaceOptions, PlaceSummary};
 use sightlines::bake::{BakeRequest, CellsFrom, RegionReport, SceneMethod};
 use sightlines::formats::{ReadError, SceneFile};
@@ -41,7 +39,7 @@ pub(crate) struct RegionArgs {
     n_cells: Option<u32>,
     /// Scenes in space: the same, with no side of a cell longer than SIZE, in scene units; there are as many cells as that needs, if it
     /// is more than otherwise
-    #[arg(long, value_name = "SIZE", value_parser = length, allow_hyphen_values = true, conflicts_with_all = ["cells", "grid"])]
+    #[arg(long, value_name = "SIZE", value_parser = crate::numbers::above_zero, allow_hyphen_values = true, conflicts_with_all = ["cells", "grid"])]
     cell_size: Option<f64>,
     #[command(flatten)]
     buffers: BufferArgs,
@@ -55,13 +53,6 @@ fn counts(text: &str) -> Result<[u32; 3], String> {
     match <[u32; 3]>::try_from(parts) {
         Ok(n) if n.iter().all(|&n| n > 0) => Ok(n),
         _ => Err("not three numbers from 1 on, with commas between".to_owned()),
-    }
-}
-
-fn length(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(x) if x.is_finite() && x > 0.0 => Ok(x),
-        _ => Err("not a number above 0".to_owned()),
     }
 }
 
@@ -238,7 +229,7 @@ impl fmt::Display for Outcome {
             writeln!(f, "effort         {}, {} questions", count(self.n_volumes, "volume"), self.n_asked)?;
         }
         self.time_limit.iter().try_for_each(|left| write!(f, "{left}"))?;
-        let [cut, all] = [self.cut_seconds, self.seconds].map(|s| seconds(std::time::Duration::from_secs_f64(s)));
+        let [cut, all] = [self.cut_seconds, self.seconds].map(seconds_of);
         writeln!(f, "time           {all}, {cut} of it to cut cells")
     }
 }

@@ -3,9 +3,7 @@
 use super::brief::{Brief, of_cells, of_viewer};
 use super::limit::{Undecided, brief};
 use crate::facts::{Facts, Stated, times};
-use crate::output::{bytes, count, percent};
-use schemars::JsonSchema;
-use serde::Serialize;
+use crate::output::{JsonSchema, Serialize, bytes, count, percent};
 use sightlines::bake::{DoorPortals, SceneReport};
 use sightlines::cells::{Scene, SceneObject};
 use sightlines::formats::SceneFile;

@@ -1,8 +1,7 @@
 //! An explanation for programs; the fields depend on the kind of the cells.
 
 use super::report::Report;
-use schemars::JsonSchema;
-use serde::Serialize;
+use crate::output::{JsonSchema, Serialize};
 use serde_json::{Value, json};
 use sightlines::bake::GraphKind;
 use sightlines::bake::explain::{Answer, BlockedWay, Blocks, Corner, ExactLine, Reason, SightLine, Way};

@@ -6,15 +6,13 @@ pub(crate) mod quake;
 pub(crate) mod scene;
 pub(crate) mod wad;
 
-use crate::command::{Done, Verbosity};
+use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::Result;
 use crate::facts::{DigestFacts, DoorFacts, Facts, FrameFacts, Source, StabFacts, write_doors};
 use crate::input;
-use crate::output::{bytes, count};
+use crate::output::{JsonSchema, Serialize, bytes, count};
 use crate::plans::PlanArgs;
 use crate::surfaces::SurfaceArgs;
-use schemars::JsonSchema;
-use serde::Serialize;
 use sightlines::formats::InputKind;
 use sightlines::pvs::{CellRecord, ObjectId, Table};
 use sightlines::report::Summary;
@@ -35,9 +33,8 @@ pub(crate) struct InfoArgs {
     /// Tables: also list the objects, with node and primitive in the glTF that the table was made of
     #[arg(long, help_heading = "Output")]
     objects: bool,
-    /// Print the result as JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
+    #[command(flatten)]
+    json: JsonArg,
 }
 
 pub(crate) fn run(args: &InfoArgs, _: Verbosity) -> Result<Done> {

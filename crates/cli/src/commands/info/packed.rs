@@ -3,10 +3,8 @@
 use super::{Object, as_map, write_sources};
 use crate::error::{ErrorAbout, Result};
 use crate::facts::{DigestFacts, DoorFacts, FrameFacts, Source, write_doors};
-use crate::output::{bytes, percent};
+use crate::output::{JsonSchema, Serialize, bytes, percent};
 use crate::tables::{self, Class};
-use schemars::JsonSchema;
-use serde::Serialize;
 use sightlines::pvs::ObjectId;
 use std::fmt;
 use std::path::Path;

@@ -1,9 +1,7 @@
 //! What a Quake map or its portal file holds.
 
 use crate::error::Result;
-use crate::output::{count, percent};
-use schemars::JsonSchema;
-use serde::Serialize;
+use crate::output::{JsonSchema, Serialize, count, percent};
 use sightlines::formats::Bsp;
 use sightlines::formats::quake::visibility::read_visibility;
 use sightlines::formats::quake::{LeafClusters, read_bsp, read_prt};

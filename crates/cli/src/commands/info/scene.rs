@@ -3,10 +3,8 @@
 use crate::error::Result;
 use crate::facts::Stated;
 use crate::input;
-use crate::output::count;
+use crate::output::{JsonSchema, Serialize, count};
 use crate::surfaces::Surfaces;
-use schemars::JsonSchema;
-use serde::Serialize;
 use sightlines::cells::{MovingObject, Scene};
 use sightlines::formats::scene::SceneReadOptions;
 use sightlines::geometry::Aabb;

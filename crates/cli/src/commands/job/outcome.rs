@@ -1,10 +1,8 @@
 //! What is printed about a job.
 
 use super::task::Made;
-use crate::output::{count, percent, seconds};
+use crate::output::{JsonSchema, Serialize, count, percent, seconds_of};
 use crate::progress::rough;
-use schemars::JsonSchema;
-use serde::Serialize;
 use sightlines::checkpoint::{Job, PhasePlan, ShardState, in_words};
 use std::fmt;
 use std::path::Path;
@@ -112,7 +110,7 @@ impl fmt::Display for ShardsDone {
             let how = if *was_done { "done already" } else { "done" };
             writeln!(f, "shard {shard} of {}: {units} of phase {phase}, {how}", self.job)?;
         }
-        writeln!(f, "in {}", seconds(Duration::try_from_secs_f64(self.seconds).unwrap_or_default()))
+        writeln!(f, "in {}", seconds_of(self.seconds))
     }
 }
 

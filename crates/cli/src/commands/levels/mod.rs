@@ -2,7 +2,7 @@
 
 pub(crate) mod outcome;
 
-use crate::command::{Done, Verbosity};
+use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::{Result, anyhow};
 use crate::input;
 use crate::kept::{self, Keeping, Kept, ResumeArgs};
@@ -53,9 +53,8 @@ pub(crate) struct LevelsArgs {
     /// The folder to write: a new one, or one that contains only levels, which are replaced
     #[arg(short, long, help_heading = "Output", value_name = "FOLDER")]
     output: PathBuf,
-    /// Print the result as JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
+    #[command(flatten)]
+    json: JsonArg,
 }
 
 /// Whether a file in a folder of levels is one that this command writes.
@@ -111,10 +110,7 @@ pub(crate) fn run(args: &LevelsArgs, Verbosity { show_progress, .. }: Verbosity)
     drop(bar);
     let made =
         made.and_then(|made| write(args, (scene, method), (&file, source.as_ref()), (&made, is_framed), folder, start));
-    match kept.finish(made.is_ok()) {
-        Some(interrupted) => Err(anyhow!("{interrupted}")),
-        None => Ok(Done::new(args.json, made?)),
-    }
+    Ok(Done::new(args.json, kept.end(made)?))
 }
 
 impl LevelsArgs {

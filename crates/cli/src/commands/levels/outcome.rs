@@ -1,10 +1,8 @@
 //! What levels were made, in numbers.
 
 use super::LevelsArgs;
-use crate::output::{bytes, count, percent, seconds};
+use crate::output::{JsonSchema, Serialize, bytes, count, percent, seconds_of};
 use crate::simplification::{Rounded, SingleSided};
-use schemars::JsonSchema;
-use serde::Serialize;
 use sightlines::cells::Scene;
 use sightlines::formats::LevelsIndex;
 use sightlines::formats::scene::Rounding;
@@ -111,6 +109,6 @@ impl fmt::Display for Outcome {
         if let Some(rounded) = self.rounded {
             writeln!(f, "rounded        {rounded}")?;
         }
-        writeln!(f, "time           {}", seconds(Duration::from_secs_f64(self.seconds)))
+        writeln!(f, "time           {}", seconds_of(self.seconds))
     }
 }

@@ -1,8 +1,6 @@
 //! What was drawn.
 
-use crate::output::{count, percent, seconds_of};
-use schemars::JsonSchema;
-use serde::Serialize;
+use crate::output::{JsonSchema, Serialize, count, percent, seconds_of};
 use std::fmt;
 
 /// A picture with the shadows of an area light.

@@ -6,7 +6,7 @@ pub(crate) mod outcome;
 mod target;
 
 use crate::buffers::method_failed;
-use crate::command::{Done, Verbosity};
+use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::{ErrorAbout, Result, anyhow};
 use crate::input;
 use crate::named::{measure, one_of};
@@ -74,9 +74,8 @@ pub(crate) struct MultifocalArgs {
     /// largest
     #[arg(long, help_heading = "Output", value_name = "OUT.png")]
     distance: Option<PathBuf>,
-    /// Print the result as JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
+    #[command(flatten)]
+    json: JsonArg,
 }
 
 pub(crate) fn run(args: &MultifocalArgs, _: Verbosity) -> Result<Done> {

@@ -5,20 +5,15 @@ pub(crate) mod sight;
 use crate::command::{Done, Verbosity};
 use crate::error::{ErrorAbout, Result};
 use crate::facts::Source;
-use crate::output::count;
+use crate::output::{JsonSchema, Serialize, count};
 use crate::place::Point;
-use crate::tables::{self, Cells, Opened};
+use crate::tables::{self, CACHE, Cells, Opened};
 use crate::view::lifted;
-use schemars::JsonSchema;
-use serde::Serialize;
 use sight::ViewerArgs;
 use sightlines::pvs::{CellId, ObjectId, PlaceBuffer};
 use std::collections::BTreeSet;
 use std::fmt;
 use std::path::PathBuf;
-
-/// Bytes of blocks of a packed table that a query keeps.
-const CACHE: usize = 64 << 20;
 
 /// Arguments of `query`.
 #[derive(Debug, clap::Args)]

@@ -1,9 +1,8 @@
 //! What is left out before anything is drawn.
 
 use crate::error::{ErrorAbout, Result, bail};
+use crate::output::{JsonSchema, Serialize};
 use crate::tables::{Cells, Opened};
-use schemars::JsonSchema;
-use serde::Serialize;
 use sightlines::cells::{Scene, unlike};
 use sightlines::geometry::Point3;
 use sightlines::pvs::{ObjectId, Place, PlaceBuffer};
@@ -11,9 +10,6 @@ use sightlines::visible_surface::hierarchical::{self, DepthPyramid};
 use sightlines::visible_surface::{Camera, DepthFormat, FaceMask, Faces, RenderInput, VisibleSurface, ZBuffer, cull};
 use std::path::Path;
 use std::time::Instant;
-
-/// Bytes of blocks of a packed table that are kept.
-pub(super) const CACHE: usize = 64 << 20;
 
 /// A way to leave faces out, as an argument.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]

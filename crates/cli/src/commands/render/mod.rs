@@ -4,7 +4,7 @@ mod cull;
 mod method;
 pub(crate) mod outcome;
 
-use crate::command::{Done, Verbosity};
+use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::{ErrorAbout, Result, anyhow, bail};
 use crate::eye::EyeArgs;
 use crate::input;
@@ -13,9 +13,9 @@ use crate::output::{self, count};
 use crate::picture;
 use crate::progress::Bar;
 use crate::surfaces::{self, SurfaceArgs};
-use crate::tables;
+use crate::tables::{self, CACHE};
 use crate::view::Up;
-use cull::{CACHE, Cull, leave_out, seen_by_table};
+use cull::{Cull, leave_out, seen_by_table};
 use method::{Drawn, Kind, Readied, Ready, compared};
 use outcome::Outcome;
 use outcome::Row;
@@ -69,9 +69,8 @@ pub(crate) struct RenderArgs {
     /// The picture to write
     #[arg(short, long, help_heading = "Output", value_name = "OUT.png")]
     output: PathBuf,
-    /// Print the result as JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
+    #[command(flatten)]
+    json: JsonArg,
 }
 
 pub(crate) fn run(args: &RenderArgs, Verbosity { show_progress, .. }: Verbosity) -> Result<Done> {

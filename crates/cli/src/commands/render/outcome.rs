@@ -2,9 +2,7 @@
 
 use super::cull::Gone;
 use super::method::Drawn;
-use crate::output::{count, percent, seconds_of};
-use schemars::JsonSchema;
-use serde::Serialize;
+use crate::output::{JsonSchema, Serialize, count, percent, seconds_of};
 use sightlines::geometry::Point3;
 use sightlines::visible_surface::Comparison;
 use std::collections::BTreeMap;

@@ -2,10 +2,8 @@
 
 use super::SimplifyArgs;
 use crate::error::Result;
-use crate::output::{bytes, count, percent, seconds};
+use crate::output::{JsonSchema, Serialize, bytes, count, percent, seconds_of};
 use crate::simplification::{Rounded, SingleSided, Written};
-use schemars::JsonSchema;
-use serde::Serialize;
 use sightlines::cells::Scene;
 use sightlines::geometry::Point3;
 use sightlines::simplify::estimate::interval;
@@ -216,7 +214,7 @@ impl fmt::Display for Outcome {
         if let Some(rounded) = self.rounded {
             writeln!(f, "rounded        {rounded}")?;
         }
-        writeln!(f, "time           {}", seconds(Duration::from_secs_f64(self.seconds)))
+        writeln!(f, "time           {}", seconds_of(self.seconds))
     }
 }
 

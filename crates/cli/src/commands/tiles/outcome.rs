@@ -1,8 +1,6 @@
 //! What became of the tiles of a world.
 
-use crate::output::{bytes, count, seconds};
-use schemars::JsonSchema;
-use serde::Serialize;
+use crate::output::{JsonSchema, Serialize, bytes, count, seconds_of};
 use sightlines::bake::world::WorldReport;
 use std::fmt;
 use std::path::Path;
@@ -54,6 +52,6 @@ impl fmt::Display for Outcome {
         if *n_removed > 0 {
             writeln!(f, "removed        {} of an earlier bake", count(*n_removed as u64, "table"))?;
         }
-        writeln!(f, "time           {}", seconds(Duration::from_secs_f64(self.seconds)))
+        writeln!(f, "time           {}", seconds_of(self.seconds))
     }
 }

@@ -4,7 +4,7 @@ mod kind;
 pub(crate) mod outcome;
 mod points;
 
-use crate::command::{Done, Verbosity};
+use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::{ErrorAbout, Result, anyhow, bail};
 use crate::input;
 use crate::kept::{self, Keeping, Kept, ResumeArgs};
@@ -102,9 +102,8 @@ pub(crate) struct VgaArgs {
     /// What to write, by the ending of its name: .csv, .geojson, or a picture as .svg or .png
     #[arg(short, long, help_heading = "Output", value_name = "OUT")]
     output: PathBuf,
-    /// Print the result as JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
+    #[command(flatten)]
+    json: JsonArg,
 }
 
 /// An entry of `--measures`.
@@ -217,10 +216,7 @@ pub(crate) fn run(args: &VgaArgs, Verbosity { show_progress, .. }: Verbosity) ->
         Ok((analysed, columns))
     });
     // Results are of use until the output is written.
-    if let Some(interrupted) = kept.finish(written.is_ok()) {
-        bail!("{interrupted}");
-    }
-    let (Analysed { graph, graph_seconds, measure_seconds, .. }, columns) = written?;
+    let (Analysed { graph, graph_seconds, measure_seconds, .. }, columns) = kept.end(written)?;
     let outcome = Outcome {
         plan: args.plan.display().to_string(),
         n_walls: walls(&plan).len(),

@@ -1,10 +1,8 @@
 //! Proofs for some of the pairs of a table, before it is written.
 
 use crate::error::{Result, anyhow};
-use crate::output::count;
+use crate::output::{JsonSchema, Serialize, count};
 use crate::progress::Bar;
-use schemars::JsonSchema;
-use serde::Serialize;
 use sightlines::cells::{CellGraph, CellId, Convex};
 use sightlines::sightline::Verdict;
 use sightlines::stabtree::{ConvexDoubt, ConvexExplainer, ConvexVisibility, MOST_EXPLAINED, check_convex};

@@ -4,7 +4,7 @@ mod certify;
 pub(crate) mod outcome;
 mod sounds;
 
-use crate::command::{Done, Verbosity};
+use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::{Result, anyhow, bail};
 pub(crate) use outcome::Outcome;
 pub(crate) use sounds::Sound;
@@ -54,9 +54,8 @@ pub(crate) struct VisArgs {
     /// The map to write [default: the input]
     #[arg(short, long, help_heading = "Output", value_name = "OUT.bsp")]
     pub(crate) output: Option<PathBuf>,
-    /// Print the result as JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
+    #[command(flatten)]
+    json: JsonArg,
 }
 
 impl VisArgs {
@@ -72,7 +71,7 @@ impl VisArgs {
             certify: None,
             silence: Vec::new(),
             output: None,
-            json: false,
+            json: JsonArg::default(),
         }
     }
 }

@@ -2,15 +2,12 @@
 
 use super::certify::Certified;
 use crate::clusters::Clusters;
-use crate::output::{bytes, count, seconds};
-use schemars::JsonSchema;
-use serde::Serialize;
+use crate::output::{JsonSchema, Serialize, bytes, count, seconds_of};
 use sightlines::bake::VisMap;
 use sightlines::formats::quake::Bsp;
 use sightlines::progress::memory;
 use std::fmt;
 use std::path::Path;
-use std::time::Duration;
 
 /// The map that was written.
 #[derive(Debug, Serialize, JsonSchema)]
@@ -74,7 +71,7 @@ impl fmt::Display for Outcome {
         if let Some(certified) = &self.certified {
             write!(f, "{certified}")?;
         }
-        let all = seconds(Duration::from_secs_f64(self.seconds));
+        let all = seconds_of(self.seconds);
         let run = if self.resumed { ", in this run" } else { "" };
         writeln!(f, "time           {} to compute visibility, {all} in all{run}", self.clusters.time())?;
         self.peak_bytes.map_or(Ok(()), |peak| writeln!(f, "memory         {} at most", bytes(peak)))

@@ -1,10 +1,8 @@
 //! What is drawn along a walk with the levels of a folder, and without.
 
 use crate::error::{ErrorAbout, Result, bail};
-use crate::output::percent;
+use crate::output::{JsonSchema, Serialize, percent};
 use crate::tables::Cells;
-use schemars::JsonSchema;
-use serde::Serialize;
 use sightlines::eye_to_cell::View;
 use sightlines::formats::levels::{INDEX_NAME, read_levels_index};
 use sightlines::walkthrough::{LevelIndex, LevelSize, LevelsDrawn};

@@ -2,10 +2,8 @@
 
 use super::WalkArgs;
 use super::levels::Drawn;
-use crate::output::{bytes, count};
+use crate::output::{JsonSchema, Serialize, bytes, count};
 use crate::tables::Cells;
-use schemars::JsonSchema;
-use serde::Serialize;
 use sightlines::eye_to_cell::Budget;
 use sightlines::report::WalkBar;
 use sightlines::walkthrough::{LeftToDraw, MethodSums, WalkMeasured};
