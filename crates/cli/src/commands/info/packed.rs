@@ -4,7 +4,8 @@ use super::{Object, as_map, write_sources};
 use crate::error::{ErrorAbout, Result};
 use crate::facts::{DigestFacts, DoorFacts, FrameFacts, Source, write_doors};
 use crate::output::{JsonSchema, Serialize, bytes, percent};
-use crate::tables::{self, Class};
+use crate::tables;
+use sightlines::packed::SizeClass;
 use sightlines::pvs::ObjectId;
 use std::fmt;
 use std::path::Path;
@@ -20,7 +21,7 @@ pub(crate) struct PackedInfo {
     /// `packed`.
     kind: &'static str,
     /// Layout of the file, `small` or `large`.
-    class: Class,
+    class: &'static str,
     /// 2 in the plane, 3 in space.
     dimension: u8,
     /// Bytes of the file.
@@ -122,7 +123,7 @@ impl PackedInfo {
         Ok(Self {
             file: path.display().to_string(),
             kind: "packed",
-            class: Class::of(packed.size_class()),
+            class: packed.size_class().name(),
             dimension: packed.dimension(),
             n_bytes: std::fs::metadata(path).in_file(path)?.len(),
             n_cells: packed.n_cells(),
@@ -145,7 +146,7 @@ impl PackedInfo {
 
 impl fmt::Display for PackedInfo {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let large = if self.class == Class::Large { "large " } else { "" };
+        let large = if self.class == SizeClass::Large.name() { "large " } else { "" };
         let n_bytes = bytes(self.n_bytes);
         writeln!(f, "{}: {large}packed visibility table in {}D, {n_bytes}", self.file, self.dimension)?;
         let names = if self.has_cell_names { ", with names" } else { "" };
