@@ -3,9 +3,9 @@
 use super::auto::Chosen;
 use crate::facts::{ALONG_THE_FILE, FrameFacts};
 use crate::output::seconds;
-use crate::progress::{Bar, Pace, rough};
+use crate::progress::{Bar, rough};
 use sightlines::bake::{Bakeable, CellsFrom, Recipe, SceneMethod};
-use sightlines::progress::{Observer, Progress, Work};
+use sightlines::progress::{Observer, Pace, Progress, Work};
 use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
