@@ -7,6 +7,7 @@ use crate::commands::{
 use schemars::JsonSchema;
 use schemars::generate::SchemaSettings;
 use serde_json::Value;
+use sightlines::bake::explain::json::Explained;
 
 /// Each type of results: the titles of its variants, or the one that it has, and its schema.
 pub(crate) fn schemas() -> Vec<(&'static [&'static str], Value)> {
@@ -33,7 +34,7 @@ pub(crate) fn schemas() -> Vec<(&'static [&'static str], Value)> {
         of::<pack::Outcome>(&["`pack`"]),
         of::<pack::Unpacked>(&["`unpack`"]),
         of::<explain::report::Outside>(&["`explain` outside every cell"]),
-        of::<explain::json::Explained>(&[
+        of::<Explained>(&[
             "`explain` in a plan",
             "`explain` in a scene",
             "`explain` of cells without portals",

@@ -1,6 +1,5 @@
 //! `explain`: the line of sight between two cells, or why there is none.
 
-pub(crate) mod json;
 mod picture;
 pub(crate) mod report;
 mod text;

@@ -1,26 +1,33 @@
-//! An explanation for programs; the fields depend on the kind of the cells.
+//! An explanation as JSON, for programs; the fields depend on the kind of the cells.
 
-use super::report::Report;
-use crate::output::{JsonSchema, Serialize};
+use super::{Answer, BlockedWay, Blocks, Corner, ExactLine, Explanation, Reason, SightLine, Way};
+use crate::graph::GraphKind;
+#[cfg(feature = "schemars")]
+use schemars::JsonSchema;
+use serde::Serialize;
 use serde_json::{Value, json};
-use sightlines::bake::GraphKind;
-use sightlines::bake::explain::{Answer, BlockedWay, Blocks, Corner, ExactLine, Reason, SightLine, Way};
-use sightlines::cells::PortalId;
-use sightlines::sightline::{Branch, BranchRow, Bypass, Contradiction, ConvexCertificate, ConvexNode, ConvexTerm};
-use sightlines::stabtree::{AxialProof, Blocking};
+use sightlines_cells::{CellId, PortalId};
+use sightlines_sightline::{Branch, BranchRow, Bypass, Contradiction, ConvexCertificate, ConvexNode, ConvexTerm};
+use sightlines_stabtree::{AxialProof, Blocking};
 
 /// An explanation, by the kind of the cells.
-#[derive(Debug, Serialize, JsonSchema)]
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
 #[serde(untagged)]
-pub(crate) enum Explained {
+pub enum Explained {
+    /// Of a plan.
     Plan(Box<InPlan>),
+    /// Of boxes that portals join.
     Scene(Box<InScene>),
+    /// Of cells without portals.
     Boxes(Box<OfBoxes>),
+    /// Of clusters.
     Clusters(Box<OfClusters>),
 }
 
 /// Pair of cells
-#[derive(Debug, Serialize, JsonSchema)]
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
 struct Pair {
     /// The first cell.
     from: u32,
@@ -34,7 +41,8 @@ struct Pair {
 }
 
 /// What a line passes.
-#[derive(Debug, Serialize, JsonSchema)]
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
 struct Through {
     /// Visible: the portals that the line passes, in order.
     portals: Vec<u32>,
@@ -49,8 +57,9 @@ impl Through {
 }
 
 /// Exit code 1 for a hidden pair.
-#[derive(Debug, Serialize, JsonSchema)]
-pub(crate) struct InPlan {
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
+pub struct InPlan {
     #[serde(flatten)]
     pair: Pair,
     #[serde(flatten)]
@@ -76,7 +85,8 @@ pub(crate) struct InPlan {
 }
 
 /// Line in a plan
-#[derive(Debug, Serialize, JsonSchema)]
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
 struct PlanLine {
     /// The coefficient a, as a fraction.
     a: String,
@@ -87,7 +97,8 @@ struct PlanLine {
 }
 
 /// Blocked sequence of portals in a plan
-#[derive(Debug, Serialize, JsonSchema)]
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
 struct BlockedInPlan {
     /// The portals, in order.
     portals: Vec<u32>,
@@ -98,7 +109,8 @@ struct BlockedInPlan {
 }
 
 /// Corner
-#[derive(Debug, Serialize, JsonSchema)]
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
 struct End {
     /// The portal.
     portal: u32,
@@ -108,8 +120,9 @@ struct End {
 
 /// Exit code 1 for a hidden pair. The line leads through portals. If a from-region method took part in the table and `listed` is false, it
 /// hides the pair by walls that are no borders of cells, which the line may meet; then the exit code is 1 all the same.
-#[derive(Debug, Serialize, JsonSchema)]
-pub(crate) struct InScene {
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
+pub struct InScene {
     #[serde(flatten)]
     pair: Pair,
     #[serde(flatten)]
@@ -135,7 +148,8 @@ pub(crate) struct InScene {
 }
 
 /// Line through boxes
-#[derive(Debug, Serialize, JsonSchema)]
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
 struct Ray {
     /// A point, as fractions.
     point: [String; 3],
@@ -144,7 +158,8 @@ struct Ray {
 }
 
 /// Walls in the way of all lines
-#[derive(Debug, Serialize, JsonSchema)]
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
 struct Walls {
     /// Hidden: rectangles that the walls were merged into.
     n_blockers: usize,
@@ -164,7 +179,8 @@ struct Walls {
 }
 
 /// Rectangle in the way
-#[derive(Debug, Serialize, JsonSchema)]
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
 struct Wall {
     /// Lower corner.
     min: [f64; 3],
@@ -175,8 +191,9 @@ struct Wall {
 }
 
 /// Of given cells, and of places. Exit code 1 for a pair that the table hides, unless a line joins it.
-#[derive(Debug, Serialize, JsonSchema)]
-pub(crate) struct OfBoxes {
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
+pub struct OfBoxes {
     #[serde(flatten)]
     pair: Pair,
     /// Visible: from inside one cell to inside the other; nothing in the scene touches it, which is decided exactly. Along the axes of the table.
@@ -191,8 +208,9 @@ pub(crate) struct OfBoxes {
 }
 
 /// Of portal files, and of tables of portal files and Quake maps. Exit code 1 for a hidden pair.
-#[derive(Debug, Serialize, JsonSchema)]
-pub(crate) struct OfClusters {
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
+pub struct OfClusters {
     #[serde(flatten)]
     pair: Pair,
     /// Whether the independent checker accepts the reason.
@@ -219,7 +237,8 @@ pub(crate) struct OfClusters {
 }
 
 /// Passed portal
-#[derive(Debug, Serialize, JsonSchema)]
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
 struct Passed {
     /// The portal.
     portal: u32,
@@ -231,7 +250,8 @@ struct Passed {
 }
 
 /// Blocked sequence of portals between clusters
-#[derive(Debug, Serialize, JsonSchema)]
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
 struct BlockedClusters {
     /// The portals, in order.
     portals: Vec<Passed>,
@@ -241,17 +261,29 @@ struct BlockedClusters {
     certificate: Value,
 }
 
-impl Report<'_> {
-    /// The fields of the report.
-    pub(super) fn fields(&self) -> Explained {
-        match self.explanation.cells {
-            GraphKind::Planar => Explained::Plan(Box::new(self.in_plan())),
-            GraphKind::Axial => Explained::Scene(Box::new(self.in_scene())),
-            GraphKind::Convex => Explained::Clusters(Box::new(self.of_clusters())),
-            _ => Explained::Boxes(Box::new(self.of_boxes())),
+impl Explained {
+    /// The fields of an explanation of two cells. O(size of the explanation).
+    ///
+    /// * `listed`: whether a table lists the pair as visible; `None` without a table
+    pub fn new(explanation: &Explanation, pair: [CellId; 2], listed: Option<bool>) -> Self {
+        let of = Fields { explanation, pair, listed };
+        match explanation.cells {
+            GraphKind::Planar => Self::Plan(Box::new(of.in_plan())),
+            GraphKind::Axial => Self::Scene(Box::new(of.in_scene())),
+            GraphKind::Convex => Self::Clusters(Box::new(of.of_clusters())),
+            GraphKind::Boxes => Self::Boxes(Box::new(of.of_boxes())),
         }
     }
+}
 
+/// What the fields are made of.
+struct Fields<'a> {
+    explanation: &'a Explanation,
+    pair: [CellId; 2],
+    listed: Option<bool>,
+}
+
+impl Fields<'_> {
     fn pair(&self) -> Pair {
         let answer = match &self.explanation.answer {
             Answer::Same => "same",
