@@ -1,8 +1,9 @@
 //! Results: standard output, and files that are written as a whole.
 
-// What the types of all results are derived from.
+// What the types of all results are derived from, and the words for their numbers.
 pub(crate) use schemars::JsonSchema;
 pub(crate) use serde::Serialize;
+pub(crate) use sightlines::report::words::{bytes, count, percent, seconds, seconds_of};
 
 use crate::error::{Result, StdoutError, anyhow};
 use sightlines::formats::{Hidden, WriteError, atomic_write, remove_left};
@@ -134,47 +135,9 @@ pub(crate) fn check_writable(path: &Path) -> Result<()> {
     Ok(try_beside().map_err(|source| WriteError { path: path.to_owned(), source })?)
 }
 
-/// A share as a percentage, with as many digits as small shares need.
-pub(crate) fn percent(share: f64) -> String {
-    let digits = if share > 0.0 && share < 0.01 { 3 } else { 1 };
-    format!("{:.*} %", digits, 100.0 * share)
-}
-
-/// A number of bytes, rounded for the eye.
-pub(crate) fn bytes(n: u64) -> String {
-    match n {
-        0..=9_999 => format!("{n} bytes"),
-        10_000..=9_999_999 => format!("{:.1} KiB", n as f64 / 1024.0),
-        _ => format!("{:.1} MiB", n as f64 / (1024.0 * 1024.0)),
-    }
-}
-
-/// A duration, rounded for the eye.
-pub(crate) fn seconds(time: std::time::Duration) -> String {
-    match time.as_secs_f64() {
-        s if s < 0.01 => format!("{:.2} ms", s * 1e3),
-        s if s < 1.0 => format!("{:.0} ms", s * 1e3),
-        s => format!("{s:.2} s"),
-    }
-}
-
-/// The same of a number of seconds.
-pub(crate) fn seconds_of(time: f64) -> String {
-    seconds(std::time::Duration::try_from_secs_f64(time).unwrap_or_default())
-}
-
-/// A number with its noun, in the plural unless it is one.
-pub(crate) fn count(n: impl Into<u64>, noun: &str) -> String {
-    match n.into() {
-        1 => format!("1 {noun}"),
-        n => format!("{n} {noun}s"),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::time::Duration;
 
     #[test]
     fn what_cannot_be_written_is_refused_and_nothing_is_left() {
@@ -194,14 +157,5 @@ mod tests {
         }
         assert_eq!(names(), 1);
         assert!(check_writable(Path::new("/dev/null")).is_ok());
-    }
-
-    #[test]
-    fn numbers_are_rounded_for_the_eye() {
-        assert_eq!([percent(0.5), percent(0.001_234), percent(0.0)], ["50.0 %", "0.123 %", "0.0 %"]);
-        assert_eq!([bytes(9_999), bytes(10_240), bytes(20 << 20)], ["9999 bytes", "10.0 KiB", "20.0 MiB"]);
-        let times = [1_500, 250_000, 2_500_000].map(|us| seconds(Duration::from_micros(us)));
-        assert_eq!(times, ["1.50 ms", "250 ms", "2.50 s"]);
-        assert_eq!([count(0u64, "cell"), count(1u64, "cell"), count(2u64, "cell")], ["0 cells", "1 cell", "2 cells"]);
     }
 }

@@ -6,7 +6,7 @@ use super::space::Door;
 use super::view_cells::ViewCellsArgs;
 use crate::buffers::BufferArgs;
 use crate::error::Result;
-use crate::facts::{Facts, Stated};
+use crate::facts::Stated;
 use crate::named::one_of;
 use crate::output::{JsonSchema, Serialize, bytes, count, percent, seconds_of};
 use sightlines::bake::places::{PlaceOptions, PlaceSummary};
@@ -218,7 +218,7 @@ impl fmt::Display for Outcome {
         writeln!(f, "method         {}, {cells}", self.method)?;
         self.places.iter().try_for_each(|cuts| write!(f, "{cuts}"))?;
         writeln!(f, "triangles      {}", self.n_triangles)?;
-        write!(f, "{}", Facts(&self.table))?;
+        write!(f, "{}", self.table)?;
         let [polygons, objects, cells] = [self.viewer.polygons, self.viewer.objects, self.viewer.cells].map(percent);
         writeln!(
             f,

@@ -2,7 +2,7 @@
 
 use super::brief::{Brief, of_cells, of_viewer};
 use super::limit::{Undecided, brief};
-use crate::facts::{Facts, Stated, times};
+use crate::facts::{Stated, times};
 use crate::output::{JsonSchema, Serialize, bytes, count, percent};
 use sightlines::bake::{DoorPortals, SceneReport};
 use sightlines::cells::{Scene, SceneObject};
@@ -194,7 +194,7 @@ impl fmt::Display for SpaceFacts<'_> {
         }
         let [solid, hollow, far] = [o.n_solid, o.n_hollow, o.n_unreachable];
         writeln!(f, "not cells      {solid} boxes of solid matter, {hollow} hollow, {far} out of reach")?;
-        write!(f, "{}", Facts(&o.table))?;
+        write!(f, "{}", o.table)?;
         if !o.doors.is_empty() {
             let n_closing = o.doors.iter().filter(|door| !door.portals.is_empty()).count();
             writeln!(f, "doors          {}, open; {n_closing} close portals when shut", o.doors.len())?;

@@ -1,12 +1,12 @@
 //! Stab trees that a table is to have, and what those of a table are.
 
 use crate::error::{ErrorAbout, Result};
-use crate::facts::StabFacts;
 use crate::kept::Kept;
 use crate::output::{JsonSchema, Serialize, percent, seconds_of};
 use crate::progress::Bar;
 use sightlines::bake::{Baked, StabOptions, StabReport};
 use sightlines::pvs::Table;
+use sightlines::report::StabFacts;
 use std::fmt;
 use std::path::Path;
 

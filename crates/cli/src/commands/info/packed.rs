@@ -1,12 +1,13 @@
 //! What a packed table holds, without unpacking it.
 
-use super::{Object, as_map, write_sources};
 use crate::error::{ErrorAbout, Result};
-use crate::facts::{DigestFacts, DoorFacts, FrameFacts, Source, write_doors};
 use crate::output::{JsonSchema, Serialize, bytes, percent};
 use crate::tables;
 use sightlines::packed::SizeClass;
 use sightlines::pvs::ObjectId;
+use sightlines::report::{
+    DigestFacts, DoorFacts, FrameFacts, InfoFacts, ObjectFacts, ObjectPlace, write_doors, write_sources,
+};
 use std::fmt;
 use std::path::Path;
 
@@ -44,7 +45,7 @@ pub(crate) struct PackedInfo {
     doors: Vec<DoorFacts>,
     /// With `--objects`: all objects.
     #[serde(skip_serializing_if = "Option::is_none")]
-    objects: Option<Vec<Object>>,
+    objects: Option<Vec<ObjectFacts>>,
     /// Bytes that stay in memory as they are in the file.
     resident_bytes: usize,
     /// The parts of the file.
@@ -56,9 +57,7 @@ pub(crate) struct PackedInfo {
     #[serde(skip_serializing_if = "Option::is_none")]
     digests: Option<DigestFacts>,
     /// As in a table.
-    #[serde(serialize_with = "as_map")]
-    #[schemars(with = "std::collections::BTreeMap<String, String>")]
-    info: Vec<(String, String)>,
+    info: InfoFacts,
 }
 
 /// A part of the file.
@@ -109,10 +108,10 @@ impl PackedInfo {
         let packed = tables::packed(path, if with_objects { CACHE } else { 0 })?;
         let (mut n_objects_with_source, mut objects) = (0, Vec::new());
         for id in (0..packed.n_objects() as u32).map(ObjectId) {
-            let source = packed.source_of(id).in_file(path)?.map(Source::from);
+            let source = packed.source_of(id).in_file(path)?.map(ObjectPlace::from);
             n_objects_with_source += usize::from(source.is_some());
             if with_objects {
-                objects.push(Object { id: id.0, name: packed.object_name(id).in_file(path)?, source });
+                objects.push(ObjectFacts { id: id.0, name: packed.object_name(id).in_file(path)?, source });
             }
         }
         let part = |part: sightlines::packed::PartSize| {
@@ -139,7 +138,7 @@ impl PackedInfo {
             parts: packed.part_sizes().into_iter().map(part).collect(),
             frame: packed.frame().map(FrameFacts::from),
             digests: packed.digest().map(DigestFacts::from),
-            info: packed.info().to_vec(),
+            info: packed.info().into(),
         })
     }
 }
@@ -172,6 +171,6 @@ impl fmt::Display for PackedInfo {
         }
         self.frame.iter().try_for_each(|frame| writeln!(f, "frame          {frame}"))?;
         self.digests.iter().try_for_each(|digests| write!(f, "{digests}"))?;
-        self.info.iter().try_for_each(|(key, value)| writeln!(f, "{key:<14} {value}"))
+        write!(f, "{}", self.info)
     }
 }

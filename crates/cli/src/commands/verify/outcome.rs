@@ -3,10 +3,10 @@
 use super::own::About;
 use super::proofs::ProofOutcome;
 use super::violations::{ReportedViolation, Violations};
-use crate::facts::FrameFacts;
 use crate::output::{JsonSchema, Serialize, count, percent, seconds_of};
 use crate::unproven::Unproven;
 use sightlines::pvs::Frame;
+use sightlines::report::FrameFacts;
 use sightlines::verify::{Confirmed, Findings, Remarks, Violation};
 use std::collections::BTreeMap;
 use std::fmt;
