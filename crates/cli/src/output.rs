@@ -46,6 +46,11 @@ pub(crate) fn stdout(
     write(&mut out).and_then(|()| out.flush()).map_err(|error| StdoutError(error).into())
 }
 
+/// Words about a number, and none about 0.
+pub(crate) fn unless_none(n: usize, words: impl FnOnce(usize) -> String) -> String {
+    if n == 0 { String::new() } else { words(n) }
+}
+
 /// Writes a file as a whole.
 pub(crate) fn save(path: &Path, bytes: &[u8]) -> Result<()> {
     tracing::debug!("writing {} bytes to {}", bytes.len(), path.display());

@@ -1,7 +1,7 @@
 //! How a scene in space is baked, as arguments, and what was built by from-region queries.
 
 use super::brief::{Brief, of_cells, of_viewer};
-use super::limit::{Undecided, brief};
+use super::limit::brief;
 use super::space::Door;
 use super::view_cells::ViewCellsArgs;
 use crate::buffers::BufferArgs;
@@ -10,7 +10,7 @@ use crate::facts::Stated;
 use crate::named::one_of;
 use crate::output::{JsonSchema, Serialize, bytes, count, percent, seconds_of};
 use sightlines::bake::places::{PlaceOptions, PlaceSummary};
-use sightlines::bake::{BakeRequest, CellsFrom, RegionReport, SceneMethod};
+use sightlines::bake::{BakeRequest, CellsFrom, LimitReport, RegionReport, SceneMethod};
 use sightlines::formats::{ReadError, SceneFile};
 use sightlines::multifocal::Split;
 use sightlines::pvs::Table;
@@ -112,7 +112,7 @@ pub(super) struct Outcome {
     doors: Vec<Door>,
     /// If there was a time limit and it was reached.
     #[serde(skip_serializing_if = "Option::is_none")]
-    time_limit: Option<Undecided>,
+    time_limit: Option<LimitReport>,
     /// Of `seconds`, those to cut cells, which a time limit does not shorten.
     cut_seconds: f64,
     /// Seconds to find what is visible.
@@ -179,7 +179,7 @@ impl Outcome {
             n_volumes: report.effort.n_volumes,
             n_asked: asked.groups + asked.boxes + asked.triangles,
             doors: report.doors.iter().map(|door| Door::new(&file.scene, door)).collect(),
-            time_limit: report.limit.map(Undecided::from),
+            time_limit: report.limit,
             cut_seconds: report.cut_time.as_secs_f64(),
             seconds: report.time.as_secs_f64(),
         }
@@ -228,7 +228,7 @@ impl fmt::Display for Outcome {
         if self.n_volumes > 0 {
             writeln!(f, "effort         {}, {} questions", count(self.n_volumes, "volume"), self.n_asked)?;
         }
-        self.time_limit.iter().try_for_each(|left| write!(f, "{left}"))?;
+        self.time_limit.iter().try_for_each(|left| writeln!(f, "time limit     {left}"))?;
         let [cut, all] = [self.cut_seconds, self.seconds].map(seconds_of);
         writeln!(f, "time           {all}, {cut} of it to cut cells")
     }

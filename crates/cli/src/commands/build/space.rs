@@ -1,10 +1,10 @@
 //! What was built from a scene in space, by sightlines.
 
 use super::brief::{Brief, of_cells, of_viewer};
-use super::limit::{Undecided, brief};
+use super::limit::brief;
 use crate::facts::{Stated, times};
 use crate::output::{JsonSchema, Serialize, bytes, count, percent};
-use sightlines::bake::{DoorPortals, SceneReport};
+use sightlines::bake::{DoorPortals, LimitReport, SceneReport};
 use sightlines::cells::{Scene, SceneObject};
 use sightlines::formats::SceneFile;
 use sightlines::pvs::Table;
@@ -96,7 +96,7 @@ pub(crate) struct Outcome {
     n_assumed: u64,
     /// If there was a time limit and it was reached.
     #[serde(skip_serializing_if = "Option::is_none")]
-    time_limit: Option<Undecided>,
+    time_limit: Option<LimitReport>,
     /// Seconds to make the cells.
     cut_seconds: f64,
     /// Seconds to find the visible pairs.
@@ -131,7 +131,7 @@ impl Outcome {
             n_programs: did.n_programs,
             n_exact: did.n_exact,
             n_assumed: report.n_assumed,
-            time_limit: report.limit.map(Undecided::from),
+            time_limit: report.limit,
             cut_seconds: report.cut_time.as_secs_f64(),
             see_seconds: report.see_time.as_secs_f64(),
         }
@@ -209,7 +209,7 @@ impl fmt::Display for SpaceFacts<'_> {
         if assumed > 0 {
             writeln!(f, "assumed        {} visible, as too hard to decide", count(assumed, "pair"))?;
         }
-        o.time_limit.iter().try_for_each(|left| write!(f, "{left}"))?;
+        o.time_limit.iter().try_for_each(|left| writeln!(f, "time limit     {left}"))?;
         writeln!(f, "time           {}", times(o.cut_seconds, "scene", o.see_seconds))
     }
 }

@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::facts::Stated;
 use crate::input;
-use crate::output::{JsonSchema, Serialize, count};
+use crate::output::{JsonSchema, Serialize, count, unless_none};
 use crate::surfaces::Surfaces;
 use sightlines::cells::{MovingObject, Scene};
 use sightlines::formats::scene::SceneReadOptions;
@@ -97,15 +97,9 @@ impl SceneInfo {
 impl fmt::Display for SceneInfo {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}: scene in space, {}", self.file, self.stated)?;
-        let empty = match self.n_objects_without_triangles {
-            0 => String::new(),
-            n => format!(", {n} of them without triangles"),
-        };
+        let empty = unless_none(self.n_objects_without_triangles, |n| format!(", {n} of them without triangles"));
         writeln!(f, "objects        {}{empty}", self.n_objects)?;
-        let degenerate = match self.n_degenerate_triangles {
-            0 => String::new(),
-            n => format!(", besides {n} without area"),
-        };
+        let degenerate = unless_none(self.n_degenerate_triangles, |n| format!(", besides {n} without area"));
         writeln!(f, "triangles      {}{degenerate}", self.n_triangles)?;
         write!(f, "{}", self.surfaces)?;
         if !self.movers.is_empty() {
