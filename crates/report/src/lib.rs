@@ -34,6 +34,7 @@ mod sheet;
 mod summary;
 mod table_info;
 mod theme;
+mod viewpoints;
 mod walk;
 pub mod words;
 
@@ -57,4 +58,5 @@ pub use share::ViewerShare;
 pub use sheet::{SheetPicture, sheet_png, sheet_size};
 pub use summary::Summary;
 pub use table_info::{ObjectFacts, TableInfo, write_sources};
+pub use viewpoints::{cells_by_seen_floor, secluded_cell};
 pub use walk::{WalkBar, walk_svg};

@@ -134,11 +134,8 @@ pub(crate) struct WorldOutcome {
 impl fmt::Display for WorldOutcome {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "wrote {}: a city of {} (seed {})", self.out, count(self.n_tiles as u64, "tile"), self.seed)?;
-        writeln!(
-            f,
-            "view cells     {}\nobjects        {}\ntriangles      {}",
-            self.n_cells, self.n_objects, self.n_triangles
-        )
+        let Self { n_cells, n_objects, n_triangles, .. } = self;
+        writeln!(f, "view cells     {n_cells}\nobjects        {n_objects}\ntriangles      {n_triangles}")
     }
 }
 

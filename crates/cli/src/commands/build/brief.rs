@@ -31,6 +31,12 @@ pub(super) fn of_viewer(viewer: &ViewerShare) -> String {
     format!("a viewer has {polygons} of the polygons, {objects} of the objects, {cells} of the cells on average")
 }
 
+/// The same as a line of a report.
+pub(super) fn write_viewer(f: &mut fmt::Formatter<'_>, viewer: &ViewerShare) -> fmt::Result {
+    let [polygons, objects, cells] = [viewer.polygons, viewer.objects, viewer.cells].map(percent);
+    writeln!(f, "a viewer has   {polygons} of the polygons on average, {objects} of the objects, {cells} of the cells")
+}
+
 /// Cells with a word before, and their portals, if they have any.
 pub(super) fn of_cells(n_cells: usize, noun: &str, n_portals: usize) -> String {
     let portals = if n_portals == 0 { String::new() } else { format!(", {}", count(n_portals as u64, "portal")) };

@@ -1,6 +1,6 @@
 //! How a scene in space is baked, as arguments, and what was built by from-region queries.
 
-use super::brief::{Brief, of_cells, of_viewer};
+use super::brief::{Brief, of_cells, of_viewer, write_viewer};
 use super::limit::brief;
 use super::space::Door;
 use super::view_cells::ViewCellsArgs;
@@ -8,7 +8,7 @@ use crate::buffers::BufferArgs;
 use crate::error::Result;
 use crate::facts::Stated;
 use crate::named::one_of;
-use crate::output::{JsonSchema, Serialize, bytes, count, percent, seconds_of};
+use crate::output::{JsonSchema, Serialize, bytes, count, seconds_of};
 use sightlines::bake::places::{PlaceOptions, PlaceSummary};
 use sightlines::bake::{BakeRequest, CellsFrom, LimitReport, RegionReport, SceneMethod};
 use sightlines::formats::{ReadError, SceneFile};
@@ -149,12 +149,9 @@ impl fmt::Display for Cuts {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [walls, views, size] = [self.n_along_walls, self.n_by_views, self.n_by_size];
         let (size_of, cells) = (self.cell_size, count(self.n_cells as u64, "place"));
+        let Self { n_solid, n_behind, .. } = self;
         write!(f, "cells          {cells} of at most {size_of:.4} units: cut {walls} times along walls, ")?;
-        writeln!(
-            f,
-            "{views} where views differ, {size} for size; {} solid, {} behind backs",
-            self.n_solid, self.n_behind
-        )
+        writeln!(f, "{views} where views differ, {size} for size; {n_solid} solid, {n_behind} behind backs")
     }
 }
 
@@ -219,11 +216,7 @@ impl fmt::Display for Outcome {
         self.places.iter().try_for_each(|cuts| write!(f, "{cuts}"))?;
         writeln!(f, "triangles      {}", self.n_triangles)?;
         write!(f, "{}", self.table)?;
-        let [polygons, objects, cells] = [self.viewer.polygons, self.viewer.objects, self.viewer.cells].map(percent);
-        writeln!(
-            f,
-            "a viewer has   {polygons} of the polygons on average, {objects} of the objects, {cells} of the cells"
-        )?;
+        write_viewer(f, &self.viewer)?;
         writeln!(f, "objects        {} of cells and objects may be seen", count(self.n_objects_seen, "pair"))?;
         if self.n_volumes > 0 {
             writeln!(f, "effort         {}, {} questions", count(self.n_volumes, "volume"), self.n_asked)?;

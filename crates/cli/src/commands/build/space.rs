@@ -1,9 +1,9 @@
 //! What was built from a scene in space, by sightlines.
 
-use super::brief::{Brief, of_cells, of_viewer};
+use super::brief::{Brief, of_cells, of_viewer, write_viewer};
 use super::limit::brief;
 use crate::facts::{Stated, times};
-use crate::output::{JsonSchema, Serialize, bytes, count, percent};
+use crate::output::{JsonSchema, Serialize, bytes, count};
 use sightlines::bake::{DoorPortals, LimitReport, SceneReport};
 use sightlines::cells::{Scene, SceneObject};
 use sightlines::formats::SceneFile;
@@ -199,11 +199,7 @@ impl fmt::Display for SpaceFacts<'_> {
             let n_closing = o.doors.iter().filter(|door| !door.portals.is_empty()).count();
             writeln!(f, "doors          {}, open; {n_closing} close portals when shut", o.doors.len())?;
         }
-        let [polygons, objects, cells] = [o.viewer.polygons, o.viewer.objects, o.viewer.cells].map(percent);
-        writeln!(
-            f,
-            "a viewer has   {polygons} of the polygons on average, {objects} of the objects, {cells} of the cells"
-        )?;
+        write_viewer(f, &o.viewer)?;
         let [asked, programs, exact, assumed] = [o.n_asked, o.n_programs, o.n_exact, o.n_assumed];
         writeln!(f, "effort         {asked} questions, {programs} linear programs, {exact} decided in integers")?;
         if assumed > 0 {

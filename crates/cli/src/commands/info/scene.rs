@@ -104,15 +104,9 @@ impl fmt::Display for SceneInfo {
         write!(f, "{}", self.surfaces)?;
         if !self.movers.is_empty() {
             let n_bounded = self.movers.iter().filter(|mover| mover.min.is_some()).count();
-            let anywhere = match self.movers.len() - n_bounded {
-                0 => String::new(),
-                n => format!(", {n} anywhere"),
-            };
-            writeln!(
-                f,
-                "moving         {}: {n_bounded} within a box{anywhere}",
-                count(self.movers.len() as u64, "object")
-            )?;
+            let anywhere = unless_none(self.movers.len() - n_bounded, |n| format!(", {n} anywhere"));
+            let movers = count(self.movers.len() as u64, "object");
+            writeln!(f, "moving         {movers}: {n_bounded} within a box{anywhere}")?;
         }
         let ([x0, y0, z0], [x1, y1, z1]) = (self.min, self.max);
         writeln!(f, "extent         ({x0}, {y0}, {z0}) to ({x1}, {y1}, {z1})")?;

@@ -267,13 +267,8 @@ impl fmt::Display for Status {
         writeln!(f, "job            {}: {}", self.job, self.command.join(" "))?;
         for phase in &self.phases {
             let PhaseStatus { facts, n_done, done_share, begun, undone, seconds_left } = phase;
-            writeln!(
-                f,
-                "phase {:<9} {n_done} of {} done, {} of the cost",
-                facts.phase,
-                count(facts.n_shards as u64, "shard"),
-                percent(*done_share)
-            )?;
+            let (shards, share) = (count(facts.n_shards as u64, "shard"), percent(*done_share));
+            writeln!(f, "phase {:<9} {n_done} of {shards} done, {share} of the cost", facts.phase)?;
             if let Some(left) = seconds_left.and_then(|left| Duration::try_from_secs_f64(left).ok()) {
                 writeln!(f, "               about {} left, at the pace since it was planned", rough(left))?;
             }

@@ -143,17 +143,10 @@ impl Outcome {
         }
         let n_pixels = self.size.map(u64::from).iter().product::<u64>();
         let share = percent(row.covered as f64 / n_pixels as f64);
-        writeln!(
-            f,
-            "pixels         {share} covered, each written {:.2} times; {} exact decisions",
-            row.overdraw, row.exact
-        )?;
-        writeln!(
-            f,
-            "time           {} to prepare, {} to draw",
-            seconds_of(row.prepare_seconds),
-            seconds_of(row.draw_seconds)
-        )
+        let Row { overdraw, exact, .. } = row;
+        writeln!(f, "pixels         {share} covered, each written {overdraw:.2} times; {exact} exact decisions")?;
+        let [prepare, draw] = [row.prepare_seconds, row.draw_seconds].map(seconds_of);
+        writeln!(f, "time           {prepare} to prepare, {draw} to draw")
     }
 
     /// A line for each method, with the number of its picture in the sheet.

@@ -179,23 +179,14 @@ impl fmt::Display for Outcome {
             writeln!(f, "merged         {} more into {}", self.n_merged_away, self.n_merged)?;
         }
         writeln!(f, "left           {}, {}", self.n_left, share(self.n_left))?;
-        writeln!(
-            f,
-            "promised       {} of the view changes at most, for every eye{}; {} were allowed",
-            parts(self.bound),
-            self.single_sided,
-            parts(self.budget)
-        )?;
+        let ([bound, budget], eye) = ([self.bound, self.budget].map(parts), self.single_sided);
+        writeln!(f, "promised       {bound} of the view changes at most, for every eye{eye}; {budget} were allowed")?;
         if let Some(report) = &self.report {
             let [x, y, z] = report.worst_eye;
             writeln!(f, "measured       {} of {} rays meet another face", parts(report.changed), report.n_rays)?;
             writeln!(f, "               {} at the worst eye, {x},{y},{z}", parts(report.worst))?;
-            writeln!(
-                f,
-                "               {} another object, {} another object or depth",
-                parts(report.other_object),
-                parts(report.moved)
-            )?;
+            let [object, moved] = [report.other_object, report.moved].map(parts);
+            writeln!(f, "               {object} another object, {moved} another object or depth")?;
             let [low, high] = report.estimate_interval.map(parts);
             writeln!(
                 f,
