@@ -46,6 +46,11 @@ pub(crate) fn stdout(
     write(&mut out).and_then(|()| out.flush()).map_err(|error| StdoutError(error).into())
 }
 
+/// A part of a whole; 0 of nothing.
+pub(crate) fn share(part: f64, whole: f64) -> f64 {
+    if whole > 0.0 { part / whole } else { 0.0 }
+}
+
 /// Words about a number, and none about 0.
 pub(crate) fn unless_none(n: usize, words: impl FnOnce(usize) -> String) -> String {
     if n == 0 { String::new() } else { words(n) }

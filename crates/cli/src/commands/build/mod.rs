@@ -16,7 +16,6 @@ pub(crate) mod region;
 mod source;
 pub(crate) mod space;
 mod stab;
-mod view_cells;
 mod viewers;
 mod worth;
 

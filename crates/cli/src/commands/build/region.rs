@@ -3,7 +3,6 @@
 use super::brief::{Brief, of_cells, of_viewer, write_viewer};
 use super::limit::brief;
 use super::space::Door;
-use super::view_cells::ViewCellsArgs;
 use crate::buffers::BufferArgs;
 use crate::error::Result;
 use crate::facts::Stated;
@@ -11,12 +10,13 @@ use crate::named::one_of;
 use crate::output::{JsonSchema, Serialize, bytes, count, seconds_of};
 use sightlines::bake::places::{PlaceOptions, PlaceSummary};
 use sightlines::bake::{BakeRequest, CellsFrom, LimitReport, RegionReport, SceneMethod};
+use sightlines::formats::view_cells::read_view_cells;
 use sightlines::formats::{ReadError, SceneFile};
 use sightlines::multifocal::Split;
 use sightlines::pvs::Table;
 use sightlines::report::{Summary, ViewerShare};
 use std::fmt;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// What decides which cells and objects are visible, for scenes in space.
 #[derive(Debug, Clone, clap::Args)]
@@ -28,8 +28,9 @@ pub(crate) struct RegionArgs {
     /// [default: auto; sightlines with --certify and --stab-trees]
     #[arg(long, value_name = "HOW", value_parser = one_of(&SceneMethod::all(), SceneMethod::name, SceneMethod::about))]
     method: Option<SceneMethod>,
-    #[command(flatten)]
-    cells: ViewCellsArgs,
+    /// Scenes in space: use these boxes as cells, as JSON: {"cells":[{"id":"hall","min":[0,0,0],"max":[4,2.5,6]}]}
+    #[arg(long, help_heading = "Cells", value_name = "FILE.json")]
+    cells: Option<PathBuf>,
     /// Scenes in space: use a grid of boxes as cells, in the view region or the box of the scene
     #[arg(long, value_name = "NX,NY,NZ", value_parser = counts, conflicts_with = "cells")]
     grid: Option<[u32; 3]>,
@@ -64,7 +65,7 @@ impl RegionArgs {
     pub(crate) fn put_into(&self, request: &mut BakeRequest) -> Result<(), ReadError> {
         let Self { method, cells, grid, n_cells, cell_size, buffers, split } = self;
         let places = || CellsFrom::Places(PlaceOptions { n_cells: *n_cells, cell_size: *cell_size });
-        request.cells = match (cells.read()?, grid) {
+        request.cells = match (cells.as_ref().map(read_view_cells).transpose()?, grid) {
             (Some(cells), _) => Some(CellsFrom::Boxes(cells)),
             (None, Some(n)) => Some(CellsFrom::Grid(*n)),
             (None, None) => (n_cells.is_some() || cell_size.is_some()).then(places),
@@ -76,7 +77,7 @@ impl RegionArgs {
 
     /// Whether a file of view cells was given.
     pub(crate) fn names_a_file(&self) -> bool {
-        self.cells.is_given()
+        self.cells.is_some()
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::error::{ErrorAbout, Result};
 use crate::output::{JsonSchema, Serialize, bytes, percent};
 use crate::tables;
-use sightlines::packed::SizeClass;
+use sightlines::packed::{PartSize, SizeClass};
 use sightlines::pvs::ObjectId;
 use sightlines::report::{
     DigestFacts, DoorFacts, FrameFacts, InfoFacts, ObjectFacts, ObjectPlace, write_doors, write_sources,
@@ -73,36 +73,6 @@ struct Part {
     resident: bool,
 }
 
-/// What the parts are.
-const PARTS: [(&str, &str); 26] = [
-    ("HEAD", "numbers"),
-    ("BOXS", "boxes of cells"),
-    ("POLY", "corners of cells"),
-    ("LOCA", "tree to find cells"),
-    ("LOCT", "top of a tree to find cells"),
-    ("PLAN", "planes to find cells"),
-    ("MIRR", "mirrors"),
-    ("FRAM", "axes of its own"),
-    ("KIND", "kind of its subdivision"),
-    ("INFO", "how it was made"),
-    ("COAR", "coarse visibility"),
-    ("CLAS", "equal rows"),
-    ("SCLR", "equal rows of objects"),
-    ("SCLC", "equal objects"),
-    ("DGST", "digests of the scene"),
-    ("OSRC", "objects in their file"),
-    ("DOOR", "doors"),
-    ("BLKS", "index of blocks"),
-    ("ROWS", "cells seen"),
-    ("SEEN", "objects seen"),
-    ("CELL", "exits, objects in cells"),
-    ("PORT", "portals"),
-    ("OBJS", "objects"),
-    ("STAB", "stab trees"),
-    ("CNAM", "names of cells"),
-    ("PLAC", "pages of a tree to find cells"),
-];
-
 impl PackedInfo {
     pub(super) fn read(path: &Path, with_objects: bool) -> Result<Self> {
         let packed = tables::packed(path, if with_objects { CACHE } else { 0 })?;
@@ -114,10 +84,11 @@ impl PackedInfo {
                 objects.push(ObjectFacts { id: id.0, name: packed.object_name(id).in_file(path)?, source });
             }
         }
-        let part = |part: sightlines::packed::PartSize| {
-            let name = part.id.to_string();
-            let what = PARTS.iter().find(|(known, _)| *known == name).map_or("unknown", |(_, what)| what);
-            Part { name, what, n_bytes: part.bytes, resident: part.resident }
+        let part = |part: PartSize| Part {
+            name: part.id.to_string(),
+            what: part.about(),
+            n_bytes: part.bytes,
+            resident: part.resident,
         };
         Ok(Self {
             file: path.display().to_string(),

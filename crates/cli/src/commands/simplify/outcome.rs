@@ -2,7 +2,7 @@
 
 use super::SimplifyArgs;
 use crate::error::Result;
-use crate::output::{JsonSchema, Serialize, bytes, count, percent, seconds_of};
+use crate::output::{JsonSchema, Serialize, bytes, count, percent, seconds_of, share};
 use crate::simplification::{Rounded, SingleSided, Written};
 use sightlines::cells::Scene;
 use sightlines::geometry::Point3;
@@ -166,7 +166,7 @@ impl fmt::Display for Outcome {
         let table = self.table.as_ref().map_or(String::new(), |table| format!(", and the table {table}"));
         let method = if self.method == "none" { "no method" } else { self.method };
         writeln!(f, "eyes           in {}; hidden by {method}{table}", boxes(self.n_volumes))?;
-        let share = |n: usize| percent(if self.n_before > 0 { n as f64 / self.n_before as f64 } else { 0.0 });
+        let share = |n: usize| percent(share(n as f64, self.n_before as f64));
         writeln!(f, "before         {}", count(self.n_before as u64, "triangle"))?;
         if self.n_without_area > 0 {
             writeln!(f, "without area   {}", self.n_without_area)?;
