@@ -17,22 +17,24 @@ pub(crate) fn warn_of_repeats(path: &Path, prt: &Prt) {
 
 /// What was found about clusters, with words for people.
 #[derive(Debug, Serialize, JsonSchema)]
-#[serde(transparent)]
-pub(crate) struct Clusters(ClusterSummary);
+pub(crate) struct Clusters {
+    #[serde(flatten)]
+    summary: ClusterSummary,
+}
 
 impl Clusters {
     pub(crate) fn new(found: &ClusterVisibility) -> Self {
-        Self(found.into())
+        Self { summary: found.into() }
     }
 }
 
 impl fmt::Display for Clusters {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "clusters       {}\nportals        {}", self.0.n_clusters, self.0.n_portals)?;
-        let share = percent(self.0.visible_share);
-        writeln!(f, "visible pairs  {} of {}, {share}", self.0.n_visible_pairs, self.0.n_pairs)?;
-        writeln!(f, "undecided      {}, which count as visible", count(self.0.undecided.len() as u64, "pair"))?;
-        let effort: Vec<String> = self.0.counters.iter().map(|(name, n)| format!("{n} {name}")).collect();
+        writeln!(f, "clusters       {}\nportals        {}", self.summary.n_clusters, self.summary.n_portals)?;
+        let share = percent(self.summary.visible_share);
+        writeln!(f, "visible pairs  {} of {}, {share}", self.summary.n_visible_pairs, self.summary.n_pairs)?;
+        writeln!(f, "undecided      {}, which count as visible", count(self.summary.undecided.len() as u64, "pair"))?;
+        let effort: Vec<String> = self.summary.counters.iter().map(|(name, n)| format!("{n} {name}")).collect();
         writeln!(f, "effort         {}", effort.join(", "))
     }
 }
@@ -46,29 +48,29 @@ impl Clusters {
                 self.0.iter().try_for_each(|[a, b]| writeln!(f, "  clusters {a} and {b}"))
             }
         }
-        Pairs(&self.0.undecided)
+        Pairs(&self.summary.undecided)
     }
 
     /// How many there are, with their portals.
     pub(crate) fn brief(&self) -> String {
-        let (clusters, portals) = (self.0.n_clusters as u64, self.0.n_portals as u64);
+        let (clusters, portals) = (self.summary.n_clusters as u64, self.summary.n_portals as u64);
         format!("{}, {}", count(clusters, "cluster"), count(portals, "portal"))
     }
 
     /// How many pairs see each other.
     pub(crate) fn brief_pairs(&self) -> String {
-        let undecided = unless_none(self.0.undecided.len(), |n| format!(", {n} of them undecided"));
-        let [seen, all] = [self.0.n_visible_pairs, self.0.n_pairs];
+        let undecided = unless_none(self.summary.undecided.len(), |n| format!(", {n} of them undecided"));
+        let [seen, all] = [self.summary.n_visible_pairs, self.summary.n_pairs];
         format!("{seen} of {} visible{undecided}", count(all, "pair"))
     }
 
     /// Time of the search.
     pub(crate) fn see_seconds(&self) -> f64 {
-        self.0.see_seconds
+        self.summary.see_seconds
     }
 
     /// Time of the search, in words.
     pub(crate) fn time(&self) -> String {
-        seconds_of(self.0.see_seconds)
+        seconds_of(self.summary.see_seconds)
     }
 }
