@@ -83,7 +83,9 @@ pub use reject::{
     MapOutcome, MapStatus, RejectError, RejectMaps, RejectOptions, RejectOutcome, RejectSummary, RejectTables,
     RejectWadsError, reject_table, reject_wad, reject_wads,
 };
-pub use reports::{ClusterVisibility, MapReport, PlanReport, RegionReport, Report, SceneReport, WorldSummary};
+pub use reports::{
+    ClusterSummary, ClusterVisibility, MapReport, PlanReport, RegionReport, Report, SceneReport, WorldSummary,
+};
 pub use request::{BakeRequest, BufferRequest, Runtime};
 pub use run::bake;
 pub use scene::{PortalMode, SceneBakeOptions, bake_scene};

@@ -7,17 +7,20 @@ use std::fmt;
 
 /// What was not decided because the budget was spent. The table is right all the same, and looser: such pairs count as visible.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schemars", schemars(description = "Pairs that were not decided in time."))]
 pub struct LimitReport {
     /// Cells about which everything was decided.
     pub n_cells_decided: usize,
-    /// Cells about which a part was decided.
+    /// Cells about which something was decided.
     pub n_cells_in_part: usize,
     /// Cells about which nothing was decided.
     pub n_cells_undecided: usize,
-    /// Unordered pairs of different cells that count as visible for that reason. An upper bound, where a from-region method was stopped:
-    /// it includes pairs that the method would have left visible.
+    // An upper bound, where a from-region method was stopped: it includes pairs that the method would have left visible.
+    /// Pairs of cells that count as visible for that reason, at most.
     pub n_cell_pairs: u64,
-    /// Pairs of a cell and an object that count as visible for that reason; likewise.
+    /// Pairs of a cell and an object that count as visible for that reason, at most.
     pub n_object_pairs: u64,
 }
 

@@ -8,6 +8,7 @@ use sightlines_kdtree::SceneSummary;
 use sightlines_multifocal::Effort;
 use sightlines_sightline::ShaftCounters;
 use sightlines_stabtree::ConvexVisibility;
+use std::collections::BTreeMap;
 use std::time::Duration;
 
 /// What a bake did, whatever was baked.
@@ -174,6 +175,46 @@ impl ClusterVisibility {
     pub fn n_pairs(&self) -> u64 {
         let n = self.n_clusters() as u64;
         n * n.saturating_sub(1) / 2
+    }
+}
+
+/// What was found about clusters.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+pub struct ClusterSummary {
+    /// Clusters.
+    pub n_clusters: usize,
+    /// Portals that have an area.
+    pub n_portals: usize,
+    /// Unordered pairs of different clusters that may see each other.
+    pub n_visible_pairs: u64,
+    /// `n_visible_pairs` as a share of all unordered pairs of different clusters.
+    pub visible_share: f64,
+    /// Pairs of clusters that count as visible though no line was found, the lower number first.
+    pub undecided: Vec<[u32; 2]>,
+    /// Counts of elementary operations by name; those of an earlier run included if it was resumed.
+    pub counters: BTreeMap<&'static str, u64>,
+    /// Seconds of the search for visible pairs, in this run.
+    pub see_seconds: f64,
+    /// Unordered pairs of different clusters.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub n_pairs: u64,
+}
+
+impl From<&ClusterVisibility> for ClusterSummary {
+    fn from(found: &ClusterVisibility) -> Self {
+        let (n_visible_pairs, n_pairs) = (found.n_visible_pairs(), found.n_pairs());
+        Self {
+            n_clusters: found.n_clusters(),
+            n_portals: found.n_portals,
+            n_visible_pairs,
+            visible_share: n_visible_pairs as f64 / n_pairs.max(1) as f64,
+            undecided: found.seen.undecided.clone(),
+            counters: found.seen.counters.named().into_iter().collect(),
+            see_seconds: found.see_time.as_secs_f64(),
+            n_pairs,
+        }
     }
 }
 

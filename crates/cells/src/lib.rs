@@ -9,6 +9,7 @@
 //!   side, then portal; every cell lies on the left of its own sides.
 
 pub mod axial;
+pub mod closed;
 pub mod convex;
 mod digest;
 pub mod graph;

@@ -60,34 +60,3 @@ impl BufferArgs {
 pub(crate) fn warn(text: &str) {
     tracing::warn!("{text}");
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use clap::CommandFactory;
-
-    #[derive(clap::Parser)]
-    struct Program {
-        #[command(flatten)]
-        buffers: BufferArgs,
-    }
-
-    #[test]
-    fn the_help_names_the_defaults() {
-        let help = Program::command().render_long_help().to_string().split_whitespace().collect::<Vec<_>>().join(" ");
-        let BufferOptions { planes, texels, occluders, sheets, backend, .. } = BufferOptions::default();
-        let defaults = [
-            planes.to_string(),
-            texels.to_string(),
-            occluders.to_string(),
-            sheets.to_string(),
-            backend.name().to_owned(),
-        ];
-        let mut rest = &*help;
-        for default in defaults {
-            let text = format!("[default: {default}]");
-            let at = rest.find(&text).unwrap_or_else(|| panic!("{text} in {rest}"));
-            rest = &rest[at + text.len()..];
-        }
-    }
-}

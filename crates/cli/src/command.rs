@@ -25,6 +25,20 @@ pub(crate) enum Answer {
     Incomplete,
 }
 
+/// Whether the result is for programs.
+#[derive(Debug, Clone, Copy, Default, clap::Args)]
+pub(crate) struct JsonArg {
+    /// Print the result as JSON
+    #[arg(long, help_heading = "Output")]
+    json: bool,
+}
+
+impl From<JsonArg> for bool {
+    fn from(JsonArg { json }: JsonArg) -> Self {
+        json
+    }
+}
+
 /// A command that came to its end: its answer, and what is to be printed.
 pub(crate) struct Done {
     answer: Answer,
@@ -33,17 +47,18 @@ pub(crate) struct Done {
 
 impl Done {
     /// With a result, which is printed as JSON if `json`, otherwise as it is displayed; the answer is yes.
-    pub(crate) fn new(json: bool, result: impl Serialize + fmt::Display + 'static) -> Self {
+    pub(crate) fn new(json: impl Into<bool>, result: impl Serialize + fmt::Display + 'static) -> Self {
+        let json = json.into();
         Self { answer: Answer::Yes, print: Box::new(move || output::print(json, &result, &result)) }
     }
 
     /// The same where people and programs get different forms of it, of which one is made.
     pub(crate) fn in_two_forms<T: Serialize + 'static>(
-        json: bool,
+        json: impl Into<bool>,
         fields: impl FnOnce() -> T,
         text: impl FnOnce() -> String,
     ) -> Self {
-        let form = if json { Ok(fields()) } else { Err(text()) };
+        let form = if json.into() { Ok(fields()) } else { Err(text()) };
         let print = move || match form {
             Ok(fields) => output::print(true, &fields, &""),
             Err(text) => output::print(false, &(), &text),

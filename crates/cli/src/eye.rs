@@ -66,20 +66,3 @@ fn size(text: &str) -> Result<[u32; 2], String> {
     let number = |part: &str| part.trim().parse::<u32>().map_err(|_| wrong());
     Ok([number(width)?, number(height)?])
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn points_and_sizes_are_parsed() {
-        assert_eq!(point("1, -2.5,3e2").unwrap(), [1.0, -2.5, 300.0]);
-        for bad in ["", "1,2", "1,2,3,4", "1,2,x", "1,2,NaN", "inf,0,0", "1e300,0,0"] {
-            assert!(point(bad).is_err(), "{bad}");
-        }
-        assert_eq!([size("640x480"), size("1 X 2")], [Ok([640, 480]), Ok([1, 2])]);
-        for bad in ["", "640", "x", "1x", "1x2x3", "-1x2", "1.5x2", "4294967296x1"] {
-            assert!(size(bad).is_err(), "{bad}");
-        }
-    }
-}

@@ -51,12 +51,6 @@ const fn is_source(kind: InputKind) -> bool {
     matches!(kind, InputKind::Wad | InputKind::Plan | InputKind::Scene | InputKind::Prt | InputKind::Bsp)
 }
 
-/// Whether a table is of a portal file, with its map or without: its cells are joined by convex portals, and their volumes are
-/// unknown.
-pub(crate) fn is_of_portals(table: &Table) -> bool {
-    table.kind().is_quake()
-}
-
 /// Refuses a table that does not store where its cells are; `what` names what cannot be done without.
 pub(crate) fn refuse_without_places(table: &Table, path: &Path, what: &str) -> Result<()> {
     if table.has_places() { Ok(()) } else { Err(no_places(path, what)) }

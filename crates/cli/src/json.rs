@@ -1,240 +1,74 @@
-//! The page about what commands print with `--json`: made from the types of the results and the comments on their fields.
+//! The schemas of what commands print with `--json`, made from the types of the results and the comments on their fields.
 
 use crate::commands::{
     build, demo, explain, generate, info, isovist, job, levels, light, multifocal, pack, plan, portals, query, reject,
     render, simplify, tiles, verify, vga, view, vis, walk,
 };
+use schemars::JsonSchema;
 use schemars::generate::SchemaSettings;
-use schemars::{JsonSchema, Schema};
-use serde_json::{Map, Value};
-use std::collections::BTreeMap;
-use std::fmt::Write;
+use serde_json::Value;
+use sightlines::bake::explain::json::Explained;
 
-/// What stands above the tables.
-const HEAD: &str = include_str!("json.md");
-
-/// The page.
-pub(crate) fn page() -> String {
-    let mut page = Page::default();
-    let p = &mut page;
-    p.add::<build::Built>(&[
-        "`build` of a plan",
-        "`build` of a scene",
-        "`build` of a scene by regions",
-        "`build` of a portal file",
-        "`build` of a Quake map",
-        "`build` of a scene row by row",
-    ]);
-    p.add::<reject::outcome::Outcome>(&["`reject`", "`reject` of a folder"]);
-    p.add::<vis::outcome::Outcome>(&["`vis`"]);
-    p.add::<portals::Outcome>(&["`portals`"]);
-    p.add::<plan::Outcome>(&["`plan`"]);
-    p.add::<isovist::Outcome>(&["`isovist` of a plan"]);
-    p.add::<isovist::space::Outcome>(&["`isovist` of a scene"]);
-    p.add::<verify::outcome::With>(&["`verify`"]);
-    p.add::<query::Found>(&["`query` of a point"]);
-    p.add::<query::sight::Seen>(&["`query` of a view"]);
-    p.add::<walk::outcome::Outcome>(&["`walk`"]);
-    p.add::<view::Outcome>(&["`view`"]);
-    p.add::<pack::Outcome>(&["`pack`"]);
-    p.add::<pack::Unpacked>(&["`unpack`"]);
-    p.add::<explain::report::Outside>(&["`explain` outside every cell"]);
-    p.add::<explain::json::Explained>(&[
-        "`explain` in a plan",
-        "`explain` in a scene",
-        "`explain` of cells without portals",
-        "`explain` of clusters",
-    ]);
-    p.add::<multifocal::outcome::Outcome>(&["`multifocal`"]);
-    p.add::<render::outcome::Outcome>(&["`render`"]);
-    p.add::<light::outcome::Outcome>(&["`light`"]);
-    p.add::<vga::outcome::Outcome>(&["`vga`"]);
-    p.add::<simplify::outcome::Outcome>(&["`simplify`"]);
-    p.add::<levels::outcome::Outcome>(&["`levels`"]);
-    p.add::<info::TableInfo>(&["`info` of a table"]);
-    p.add::<info::packed::PackedInfo>(&["`info` of a packed table"]);
-    p.add::<info::plan::PlanInfo>(&["`info` of a plan"]);
-    p.add::<info::scene::SceneInfo>(&["`info` of a scene"]);
-    p.add::<info::wad::WadInfo>(&["`info` of a WAD"]);
-    p.add::<info::quake::PrtInfo>(&["`info` of a portal file"]);
-    p.add::<info::quake::BspInfo>(&["`info` of a Quake map"]);
-    p.add::<generate::Outcome>(&["`generate tower`"]);
-    p.add::<generate::WorldOutcome>(&["`generate world`"]);
-    p.add::<tiles::outcome::Outcome>(&["`tiles build`"]);
-    p.add::<tiles::query::Found>(&["`tiles query`"]);
-    p.add::<tiles::check::Checked>(&["`tiles check`"]);
-    p.add::<demo::office::Demo>(&["`demo` of the office"]);
-    p.add::<demo::tower::Demo>(&["`demo tower`"]);
-    p.add::<job::outcome::Planned>(&["`job plan`"]);
-    p.add::<job::outcome::ShardsDone>(&["`job shard`"]);
-    p.add::<job::outcome::Merged>(&["`job work`", "`job merge`", "`job submit`"]);
-    p.add::<job::outcome::Submitted>(&["`job submit --dry-run`"]);
-    p.add::<job::outcome::Status>(&["`job status`"]);
-    page.text()
+/// Each type of results: the titles of its variants, or the one that it has, and its schema.
+pub(crate) fn schemas() -> Vec<(&'static [&'static str], Value)> {
+    vec![
+        of::<build::Built>(&[
+            "`build` of a plan",
+            "`build` of a scene",
+            "`build` of a scene by regions",
+            "`build` of a portal file",
+            "`build` of a Quake map",
+            "`build` of a scene row by row",
+        ]),
+        of::<reject::outcome::Outcome>(&["`reject`", "`reject` of a folder"]),
+        of::<vis::outcome::Outcome>(&["`vis`"]),
+        of::<portals::Outcome>(&["`portals`"]),
+        of::<plan::Outcome>(&["`plan`"]),
+        of::<isovist::Outcome>(&["`isovist` of a plan"]),
+        of::<isovist::space::Outcome>(&["`isovist` of a scene"]),
+        of::<verify::outcome::With>(&["`verify`"]),
+        of::<query::Found>(&["`query` of a point"]),
+        of::<query::sight::Seen>(&["`query` of a view"]),
+        of::<walk::outcome::Outcome>(&["`walk`"]),
+        of::<view::Outcome>(&["`view`"]),
+        of::<pack::Outcome>(&["`pack`"]),
+        of::<pack::Unpacked>(&["`unpack`"]),
+        of::<explain::report::Outside>(&["`explain` outside every cell"]),
+        of::<Explained>(&[
+            "`explain` in a plan",
+            "`explain` in a scene",
+            "`explain` of cells without portals",
+            "`explain` of clusters",
+        ]),
+        of::<multifocal::outcome::Outcome>(&["`multifocal`"]),
+        of::<render::outcome::Outcome>(&["`render`"]),
+        of::<light::outcome::Outcome>(&["`light`"]),
+        of::<vga::outcome::Outcome>(&["`vga`"]),
+        of::<simplify::outcome::Outcome>(&["`simplify`"]),
+        of::<levels::outcome::Outcome>(&["`levels`"]),
+        of::<info::TableInfo>(&["`info` of a table"]),
+        of::<info::packed::PackedInfo>(&["`info` of a packed table"]),
+        of::<info::plan::PlanInfo>(&["`info` of a plan"]),
+        of::<info::scene::SceneInfo>(&["`info` of a scene"]),
+        of::<info::wad::WadInfo>(&["`info` of a WAD"]),
+        of::<info::quake::PrtInfo>(&["`info` of a portal file"]),
+        of::<info::quake::BspInfo>(&["`info` of a Quake map"]),
+        of::<generate::Outcome>(&["`generate tower`"]),
+        of::<generate::WorldOutcome>(&["`generate world`"]),
+        of::<tiles::outcome::Outcome>(&["`tiles build`"]),
+        of::<tiles::query::Found>(&["`tiles query`"]),
+        of::<tiles::check::Checked>(&["`tiles check`"]),
+        of::<demo::office::Demo>(&["`demo` of the office"]),
+        of::<demo::tower::Demo>(&["`demo tower`"]),
+        of::<job::outcome::Planned>(&["`job plan`"]),
+        of::<job::outcome::ShardsDone>(&["`job shard`"]),
+        of::<job::outcome::Merged>(&["`job work`", "`job merge`", "`job submit`"]),
+        of::<job::outcome::Submitted>(&["`job submit --dry-run`"]),
+        of::<job::outcome::Status>(&["`job status`"]),
+    ]
 }
 
-/// Sections, and the parts that they have in common.
-#[derive(Default)]
-struct Page {
-    sections: String,
-    /// By title.
-    parts: BTreeMap<String, String>,
-}
-
-/// The schemas that a schema refers to, by name.
-type Definitions = Map<String, Value>;
-
-impl Page {
-    /// Adds the sections of a type of results: of its variants, if it has any.
-    fn add<T: JsonSchema>(&mut self, titles: &[&str]) {
-        let schema = SchemaSettings::default().for_serialize().into_generator().into_root_schema_for::<T>();
-        let schema = Schema::to_value(schema);
-        let defs = schema["$defs"].as_object().cloned().unwrap_or_default();
-        let variants = schema["anyOf"].as_array().cloned().unwrap_or_else(|| vec![schema.clone()]);
-        let is_shared = schema["anyOf"].is_array() && schema["properties"].is_object();
-        assert_eq!(titles.len() % variants.len(), 0, "a title for each variant: {titles:?}");
-        let shared = if is_shared { link_row(&self.part(&schema, &defs)) } else { String::new() };
-        for (title, variant) in titles.iter().zip(variants.iter().cycle()) {
-            let variant = resolve(variant, &defs);
-            let rows = self.rows(variant, &defs);
-            let text = one_line(variant["description"].as_str().unwrap_or_default());
-            let _ = write!(self.sections, "\n## {title}\n\n{text}\n\n{HEADER}{rows}{shared}");
-        }
-    }
-
-    fn text(self) -> String {
-        let parts: String = self.parts.iter().map(|(title, rows)| format!("\n## Part: {title}\n\n{rows}")).collect();
-        format!("{HEAD}{}{parts}", self.sections)
-    }
-
-    /// Adds the part about an object, and returns its title.
-    fn part(&mut self, schema: &Value, defs: &Definitions) -> String {
-        let title = title(schema);
-        if !self.parts.contains_key(&title) {
-            // Before its rows, which may lead back to it.
-            self.parts.insert(title.clone(), String::new());
-            let rows = self.rows(schema, defs);
-            let text = one_line(schema["description"].as_str().unwrap_or_default());
-            self.parts.insert(title.clone(), format!("{text}\n\n{HEADER}{rows}"));
-        }
-        title
-    }
-
-    /// The rows of an object, by the names of its fields.
-    fn rows(&mut self, schema: &Value, defs: &Definitions) -> String {
-        let required = |name: &str| schema["required"].as_array().is_some_and(|all| all.iter().any(|n| n == name));
-        let fields = schema["properties"].as_object().into_iter().flatten();
-        fields.map(|(name, field)| self.row(name, field, !required(name), defs)).collect()
-    }
-
-    fn row(&mut self, name: &str, field: &Value, is_optional: bool, defs: &Definitions) -> String {
-        let meaning = field["description"].as_str().map(one_line).unwrap_or_default();
-        let Kind { text, part, is_list, is_null } = self.kind(field, defs);
-        let null = if is_null && !is_optional { " or null" } else { "" };
-        let optional = if is_optional { ", optional" } else { "" };
-        let list = if is_list { "[]" } else { "" };
-        let part = part.map(|title| format!(" {}", link(&title))).unwrap_or_default();
-        format!("| `{name}{list}`{part} | {text}{null}{optional} | {} |\n", meaning.replace('|', "\\|"))
-    }
-
-    /// What kind of value a schema describes.
-    fn kind(&mut self, schema: &Value, defs: &Definitions) -> Kind {
-        let (some, is_null) = without_null(schema);
-        let found = resolve(&some, defs);
-        let kind = |text: &str| Kind { text: text.to_owned(), part: None, is_list: false, is_null };
-        let is_text = found["enum"].is_array() || found["const"].is_string() || found["oneOf"].is_array();
-        match found["type"].as_str() {
-            _ if is_text => kind("text"),
-            Some("string") => kind("text"),
-            Some("array") if found["prefixItems"].is_array() => kind("list"),
-            Some("array") => {
-                if found["items"].as_object().is_none_or(serde_json::Map::is_empty) {
-                    return kind("list of trees, free keys");
-                }
-                let of = self.kind(&found["items"], defs);
-                let length = found["maxItems"].as_u64().filter(|n| found["minItems"].as_u64() == Some(*n));
-                let length = length.map(|n| format!("{n} ")).unwrap_or_default();
-                let (nulls, is_list) = (if of.is_null { " (null for some)" } else { "" }, of.part.is_some());
-                Kind { text: format!("list of {length}{}{nulls}", plural(&of.text)), part: of.part, is_list, is_null }
-            }
-            Some("object") if found["properties"].is_object() => {
-                let part = Some(self.part(found, defs));
-                Kind { text: "object".to_owned(), part, is_list: false, is_null }
-            }
-            Some("object") => kind("object, free keys"),
-            Some(other) => kind(other),
-            None => kind("text or list or object, free keys"),
-        }
-    }
-}
-
-/// The head of a table.
-const HEADER: &str = "| field | type | meaning |\n| --- | --- | --- |\n";
-
-/// What a row says of the type of its field.
-struct Kind {
-    text: String,
-    /// The part with the fields below it.
-    part: Option<String>,
-    /// Whether it is a list of such objects.
-    is_list: bool,
-    is_null: bool,
-}
-
-/// What a schema refers to, or itself.
-fn resolve<'a>(schema: &'a Value, defs: &'a Definitions) -> &'a Value {
-    let name = schema["$ref"].as_str().and_then(|path| path.strip_prefix("#/$defs/"));
-    name.and_then(|name| defs.get(name)).unwrap_or(schema)
-}
-
-/// A schema without null among its values, and whether null was one of them.
-fn without_null(schema: &Value) -> (Value, bool) {
-    if let Some([some, null]) = schema["anyOf"].as_array().map(Vec::as_slice)
-        && null["type"] == "null"
-    {
-        return (some.clone(), true);
-    }
-    match schema["type"].as_array().map(Vec::as_slice) {
-        Some([some, null]) if null == "null" => {
-            let mut schema = schema.clone();
-            schema["type"] = some.clone();
-            (schema, true)
-        }
-        _ => (schema.clone(), false),
-    }
-}
-
-/// The title of a part: the first sentence about the type.
-fn title(schema: &Value) -> String {
-    let text = one_line(schema["description"].as_str().unwrap_or_default());
-    let first = text.split(['.', ':', ',', ';']).next().unwrap_or_default();
-    let first = ["A ", "An ", "The "].iter().find_map(|article| first.strip_prefix(article)).unwrap_or(first);
-    let mut letters = first.chars();
-    match (letters.next(), letters.clone().next()) {
-        // Not of abbreviations.
-        (Some(first), Some(second)) if second.is_lowercase() => first.to_lowercase().chain(letters).collect(),
-        _ => first.to_owned(),
-    }
-}
-
-/// A link to a part.
-fn link(title: &str) -> String {
-    let heading = format!("part-{}", title.to_lowercase().replace(' ', "-"));
-    let anchor: String = heading.chars().filter(|c| c.is_alphanumeric() || *c == '-').collect();
-    format!("[{title}](#{anchor})")
-}
-
-/// The row that stands for all fields of a part.
-fn link_row(title: &str) -> String {
-    format!("| {} | | |\n", link(title))
-}
-
-fn one_line(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
-}
-
-/// Several of a kind of values.
-fn plural(kind: &str) -> String {
-    let end = kind.find([',', ' ']).unwrap_or(kind.len());
-    format!("{}s{}", &kind[..end], &kind[end..])
+fn of<T: JsonSchema>(titles: &'static [&'static str]) -> (&'static [&'static str], Value) {
+    let generator = SchemaSettings::default().for_serialize().into_generator();
+    (titles, generator.into_root_schema_for::<T>().to_value())
 }

@@ -221,6 +221,11 @@ impl<'a> Kept<'a> {
         }
     }
 
+    /// The end of a run that made this, or failed: an error that says how to go on if it was interrupted.
+    pub(crate) fn end<T>(self, made: Result<T>) -> Result<T> {
+        self.finish(made.is_ok()).map_or(made, |interrupted| Err(anyhow!("{interrupted}")))
+    }
+
     /// After the end: results are of no use any more if all went well. Otherwise, if the program was interrupted, they are kept; returns what to say of that.
     pub(crate) fn finish(self, is_done: bool) -> Option<Interrupted> {
         if let Some(failure) = self.journal.as_ref().and_then(Journal::failure) {

@@ -79,9 +79,9 @@ pub fn vis_command() -> clap::Command {
     vis_program::command()
 }
 
-/// The page that describes what `sightlines` prints with `--json`, as Markdown: `docs/json.md`.
-pub fn json_page() -> String {
-    json::page()
+/// JSON schemas of what `sightlines` prints with `--json`, a type of results each, with the titles of its variants, or the one that it has.
+pub fn json_schemas() -> Vec<(&'static [&'static str], serde_json::Value)> {
+    json::schemas()
 }
 
 /// The exit code of a program, which prints what went wrong.

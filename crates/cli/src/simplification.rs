@@ -5,10 +5,8 @@ use crate::error::{ErrorAbout, Result, bail};
 use crate::input;
 use crate::named::one_of;
 use crate::numbers::share;
-use crate::output::count;
+use crate::output::{JsonSchema, Serialize, count};
 use crate::surfaces::{self, SurfaceArgs};
-use schemars::JsonSchema;
-use serde::Serialize;
 use sightlines::bake::methods::{OcclusionMethod, OcclusionMethodFactory};
 use sightlines::cells::{Scene, Unlike};
 use sightlines::formats::scene::{

@@ -1,8 +1,6 @@
 //! What of a table no proof speaks of.
 
-use crate::output::count;
-use schemars::JsonSchema;
-use serde::Serialize;
+use crate::output::{JsonSchema, Serialize, count};
 use sightlines::pvs::Table;
 use sightlines::verify::{ProofFindings, can_be_proven};
 use std::fmt;

@@ -18,6 +18,19 @@ pub enum Touch {
     Passes,
 }
 
+impl Touch {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Blocks, Self::Passes];
+
+    /// Its name: `blocks`, `passes`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Blocks => "blocks",
+            Self::Passes => "passes",
+        }
+    }
+}
+
 /// What a contact with walls has met so far.
 #[derive(Debug, Clone, Copy, Default)]
 struct Contact {

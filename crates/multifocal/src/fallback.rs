@@ -40,3 +40,29 @@ impl<A: MultifocalBackend, B: MultifocalBackend> MultifocalBackend for WithFallb
         if self.took_over.is_some() { self.second.render(job, out) } else { Ok(()) }
     }
 }
+
+/// Fills the buffers of one job by the first backend that does it, and names that one.
+///
+/// * `refused`: takes the error of each backend before it
+///
+/// # Errors
+/// That of the last backend.
+///
+/// # Panics
+/// If there is none.
+pub fn render_by_first(
+    backends: Vec<Box<dyn MultifocalBackend>>,
+    job: &Job<'_>,
+    out: &mut Vec<Buffer>,
+    mut refused: impl FnMut(BackendError),
+) -> Result<&'static str, BackendError> {
+    let last = backends.len().checked_sub(1).expect("there is always a backend");
+    for (k, mut backend) in backends.into_iter().enumerate() {
+        match backend.render(job, out) {
+            Ok(()) => return Ok(backend.name()),
+            Err(error) if k == last => return Err(error),
+            Err(error) => refused(error),
+        }
+    }
+    unreachable!("the last backend answers")
+}

@@ -122,6 +122,19 @@ pub enum SizeClass {
     Large,
 }
 
+impl SizeClass {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Small, Self::Large];
+
+    /// Lower-case name for options and reports.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Small => "small",
+            Self::Large => "large",
+        }
+    }
+}
+
 /// The first bytes of every file, chosen like [`sightlines_pvs::format::MAGIC`].
 pub const MAGIC: [u8; 8] = *b"\x89PVP\r\n\x1a\n";
 /// The last bytes of a large file.

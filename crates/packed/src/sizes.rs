@@ -15,6 +15,43 @@ pub struct PartSize {
     pub resident: bool,
 }
 
+/// What the parts are, by their names.
+const PARTS: [(&str, &str); 26] = [
+    ("HEAD", "numbers"),
+    ("BOXS", "boxes of cells"),
+    ("POLY", "corners of cells"),
+    ("LOCA", "tree to find cells"),
+    ("LOCT", "top of a tree to find cells"),
+    ("PLAN", "planes to find cells"),
+    ("MIRR", "mirrors"),
+    ("FRAM", "axes of its own"),
+    ("KIND", "kind of its subdivision"),
+    ("INFO", "how it was made"),
+    ("COAR", "coarse visibility"),
+    ("CLAS", "equal rows"),
+    ("SCLR", "equal rows of objects"),
+    ("SCLC", "equal objects"),
+    ("DGST", "digests of the scene"),
+    ("OSRC", "objects in their file"),
+    ("DOOR", "doors"),
+    ("BLKS", "index of blocks"),
+    ("ROWS", "cells seen"),
+    ("SEEN", "objects seen"),
+    ("CELL", "exits, objects in cells"),
+    ("PORT", "portals"),
+    ("OBJS", "objects"),
+    ("STAB", "stab trees"),
+    ("CNAM", "names of cells"),
+    ("PLAC", "pages of a tree to find cells"),
+];
+
+impl PartSize {
+    /// What it is, in words; `unknown` for a part of a later version.
+    pub fn about(&self) -> &'static str {
+        PARTS.iter().find(|(name, _)| name.as_bytes() == self.id.0).map_or("unknown", |(_, what)| what)
+    }
+}
+
 impl<S: Source> Packed<S> {
     /// The known sections and then stores that exist, in the order of the file. Together with the header and the
     /// section table these are all bytes of a file of this version. O(blocks).

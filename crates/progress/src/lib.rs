@@ -3,17 +3,19 @@
 //! # Scope
 //!
 //! - **Owns**: the [`Observer`] trait, its reports ([`Progress`]) and kinds of work ([`Work`]), the error of a cancelled search ([`Cancelled`]), and
-//!   the counter that threads of a search share ([`Counter`]), what a search may spend ([`Budget`]), how much memory a process may use ([`memory`]), the contract of stores that keep the
+//!   the counter that threads of a search share ([`Counter`]), what a search may spend ([`Budget`]), how long it will take ([`Pace`]), how much memory a process may use ([`memory`]), the contract of stores that keep the
 //!   results of units of work ([`UnitStore`]), and the encoding of these ([`Kept`]).
-//! - **Out of scope**: time, terminals, what is searched.
+//! - **Out of scope**: clocks, terminals, what is searched.
 
 mod budget;
 mod kept;
 pub mod memory;
+mod pace;
 mod units;
 
 pub use budget::{Allowance, Budget, Shares, scattered};
 pub use kept::{Kept, read_whole, write_list};
+pub use pace::Pace;
 pub use units::{Halt, Pass, Phase, UnitStore, Units, shares_of};
 
 use std::ops::ControlFlow;

@@ -30,6 +30,37 @@ impl Needs {
     }
 }
 
+/// A number of bytes as people write it: `2GiB`, `800MB`, or a plain number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct MemorySize(pub u64);
+
+/// Units of sizes; longer names first.
+const UNITS: [(&str, u64); 9] = [
+    ("kib", 1 << 10),
+    ("mib", 1 << 20),
+    ("gib", 1 << 30),
+    ("tib", 1 << 40),
+    ("kb", 1_000),
+    ("mb", 1_000_000),
+    ("gb", 1_000_000_000),
+    ("tb", 1_000_000_000_000),
+    ("b", 1),
+];
+
+impl std::str::FromStr for MemorySize {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let wrong = || "not a size such as 2GiB, 800MB or a number of bytes".to_owned();
+        let lower = text.trim().to_ascii_lowercase();
+        let found = UNITS.iter().find_map(|(name, unit)| Some((lower.strip_suffix(name)?, *unit)));
+        let (number, unit) = found.unwrap_or((&lower, 1));
+        let n = number.trim().parse::<f64>().map_err(|_| wrong())? * unit as f64;
+        // Beyond 2^53 bytes nothing is exact, nor does it matter.
+        if n.is_finite() && (1.0..9e15).contains(&n) { Ok(Self(n as u64)) } else { Err(wrong()) }
+    }
+}
+
 /// Not enough memory for what is to be done.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("with one thread this needs about {needed} bytes of memory at least, and {limit} may be used")]
@@ -113,6 +144,17 @@ fn parse(status: &str, name: &str) -> Option<u64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn sizes_have_units() {
+        let size = |text: &str| text.parse::<MemorySize>().map(|size| size.0);
+        for (text, n) in [("2GiB", 2 << 30), ("800MB", 800_000_000), ("1.5 kib", 1536), ("77", 77), ("9b", 9)] {
+            assert_eq!(size(text), Ok(n), "{text}");
+        }
+        for text in ["", "GiB", "-1", "0", "1 Gi", "nan", "inf", "1e30"] {
+            assert_eq!(size(text), Err("not a size such as 2GiB, 800MB or a number of bytes".to_owned()), "{text}");
+        }
+    }
 
     #[test]
     fn the_peak_is_found() {

@@ -1,9 +1,11 @@
 //! What a table holds, in a few numbers.
 
 use crate::outline::corners;
+use crate::words::{count, percent};
 use serde::Serialize;
 use sightlines_geometry::signed_area;
 use sightlines_pvs::{CellId, CellRecord, Table};
+use std::fmt;
 
 /// The numbers of a table.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -65,6 +67,27 @@ impl Summary {
             floor,
             n_bytes: table.to_bytes().len(),
         }
+    }
+}
+
+/// Cells, portals, visible pairs, and what has to be drawn, unless the share of the floor is not known, and so no number.
+impl fmt::Display for Summary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let groups =
+            if self.n_groups > 0 { format!(", in {}", count(self.n_groups as u64, "group")) } else { String::new() };
+        let names = if self.has_cell_names { ", with names" } else { "" };
+        writeln!(f, "cells          {}{groups}{names}", self.n_cells)?;
+        writeln!(f, "portals        {}", self.n_portals)?;
+        if self.n_objects > 0 {
+            writeln!(f, "objects        {}", self.n_objects)?;
+        }
+        let all = self.n_cells as u64 * (self.n_cells as u64).saturating_sub(1) / 2;
+        writeln!(f, "visible pairs  {} of {all}, {}", self.n_visible_pairs, percent(self.visible_share))?;
+        if self.mean_floor_share.is_nan() {
+            return Ok(());
+        }
+        let what = if self.dimension == 2 { "floor" } else { "volume" };
+        writeln!(f, "to draw        {} of the {what} on average", percent(self.mean_floor_share))
     }
 }
 

@@ -90,6 +90,43 @@ measures! {
     AngularTotal, Angular, "angular-total", "Angular Total Depth", "right angles";
 }
 
+/// Some of the measures, by one name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MeasureSet {
+    /// All of them.
+    All,
+    /// Those of a group.
+    Group(Group),
+    /// One.
+    One(Measure),
+}
+
+impl MeasureSet {
+    /// Everything that has a name: all measures, each group, each measure.
+    pub fn all() -> Vec<Self> {
+        let groups = Group::ALL.into_iter().map(Self::Group);
+        std::iter::once(Self::All).chain(groups).chain(Measure::ALL.into_iter().map(Self::One)).collect()
+    }
+
+    /// Its name: `all`, or that of the group or measure.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::All => "all",
+            Self::Group(group) => group.name(),
+            Self::One(measure) => measure.name(),
+        }
+    }
+
+    /// Whether a measure is among them.
+    pub fn has(self, measure: Measure) -> bool {
+        match self {
+            Self::All => true,
+            Self::Group(group) => measure.group() == group,
+            Self::One(one) => measure == one,
+        }
+    }
+}
+
 /// Which measures are computed, and how.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct AnalysisOptions {

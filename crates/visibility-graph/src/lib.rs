@@ -23,7 +23,7 @@ mod run;
 mod search;
 mod work;
 
-pub use analysis::{Analysis, AnalysisOptions, Group, Measure};
+pub use analysis::{Analysis, AnalysisOptions, Group, Measure, MeasureSet};
 pub use fill::Interior;
 pub use global::GlobalMeasures;
 pub use graph::{GraphError, VisibilityGraph};

@@ -22,6 +22,19 @@ pub enum Turns {
     Anywhere,
 }
 
+impl Turns {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::NearWalls, Self::Anywhere];
+
+    /// Its name: `near-walls`, `anywhere`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::NearWalls => "near-walls",
+            Self::Anywhere => "anywhere",
+        }
+    }
+}
+
 /// Metric measures of all points, a value for each point in every list; means over all points reached, the point itself among them.
 ///
 /// # Source

@@ -19,6 +19,7 @@
 
 mod cache;
 mod coarse;
+mod facts;
 mod levels;
 mod measure;
 mod movers;
@@ -33,6 +34,7 @@ mod walkthrough;
 mod wander;
 
 pub use coarse::CoarseVisibility;
+pub use facts::TableFacts;
 pub use levels::{Draw, LevelCounters, LevelError, LevelIndex, LevelSize, Levels, LevelsDrawn, LoadLevel};
 pub use measure::{LeftToDraw, MeasureError, MethodSums, WalkMeasure, WalkMeasured};
 pub use movers::{

@@ -1,10 +1,11 @@
 //! Packed tables for both roles: the resident part, and the data read on demand.
 
 use crate::coarse::CoarseVisibility;
+use crate::facts::TableFacts;
 use sightlines_eye_to_cell::{CellSource, MirrorPiece, PortalEdge, StabStep};
 use sightlines_geometry::Aabb;
 use sightlines_packed::{Packed, PackedError, Source};
-use sightlines_pvs::{CellId, Frame, ObjectId, Place, PlaceBuffer};
+use sightlines_pvs::{Axis, CellId, DoorRecord, Frame, ObjectId, ObjectSource, Place, PlaceBuffer};
 use std::sync::Arc;
 
 /// A packed table, shared by the frames and the thread that reads ahead.
@@ -123,5 +124,43 @@ impl<S: Source> CoarseVisibility for PackedCells<S> {
 
     fn coarse_objects(&self, _cell: CellId, _show: &mut dyn FnMut(ObjectId)) -> bool {
         false
+    }
+}
+
+impl<S: Source> TableFacts for PackedCells<S> {
+    fn up(&self) -> Option<Axis> {
+        self.0.up()
+    }
+
+    fn has_places(&self) -> bool {
+        self.0.has_places()
+    }
+
+    fn n_portals(&self) -> usize {
+        self.0.n_portals()
+    }
+
+    fn doors(&self) -> &[DoorRecord] {
+        self.0.doors()
+    }
+
+    fn object_name(&self, object: ObjectId) -> Result<String, PackedError> {
+        self.0.object_name(object)
+    }
+
+    fn source_of(&self, object: ObjectId) -> Result<Option<ObjectSource>, PackedError> {
+        self.0.source_of(object)
+    }
+
+    fn cell_name(&self, cell: CellId) -> Result<Option<String>, PackedError> {
+        self.0.cell_name(cell)
+    }
+
+    fn polygons_of(&self, object: ObjectId) -> Result<u32, PackedError> {
+        self.0.object_polygons(object)
+    }
+
+    fn bytes_in_memory(&self) -> Option<(usize, usize)> {
+        Some((self.0.resident_bytes(), self.0.bytes_in_use()))
     }
 }

@@ -8,6 +8,8 @@ mod answer;
 mod boxes;
 mod ends;
 mod explainer;
+#[cfg(feature = "serde")]
+pub mod json;
 
 pub use answer::{Answer, BlockedWay, Blocks, Corner, ExactLine, Explanation, Reason, SightLine, Way};
 pub use explainer::Explainer;

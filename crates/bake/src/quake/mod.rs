@@ -8,11 +8,13 @@
 mod covered;
 mod error;
 mod portals;
+mod sample;
 mod table;
 mod world;
 
 pub use error::PrtBakeError;
 pub use portals::{MapPortals, PortalsError, portals_of_map};
+pub use sample::{ProvenPairs, SampledProofs, WrongPair};
 pub use world::bake_map;
 
 use crate::baked::{Baked, BakedPrt};

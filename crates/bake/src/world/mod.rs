@@ -91,22 +91,24 @@ impl fmt::Debug for WorldRun<'_> {
 
 /// What became of the tiles of a world.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct WorldReport {
-    /// All tiles.
+    /// Tiles.
     pub n_tiles: usize,
     /// Tiles that were baked.
     pub n_baked: usize,
-    /// Tiles of which only was decided which tiles far away they see.
+    /// Tiles of which only was decided what they see of those farther away.
     pub n_far_only: usize,
-    /// Tiles that have not changed.
+    /// Tiles that were kept from an earlier bake.
     pub n_kept: usize,
-    /// Older tables that were removed.
+    /// Tables of earlier bakes that were removed.
     pub n_removed: usize,
-    /// Of all tiles.
+    /// Cells of all tiles.
     pub n_cells: usize,
-    /// Of all tiles.
+    /// Objects of all tiles.
     pub n_objects: usize,
-    /// Of the files of all tiles.
+    /// Bytes of all files of tiles.
     pub n_bytes: u64,
 }
 

@@ -1,6 +1,7 @@
 //! Tables of plans, maps and scenes, against oracles and full rebuilds.
 
 mod any_input;
+mod backends;
 mod bakeable;
 mod doubled;
 mod explain;

@@ -1,11 +1,9 @@
 //! `generate`: scenes to try things on.
 
-use crate::command::{Done, Verbosity};
+use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::Result;
 use crate::glb::{self, save_glb};
-use crate::output::{self, bytes, cannot_be_made, count};
-use schemars::JsonSchema;
-use serde::Serialize;
+use crate::output::{self, JsonSchema, Serialize, bytes, cannot_be_made, count};
 use sightlines::geometry::Aabb;
 use sightlines::scenes::{CityOptions, CityTile, TowerOptions, city_tiles, tower, tower_rooms};
 use sightlines::tiles::{TilePlan, WorldPlan};
@@ -50,9 +48,8 @@ struct WorldArgs {
     /// The folder to write, which is made
     #[arg(short, long, help_heading = "Output", value_name = "FOLDER")]
     output: PathBuf,
-    /// Print the result as JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
+    #[command(flatten)]
+    json: JsonArg,
 }
 
 /// Arguments of `generate tower`.
@@ -83,9 +80,8 @@ struct TowerArgs {
     /// The scene to write
     #[arg(short, long, help_heading = "Output", value_name = "OUT.glb")]
     output: PathBuf,
-    /// Print the result as JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
+    #[command(flatten)]
+    json: JsonArg,
 }
 
 pub(crate) fn run(args: &GenerateArgs, _: Verbosity) -> Result<Done> {
@@ -138,11 +134,8 @@ pub(crate) struct WorldOutcome {
 impl fmt::Display for WorldOutcome {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "wrote {}: a city of {} (seed {})", self.out, count(self.n_tiles as u64, "tile"), self.seed)?;
-        writeln!(
-            f,
-            "view cells     {}\nobjects        {}\ntriangles      {}",
-            self.n_cells, self.n_objects, self.n_triangles
-        )
+        let Self { n_cells, n_objects, n_triangles, .. } = self;
+        writeln!(f, "view cells     {n_cells}\nobjects        {n_objects}\ntriangles      {n_triangles}")
     }
 }
 

@@ -1,19 +1,14 @@
 //! `pack` and `unpack`: tables as small files for programs that read them piece by piece, and back.
 
-use crate::command::{Done, Verbosity};
+use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::{ErrorAbout, Result};
-use crate::output::{self, bytes, count, percent};
-use crate::tables::Class;
+use crate::output::{self, JsonSchema, Serialize, bytes, count, percent};
+use crate::tables::{CACHE, size_class};
 use crate::{input, tables};
-use schemars::JsonSchema;
-use serde::Serialize;
-use sightlines::packed::{PackOptions, Packed, pack_report};
+use sightlines::packed::{PackOptions, Packed, SizeClass, pack_report};
 use sightlines::pvs::Table;
 use std::fmt;
 use std::path::PathBuf;
-
-/// Bytes of blocks that are kept while a table is unpacked: each is read many times in a row.
-const CACHE: usize = 64 << 20;
 
 /// Arguments of `pack`.
 #[derive(Debug, clap::Args)]
@@ -30,11 +25,10 @@ pub(crate) struct PackArgs {
     max_bytes: Option<u64>,
     /// Layout of the file: small keeps the places of all cells in memory, large reads them on demand [default: large above
     /// 65,536 cells]
-    #[arg(long, help_heading = "Output", value_enum)]
-    class: Option<Class>,
-    /// Print the result as JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
+    #[arg(long, help_heading = "Output", value_parser = size_class())]
+    class: Option<SizeClass>,
+    #[command(flatten)]
+    json: JsonArg,
 }
 
 /// Arguments of `unpack`.
@@ -46,22 +40,20 @@ pub(crate) struct UnpackArgs {
     /// The table to write
     #[arg(short, long, help_heading = "Output", value_name = "OUT.pvs")]
     output: PathBuf,
-    /// Print the result as JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
+    #[command(flatten)]
+    json: JsonArg,
 }
 
 pub(crate) fn pack(args: &PackArgs, _: Verbosity) -> Result<Done> {
     output::check(&[&args.table], &[&args.output])?;
     let table = input::table(&args.table)?;
     let (packed, report) =
-        pack_report(&table, &PackOptions { max_bytes: args.max_bytes, class: args.class.map(Class::size_class) })
-            .in_file(&args.table)?;
+        pack_report(&table, &PackOptions { max_bytes: args.max_bytes, class: args.class }).in_file(&args.table)?;
     let n_visible = table.parts().rows.count_ones();
     let n_packed_bytes = packed.len() as u64;
     let mut outcome = Outcome {
         out: args.output.display().to_string(),
-        class: Class::of(report.class),
+        class: report.class.name(),
         n_plain_bytes: table.to_bytes().len() as u64,
         n_packed_bytes,
         n_row_bytes: report.row_bytes,
@@ -95,7 +87,7 @@ pub(crate) struct Outcome {
     /// The packed table that was written.
     out: String,
     /// Layout of the file, `small` or `large`.
-    class: Class,
+    class: &'static str,
     /// Bytes of the table.
     n_plain_bytes: u64,
     /// Bytes of the packed table.
@@ -118,12 +110,10 @@ impl fmt::Display for Outcome {
         let share = percent(packed as f64 / plain.max(1) as f64);
         writeln!(f, "wrote {}, {}, {share} of {}", self.out, bytes(packed), bytes(plain))?;
         let (row_bytes, cells) = (bytes(self.n_row_bytes), count(self.n_cells as u64, "cell"));
-        match self.class {
-            Class::Small => {
-                let rows = count(self.n_rows as u64, "different row");
-                writeln!(f, "visibility     {row_bytes}, {rows} of {cells}")?;
-            }
-            Class::Large => writeln!(f, "visibility     {row_bytes}, a row for each of {cells}")?,
+        if self.class == SizeClass::Large.name() {
+            writeln!(f, "visibility     {row_bytes}, a row for each of {cells}")?;
+        } else {
+            writeln!(f, "visibility     {row_bytes}, {} of {cells}", count(self.n_rows as u64, "different row"))?;
         }
         match self.n_merges {
             0 => writeln!(f, "lost           nothing"),

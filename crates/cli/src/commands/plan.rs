@@ -1,14 +1,12 @@
 //! `plan`: a floor plan as GeoJSON, cut from a scene at a height, or from a file of another format.
 
-use crate::command::{Done, Verbosity};
+use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::{ErrorAbout, Result, anyhow};
 use crate::input::{self, refuse};
-use crate::output::{self, bytes, coordinate};
+use crate::output::{self, JsonSchema, Serialize, bytes, coordinate};
 use crate::plans::PlanArgs;
 use crate::surfaces::SurfaceArgs;
 use crate::up::UpArgs;
-use schemars::JsonSchema;
-use serde::Serialize;
 use sightlines::bake::{Bakeable, FloorCut, floor_cut};
 use sightlines::cells::Plan;
 use sightlines::formats::geojson::{write_plan, write_plan_file};
@@ -38,9 +36,8 @@ pub(crate) struct PlanCommandArgs {
     /// The plan to write
     #[arg(short, long, help_heading = "Output", value_name = "OUT.geojson")]
     output: PathBuf,
-    /// Print the result as JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
+    #[command(flatten)]
+    json: JsonArg,
 }
 
 pub(crate) fn run(args: &PlanCommandArgs, _: Verbosity) -> Result<Done> {

@@ -1,11 +1,9 @@
 //! `portals`: the portal file of a Quake map that has none.
 
-use crate::command::{Done, Verbosity};
+use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::Result;
 use crate::map_portals::{MapPortals, made};
-use crate::output::{self, bytes, count};
-use schemars::JsonSchema;
-use serde::Serialize;
+use crate::output::{self, JsonSchema, Serialize, bytes, count};
 use sightlines::formats::quake::{LeafClusters, read_bsp};
 use std::fmt;
 use std::path::PathBuf;
@@ -19,9 +17,8 @@ pub(crate) struct PortalsArgs {
     /// The portal file to write
     #[arg(short, long, help_heading = "Output", value_name = "OUT.prt")]
     output: PathBuf,
-    /// Print the result as JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
+    #[command(flatten)]
+    json: JsonArg,
 }
 
 pub(crate) fn run(args: &PortalsArgs, _: Verbosity) -> Result<Done> {

@@ -1,5 +1,6 @@
 //! The program, run as a user runs it.
 
+mod arguments;
 mod auto;
 mod cell_names;
 mod certify;

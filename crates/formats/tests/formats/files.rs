@@ -1,6 +1,6 @@
 //! Files that are written as a whole or not at all, and what killed processes leave.
 
-use sightlines_formats::{Hidden, atomic_write, process_mark, remove_left};
+use sightlines_formats::{Hidden, NewFolder, atomic_write, process_mark, remove_left};
 use std::fs::{self, File};
 use std::io;
 use std::path::Path;
@@ -112,4 +112,54 @@ fn links_are_followed_and_permissions_kept() {
     assert_eq!(fs::metadata(&file).unwrap().permissions().mode() & 0o777, 0o640);
     atomic_write("/dev/null", b"gone").unwrap();
     assert!(!fs::metadata("/dev/null").unwrap().is_file());
+}
+
+#[test]
+fn folders_appear_whole_and_replace_only_ours() {
+    let all = tempfile::tempdir().unwrap();
+    let target = all.path().join("levels");
+    let ours = |name: &str| name.ends_with(".x");
+    drop(NewFolder::new(&target, ours).unwrap());
+    assert!(names(all.path()).is_empty());
+    for files in [&["a.x", "b.x"][..], &["c.x"], &[]] {
+        let new = NewFolder::new(&target, ours).unwrap();
+        files.iter().for_each(|name| new.save(name, b"").unwrap());
+        new.finish().unwrap();
+        assert_eq!(
+            (names(&target), names(all.path())),
+            (files.iter().map(|s| (*s).to_owned()).collect(), vec!["levels".to_owned()])
+        );
+    }
+    fs::write(target.join("letter"), "dear").unwrap();
+    let error = NewFolder::new(&target, ours).unwrap_err().to_string();
+    assert!(error.contains("the folder has \"letter\" in it"), "{error}");
+    assert!(NewFolder::new(&target.join("letter"), ours).is_err());
+    assert!(NewFolder::new(&all.path().join("no/such"), ours).is_err());
+    assert_eq!(names(all.path()), ["levels"]);
+}
+
+/// What a process of another container left that has the same name is in nobody's way; a link that leads nowhere is followed.
+#[cfg(unix)]
+#[test]
+fn names_that_are_taken_are_passed_over() {
+    let all = tempfile::tempdir().unwrap();
+    let (target, link) = (all.path().join("levels"), all.path().join("link"));
+    std::os::unix::fs::symlink("levels", &link).unwrap();
+    for hidden in [Hidden::New, Hidden::Old] {
+        let taken = hidden.beside(&target, 0).unwrap();
+        fs::create_dir(&taken).unwrap();
+        fs::write(taken.join("part"), b"").unwrap();
+    }
+    for files in [["a.x"], ["b.x"]] {
+        let new = NewFolder::new(&link, |name| name.ends_with(".x")).unwrap();
+        assert_eq!(
+            names(all.path()).len(),
+            if files == ["a.x"] { 3 } else { 4 },
+            "no folder before something is written"
+        );
+        new.save(files[0], b"").unwrap();
+        new.finish().unwrap();
+        assert_eq!((names(&target), names(all.path()).len()), (vec![files[0].to_owned()], 4));
+    }
+    assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
 }

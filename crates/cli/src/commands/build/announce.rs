@@ -1,11 +1,11 @@
 //! What is going to be done, and about how long that takes.
 
 use super::auto::Chosen;
-use crate::facts::{ALONG_THE_FILE, FrameFacts};
 use crate::output::seconds;
-use crate::progress::{Bar, Pace, rough};
+use crate::progress::{Bar, rough};
 use sightlines::bake::{Bakeable, CellsFrom, Recipe, SceneMethod};
-use sightlines::progress::{Observer, Progress, Work};
+use sightlines::progress::{Observer, Pace, Progress, Work};
+use sightlines::report::{ALONG_THE_FILE, FrameFacts};
 use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};

@@ -1,7 +1,6 @@
 //! Which methods were chosen for an input, and why.
 
-use schemars::JsonSchema;
-use serde::Serialize;
+use crate::output::{JsonSchema, Serialize};
 use sightlines::bake::auto::Choice;
 use std::fmt;
 

@@ -2,10 +2,9 @@
 //! whether it was worth it.
 
 use super::{Built, Outcome, worth};
-use crate::output::{bytes, count, percent, seconds};
+use crate::output::{bytes, count, percent, seconds_of};
 use sightlines::report::ViewerShare;
 use std::fmt;
-use std::time::Duration;
 
 /// The three lines.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,6 +29,12 @@ pub(super) struct Brief {
 pub(super) fn of_viewer(viewer: &ViewerShare) -> String {
     let [polygons, objects, cells] = [viewer.polygons, viewer.objects, viewer.cells].map(percent);
     format!("a viewer has {polygons} of the polygons, {objects} of the objects, {cells} of the cells on average")
+}
+
+/// The same as a line of a report.
+pub(super) fn write_viewer(f: &mut fmt::Formatter<'_>, viewer: &ViewerShare) -> fmt::Result {
+    let [polygons, objects, cells] = [viewer.polygons, viewer.objects, viewer.cells].map(percent);
+    writeln!(f, "a viewer has   {polygons} of the polygons on average, {objects} of the objects, {cells} of the cells")
 }
 
 /// Cells with a word before, and their portals, if they have any.
@@ -83,8 +88,8 @@ impl fmt::Display for BriefBuilt<'_> {
         let Brief { kind, taken, method, cells, out, n_bytes, visible, seconds: time } = self.0.three_lines();
         writeln!(f, "{kind:<14} {taken}")?;
         writeln!(f, "method         {method}; {cells}")?;
-        let (size, time) = (bytes(n_bytes as u64), Duration::try_from_secs_f64(time).unwrap_or_default());
-        writeln!(f, "wrote          {out}, {size}, in {}: {visible}", seconds(time))?;
+        let (size, time) = (bytes(n_bytes as u64), seconds_of(time));
+        writeln!(f, "wrote          {out}, {size}, in {time}: {visible}")?;
         if let Some(sentence) = self.0.worth() {
             writeln!(f, "worth it       {sentence}")?;
         }

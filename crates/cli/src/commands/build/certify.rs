@@ -2,18 +2,15 @@
 
 use crate::error::{ErrorAbout, Result, anyhow};
 use crate::kept::Kept;
-use crate::output::{self, bytes, count, seconds};
+use crate::output::{self, JsonSchema, Serialize, bytes, count, seconds_of};
 use crate::progress::Bar;
 use crate::unproven::Unproven;
-use schemars::JsonSchema;
-use serde::Serialize;
 use sightlines::bake::auto::own_cells;
 use sightlines::bake::{BakeInput, BakeRequest, Baked, CellsFrom};
 use sightlines::stabtree::CertifyOptions;
 use sightlines::verify::{ProofError, ProofFindings, ProofViolation, can_be_proven, check_proofs};
 use std::fmt;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 /// Whether proofs are written, and where.
 #[derive(Debug, Clone, Default, clap::Args)]
@@ -131,8 +128,8 @@ impl fmt::Display for Certified {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.file {
             Some(ProofFile { proofs, n_proof_bytes, certify_seconds, n_excess }) => {
-                let time = Duration::try_from_secs_f64(*certify_seconds).unwrap_or_default();
-                writeln!(f, "proofs         {proofs}, {}, in {}", bytes(*n_proof_bytes as u64), seconds(time))?;
+                let (size, time) = (bytes(*n_proof_bytes as u64), seconds_of(*certify_seconds));
+                writeln!(f, "proofs         {proofs}, {size}, in {time}")?;
                 if *n_excess > 0 {
                     writeln!(f, "               {} are proven to be hidden", count(*n_excess, "visible pair"))?;
                 }

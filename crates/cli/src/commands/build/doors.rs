@@ -2,9 +2,7 @@
 
 use crate::doors::DoorBox;
 use crate::error::{Result, anyhow};
-use crate::output::count;
-use schemars::JsonSchema;
-use serde::Serialize;
+use crate::output::{JsonSchema, Serialize, count};
 use sightlines::bake::{Bakeable, Baked};
 use sightlines::pvs::{DoorRecord, Table};
 use std::fmt;

@@ -1,10 +1,8 @@
 //! The frame in which a scene is baked, what it brought, and what became of cells that stand along other axes.
 
-use crate::facts::FrameFacts;
-use crate::output::percent;
-use schemars::JsonSchema;
-use serde::Serialize;
+use crate::output::{JsonSchema, Serialize, percent};
 use sightlines::bake::{Along, Framed, Prepared};
+use sightlines::report::FrameFacts;
 use std::fmt;
 
 /// From when on it is told that boxes around given cells are larger than these.

@@ -1,11 +1,8 @@
 //! A limit of time, and what was not decided within it.
 
 use crate::output::{count, seconds};
-use schemars::JsonSchema;
-use serde::Serialize;
 use sightlines::bake::{LimitReport, Report};
 use sightlines::progress::Budget;
-use std::fmt;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -46,40 +43,9 @@ impl Clock {
     }
 }
 
-/// Pairs that were not decided in time.
-#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
-pub(crate) struct Undecided {
-    /// Cells about which everything was decided.
-    n_cells_decided: usize,
-    /// Cells about which something was decided.
-    n_cells_in_part: usize,
-    /// Cells about which nothing was decided.
-    n_cells_undecided: usize,
-    /// Pairs of cells that count as visible for that reason, at most.
-    n_cell_pairs: u64,
-    /// Pairs of a cell and an object that count as visible for that reason, at most.
-    n_object_pairs: u64,
-    #[serde(skip)]
-    report: LimitReport,
-}
-
 /// What a report in few words says of a limit, if it was reached.
-pub(super) fn brief(left: Option<Undecided>) -> String {
-    let Some(Undecided { n_cell_pairs: cells, n_object_pairs: objects, .. }) = left else { return String::new() };
+pub(super) fn brief(left: Option<LimitReport>) -> String {
+    let Some(LimitReport { n_cell_pairs: cells, n_object_pairs: objects, .. }) = left else { return String::new() };
     let cells = count(cells, "pair");
     format!("; not decided in time, and so visible: {cells} of cells, {objects} of a cell and an object")
-}
-
-impl From<LimitReport> for Undecided {
-    fn from(report: LimitReport) -> Self {
-        let LimitReport { n_cells_decided, n_cells_in_part, n_cells_undecided, n_cell_pairs, n_object_pairs, .. } =
-            report;
-        Self { n_cells_decided, n_cells_in_part, n_cells_undecided, n_cell_pairs, n_object_pairs, report }
-    }
-}
-
-impl fmt::Display for Undecided {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "time limit     {}", self.report)
-    }
 }

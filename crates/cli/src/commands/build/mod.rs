@@ -16,13 +16,12 @@ pub(crate) mod region;
 mod source;
 pub(crate) mod space;
 mod stab;
-mod view_cells;
 mod viewers;
 mod worth;
 
 pub(crate) use source::bake_visibly;
 
-use crate::command::{Done, Verbosity};
+use crate::command::{Done, JsonArg, Verbosity};
 use crate::doors::DoorBox;
 use crate::error::{Result, anyhow, bail};
 use crate::input::{self, refuse};
@@ -30,18 +29,17 @@ use crate::kept::{self, Keeping, Kept, ResumeArgs};
 use crate::map_portals::{MADE, portal_file};
 use crate::memory::MemoryArgs;
 use crate::numbers::duration;
-use crate::output;
+use crate::output::{self, JsonSchema, Serialize};
 use crate::plans::{self, PlanArgs};
 use crate::progress::Bar;
 use crate::surfaces::{SurfaceArgs, Surfaces};
-use crate::tables::Class;
+use crate::tables::size_class;
 use crate::up::UpArgs;
 use options::BakeArgs;
-use schemars::JsonSchema;
-use serde::Serialize;
 use sightlines::bake::{BakeInput, BakeRequest, Bakeable, Baked, Recipe, Report, Runtime, SceneMethod};
 use sightlines::checkpoint::{Identity, Inputs};
 use sightlines::formats::{Input, InputKind, SceneFile};
+use sightlines::packed::SizeClass;
 use sightlines::progress::memory;
 use source::{Source, bake_announced};
 use std::fmt;
@@ -90,8 +88,8 @@ pub(crate) struct BuildArgs {
     pub(crate) output: PathBuf,
     /// Layout of a packed table: small keeps the places of all cells in memory, large reads them on demand [default: large above
     /// 65,536 cells]
-    #[arg(long, help_heading = "Output", value_enum)]
-    class: Option<Class>,
+    #[arg(long, help_heading = "Output", value_parser = size_class())]
+    class: Option<SizeClass>,
     /// Store stab trees in the table: for each cell, the sequences of portals that sight lines pass. A tree is
     /// truncated after N nodes, which never hides anything; without N 65536 for plans, 16384 for scenes in space, 4096
     /// for Quake maps and portal files. May take much longer than the table and make it several times as large; the
@@ -101,9 +99,8 @@ pub(crate) struct BuildArgs {
     stab_trees: Option<Option<u32>>,
     #[command(flatten, next_help_heading = "Output")]
     certify: certify::CertifyArgs,
-    /// Print the result as JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
+    #[command(flatten)]
+    json: JsonArg,
 }
 
 pub(crate) fn run(args: &BuildArgs, Verbosity { show_progress, verbose }: Verbosity) -> Result<Done> {
@@ -226,10 +223,7 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
         })
     };
     let made = made();
-    match kept.finish(made.is_ok()) {
-        Some(interrupted) => Err(anyhow!("{interrupted}")),
-        None => made,
-    }
+    kept.end(made)
 }
 
 /// What to do where there is no room for a build.
@@ -271,18 +265,18 @@ impl BuildArgs {
     }
 
     /// The scene, if its table is written row by row.
-    fn by_rows<'s>(&self, source: &'s Source, recipe: &Recipe, class: Option<Class>) -> Option<&'s SceneFile> {
+    fn by_rows<'s>(&self, source: &'s Source, recipe: &Recipe, class: Option<SizeClass>) -> Option<&'s SceneFile> {
         let out = (&*self.output, class);
         packed::of_rows(source, recipe, self.time_limit.is_some(), out).filter(|_| self.is_alone())
     }
 
     /// Chooses what fits into the memory that may be used: for a packed table the layout that is written row by row, and the number of threads.
-    fn fit(&self, source: &Source, recipe: &Recipe) -> Result<(Option<Class>, usize)> {
+    fn fit(&self, source: &Source, recipe: &Recipe) -> Result<(Option<SizeClass>, usize)> {
         let by_rows = |class| self.by_rows(source, recipe, class).is_some();
         let mut class = self.class;
         let all = source.content.needs(recipe, by_rows(class));
-        if class.is_none() && !self.memory.has_room(all) && by_rows(Some(Class::Large)) {
-            class = Some(Class::Large);
+        if class.is_none() && !self.memory.has_room(all) && by_rows(Some(SizeClass::Large)) {
+            class = Some(SizeClass::Large);
             tracing::warn!("{}: written row by row, as --class large does, for --memory", self.output.display());
         }
         let needs = source.content.needs(recipe, by_rows(class));

@@ -58,14 +58,3 @@ impl BakeArgs {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use sightlines::kdtree::SceneOptions;
-
-    /// The help names this number.
-    #[test]
-    fn the_limit_of_cells_is_the_one_in_the_help() {
-        assert_eq!(SceneOptions::default().max_cells, 65_536);
-    }
-}

@@ -7,16 +7,13 @@ use crate::buffers::method_failed;
 use crate::error::{ErrorAbout, Result, anyhow};
 use crate::facts::Stated;
 use crate::kept::Kept;
-use crate::output::{self, count};
+use crate::output::{self, JsonSchema, Serialize, count};
 use crate::progress::Bar;
-use crate::tables::Class;
-use schemars::JsonSchema;
-use serde::Serialize;
 use sightlines::bake::region::PackRegionsError;
 use sightlines::bake::{BakeError, Bakeable, Prepared, Recipe, RegionReport, Runtime, SceneMethod};
 use sightlines::formats::SceneFile;
 use sightlines::packed::format::MAX_SMALL_CELLS;
-use sightlines::packed::{PackOptions, PackReport, pack};
+use sightlines::packed::{PackOptions, PackReport, SizeClass, pack};
 use sightlines::pvs::Table;
 use std::fmt;
 use std::path::Path;
@@ -27,11 +24,11 @@ pub(super) fn is_packed(out: &Path) -> bool {
 }
 
 /// The bytes of a table under a name.
-pub(super) fn bytes_of(table: &Table, path: &Path, out: &Path, class: Option<Class>) -> Result<Vec<u8>> {
+pub(super) fn bytes_of(table: &Table, path: &Path, out: &Path, class: Option<SizeClass>) -> Result<Vec<u8>> {
     if !is_packed(out) {
         return Ok(table.to_bytes());
     }
-    let options = PackOptions { class: class.map(Class::size_class), ..PackOptions::default() };
+    let options = PackOptions { class, ..PackOptions::default() };
     pack(table, &options).in_file(path)
 }
 
@@ -40,11 +37,11 @@ pub(super) fn of_rows<'s>(
     source: &'s Source,
     recipe: &Recipe,
     has_budget: bool,
-    (out, class): (&Path, Option<Class>),
+    (out, class): (&Path, Option<SizeClass>),
 ) -> Option<&'s SceneFile> {
     let Bakeable::Scene(file) = &source.content else { return None };
     let n = recipe.cells.most()?;
-    let is_large = class.map_or(n > MAX_SMALL_CELLS as u64, |class| class == Class::Large);
+    let is_large = class.map_or(n > MAX_SMALL_CELLS as u64, |class| class == SizeClass::Large);
     let is_by_cell = matches!(recipe.method, SceneMethod::FromRegion(_)) && !has_budget;
     (is_large && is_by_cell && is_packed(out)).then_some(file)
 }

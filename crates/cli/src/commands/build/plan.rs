@@ -1,10 +1,8 @@
 //! What was built from a plan.
 
 use super::brief::{Brief, of_cells};
-use crate::facts::{Facts, times};
-use crate::output::{bytes, count, percent};
-use schemars::JsonSchema;
-use serde::Serialize;
+use crate::facts::times;
+use crate::output::{JsonSchema, Serialize, bytes, count, percent};
 use sightlines::bake::PlanReport;
 use sightlines::pvs::Table;
 use sightlines::report::Summary;
@@ -74,7 +72,7 @@ impl Outcome {
 
     /// Cells, portals, visible pairs, and what has to be drawn.
     pub(crate) fn facts(&self) -> impl fmt::Display + '_ {
-        Facts(&self.table)
+        &self.table
     }
 
     pub(super) fn brief(&self) -> Brief {

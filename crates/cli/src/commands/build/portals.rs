@@ -2,9 +2,7 @@
 
 use super::brief::Brief;
 use crate::clusters::Clusters;
-use crate::output::bytes;
-use schemars::JsonSchema;
-use serde::Serialize;
+use crate::output::{JsonSchema, Serialize, bytes};
 use sightlines::bake::ClusterVisibility;
 use sightlines::formats::Prt;
 use std::fmt;

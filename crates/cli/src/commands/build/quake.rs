@@ -5,9 +5,7 @@ use super::portals::{of_clusters, write_method};
 use crate::clusters::Clusters;
 use crate::error::anyhow;
 use crate::map_portals::{MADE, do_not_fit};
-use crate::output::{bytes, count};
-use schemars::JsonSchema;
-use serde::Serialize;
+use crate::output::{JsonSchema, Serialize, bytes, count, unless_none};
 use sightlines::bake::{MapReport, PrtBakeError, WorldSummary};
 use sightlines::formats::quake::{Bsp, VisibilityError};
 use std::fmt;
@@ -111,10 +109,7 @@ impl fmt::Display for Outcome {
         writeln!(f, "wrote {}, {}", self.out, bytes(self.n_bytes as u64))?;
         let of = self.taken();
         write_method(f, self.fast, format_args!("{of}"), &self.clusters, self.verbose)?;
-        let never = match self.n_unlisted_faces {
-            0 => String::new(),
-            n => format!(", {n} of them never drawn"),
-        };
+        let never = unless_none(self.n_unlisted_faces, |n| format!(", {n} of them never drawn"));
         writeln!(f, "objects        {} of the world{never}", count(self.n_faces as u64, "face"))?;
         writeln!(f, "planes         {}, known to {:.1e} units", self.n_planes, self.slack)?;
         writeln!(f, "time           {} to compute visibility", self.clusters.time())

@@ -1,24 +1,22 @@
 //! How a scene in space is baked, as arguments, and what was built by from-region queries.
 
-use super::brief::{Brief, of_cells, of_viewer};
-use super::limit::{Undecided, brief};
+use super::brief::{Brief, of_cells, of_viewer, write_viewer};
+use super::limit::brief;
 use super::space::Door;
-use super::view_cells::ViewCellsArgs;
 use crate::buffers::BufferArgs;
 use crate::error::Result;
-use crate::facts::{Facts, Stated};
+use crate::facts::Stated;
 use crate::named::one_of;
-use crate::output::{bytes, count, percent, seconds};
-use schemars::JsonSchema;
-use serde::Serialize;
+use crate::output::{JsonSchema, Serialize, bytes, count, seconds_of};
 use sightlines::bake::places::{PlaceOptions, PlaceSummary};
-use sightlines::bake::{BakeRequest, CellsFrom, RegionReport, SceneMethod};
+use sightlines::bake::{BakeRequest, CellsFrom, LimitReport, RegionReport, SceneMethod};
+use sightlines::formats::view_cells::read_view_cells;
 use sightlines::formats::{ReadError, SceneFile};
 use sightlines::multifocal::Split;
 use sightlines::pvs::Table;
 use sightlines::report::{Summary, ViewerShare};
 use std::fmt;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// What decides which cells and objects are visible, for scenes in space.
 #[derive(Debug, Clone, clap::Args)]
@@ -31,8 +29,9 @@ pub(crate) struct RegionArgs {
     /// [default: auto; sightlines with --certify and --stab-trees]
     #[arg(long, value_name = "HOW", value_parser = one_of(&SceneMethod::all(), SceneMethod::name, SceneMethod::about))]
     method: Option<SceneMethod>,
-    #[command(flatten)]
-    cells: ViewCellsArgs,
+    /// Scenes in space: use these boxes as cells, as JSON: {"cells":[{"id":"hall","min":[0,0,0],"max":[4,2.5,6]}]}
+    #[arg(long, help_heading = "Cells", value_name = "FILE.json")]
+    cells: Option<PathBuf>,
     /// Scenes in space: use a grid of boxes as cells, in the view region or the box of the scene
     #[arg(long, value_name = "NX,NY,NZ", value_parser = counts, conflicts_with = "cells")]
     grid: Option<[u32; 3]>,
@@ -42,7 +41,7 @@ pub(crate) struct RegionArgs {
     n_cells: Option<u32>,
     /// Scenes in space: the same, with no side of a cell longer than SIZE, in scene units; there are as many cells as that needs, if it
     /// is more than otherwise
-    #[arg(long, value_name = "SIZE", value_parser = length, allow_hyphen_values = true, conflicts_with_all = ["cells", "grid"])]
+    #[arg(long, value_name = "SIZE", value_parser = crate::numbers::above_zero, allow_hyphen_values = true, conflicts_with_all = ["cells", "grid"])]
     cell_size: Option<f64>,
     #[command(flatten)]
     buffers: BufferArgs,
@@ -59,13 +58,6 @@ fn counts(text: &str) -> Result<[u32; 3], String> {
     }
 }
 
-fn length(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(x) if x.is_finite() && x > 0.0 => Ok(x),
-        _ => Err("not a number above 0".to_owned()),
-    }
-}
-
 impl RegionArgs {
     /// Puts these arguments into a request. Reads the file of view cells.
     ///
@@ -74,7 +66,7 @@ impl RegionArgs {
     pub(crate) fn put_into(&self, request: &mut BakeRequest) -> Result<(), ReadError> {
         let Self { method, cells, grid, n_cells, cell_size, buffers, split } = self;
         let places = || CellsFrom::Places(PlaceOptions { n_cells: *n_cells, cell_size: *cell_size });
-        request.cells = match (cells.read()?, grid) {
+        request.cells = match (cells.as_ref().map(read_view_cells).transpose()?, grid) {
             (Some(cells), _) => Some(CellsFrom::Boxes(cells)),
             (None, Some(n)) => Some(CellsFrom::Grid(*n)),
             (None, None) => (n_cells.is_some() || cell_size.is_some()).then(places),
@@ -86,7 +78,7 @@ impl RegionArgs {
 
     /// Whether a file of view cells was given.
     pub(crate) fn names_a_file(&self) -> bool {
-        self.cells.is_given()
+        self.cells.is_some()
     }
 }
 
@@ -122,7 +114,7 @@ pub(super) struct Outcome {
     doors: Vec<Door>,
     /// If there was a time limit and it was reached.
     #[serde(skip_serializing_if = "Option::is_none")]
-    time_limit: Option<Undecided>,
+    time_limit: Option<LimitReport>,
     /// Of `seconds`, those to cut cells, which a time limit does not shorten.
     cut_seconds: f64,
     /// Seconds to find what is visible.
@@ -159,12 +151,9 @@ impl fmt::Display for Cuts {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [walls, views, size] = [self.n_along_walls, self.n_by_views, self.n_by_size];
         let (size_of, cells) = (self.cell_size, count(self.n_cells as u64, "place"));
+        let Self { n_solid, n_behind, .. } = self;
         write!(f, "cells          {cells} of at most {size_of:.4} units: cut {walls} times along walls, ")?;
-        writeln!(
-            f,
-            "{views} where views differ, {size} for size; {} solid, {} behind backs",
-            self.n_solid, self.n_behind
-        )
+        writeln!(f, "{views} where views differ, {size} for size; {n_solid} solid, {n_behind} behind backs")
     }
 }
 
@@ -189,7 +178,7 @@ impl Outcome {
             n_volumes: report.effort.n_volumes,
             n_asked: asked.groups + asked.boxes + asked.triangles,
             doors: report.doors.iter().map(|door| Door::new(&file.scene, door)).collect(),
-            time_limit: report.limit.map(Undecided::from),
+            time_limit: report.limit,
             cut_seconds: report.cut_time.as_secs_f64(),
             seconds: report.time.as_secs_f64(),
         }
@@ -228,18 +217,14 @@ impl fmt::Display for Outcome {
         writeln!(f, "method         {}, {cells}", self.method)?;
         self.places.iter().try_for_each(|cuts| write!(f, "{cuts}"))?;
         writeln!(f, "triangles      {}", self.n_triangles)?;
-        write!(f, "{}", Facts(&self.table))?;
-        let [polygons, objects, cells] = [self.viewer.polygons, self.viewer.objects, self.viewer.cells].map(percent);
-        writeln!(
-            f,
-            "a viewer has   {polygons} of the polygons on average, {objects} of the objects, {cells} of the cells"
-        )?;
+        write!(f, "{}", self.table)?;
+        write_viewer(f, &self.viewer)?;
         writeln!(f, "objects        {} of cells and objects may be seen", count(self.n_objects_seen, "pair"))?;
         if self.n_volumes > 0 {
             writeln!(f, "effort         {}, {} questions", count(self.n_volumes, "volume"), self.n_asked)?;
         }
-        self.time_limit.iter().try_for_each(|left| write!(f, "{left}"))?;
-        let [cut, all] = [self.cut_seconds, self.seconds].map(|s| seconds(std::time::Duration::from_secs_f64(s)));
+        self.time_limit.iter().try_for_each(|left| writeln!(f, "time limit     {left}"))?;
+        let [cut, all] = [self.cut_seconds, self.seconds].map(seconds_of);
         writeln!(f, "time           {all}, {cut} of it to cut cells")
     }
 }

@@ -1,12 +1,10 @@
 //! What was built from a scene in space, by sightlines.
 
-use super::brief::{Brief, of_cells, of_viewer};
-use super::limit::{Undecided, brief};
-use crate::facts::{Facts, Stated, times};
-use crate::output::{bytes, count, percent};
-use schemars::JsonSchema;
-use serde::Serialize;
-use sightlines::bake::{DoorPortals, SceneReport};
+use super::brief::{Brief, of_cells, of_viewer, write_viewer};
+use super::limit::brief;
+use crate::facts::{Stated, times};
+use crate::output::{JsonSchema, Serialize, bytes, count};
+use sightlines::bake::{DoorPortals, LimitReport, SceneReport};
 use sightlines::cells::{Scene, SceneObject};
 use sightlines::formats::SceneFile;
 use sightlines::pvs::Table;
@@ -98,7 +96,7 @@ pub(crate) struct Outcome {
     n_assumed: u64,
     /// If there was a time limit and it was reached.
     #[serde(skip_serializing_if = "Option::is_none")]
-    time_limit: Option<Undecided>,
+    time_limit: Option<LimitReport>,
     /// Seconds to make the cells.
     cut_seconds: f64,
     /// Seconds to find the visible pairs.
@@ -133,7 +131,7 @@ impl Outcome {
             n_programs: did.n_programs,
             n_exact: did.n_exact,
             n_assumed: report.n_assumed,
-            time_limit: report.limit.map(Undecided::from),
+            time_limit: report.limit,
             cut_seconds: report.cut_time.as_secs_f64(),
             see_seconds: report.see_time.as_secs_f64(),
         }
@@ -200,22 +198,18 @@ impl fmt::Display for SpaceFacts<'_> {
         }
         let [solid, hollow, far] = [o.n_solid, o.n_hollow, o.n_unreachable];
         writeln!(f, "not cells      {solid} boxes of solid matter, {hollow} hollow, {far} out of reach")?;
-        write!(f, "{}", Facts(&o.table))?;
+        write!(f, "{}", o.table)?;
         if !o.doors.is_empty() {
             let n_closing = o.doors.iter().filter(|door| !door.portals.is_empty()).count();
             writeln!(f, "doors          {}, open; {n_closing} close portals when shut", o.doors.len())?;
         }
-        let [polygons, objects, cells] = [o.viewer.polygons, o.viewer.objects, o.viewer.cells].map(percent);
-        writeln!(
-            f,
-            "a viewer has   {polygons} of the polygons on average, {objects} of the objects, {cells} of the cells"
-        )?;
+        write_viewer(f, &o.viewer)?;
         let [asked, programs, exact, assumed] = [o.n_asked, o.n_programs, o.n_exact, o.n_assumed];
         writeln!(f, "effort         {asked} questions, {programs} linear programs, {exact} decided in integers")?;
         if assumed > 0 {
             writeln!(f, "assumed        {} visible, as too hard to decide", count(assumed, "pair"))?;
         }
-        o.time_limit.iter().try_for_each(|left| write!(f, "{left}"))?;
+        o.time_limit.iter().try_for_each(|left| writeln!(f, "time limit     {left}"))?;
         writeln!(f, "time           {}", times(o.cut_seconds, "scene", o.see_seconds))
     }
 }

@@ -1,14 +1,12 @@
 //! Stab trees that a table is to have, and what those of a table are.
 
 use crate::error::{ErrorAbout, Result};
-use crate::facts::StabFacts;
 use crate::kept::Kept;
-use crate::output::{percent, seconds};
+use crate::output::{JsonSchema, Serialize, percent, seconds_of};
 use crate::progress::Bar;
-use schemars::JsonSchema;
-use serde::Serialize;
 use sightlines::bake::{Baked, StabOptions, StabReport};
 use sightlines::pvs::Table;
+use sightlines::report::StabFacts;
 use std::fmt;
 use std::path::Path;
 
@@ -76,7 +74,6 @@ impl fmt::Display for Added {
             let [cells, nodes] = [self.n_cut_cells, self.max_nodes as u64];
             writeln!(f, "cut trees      {cells}, {} of all, at {nodes} nodes each", percent(self.cut_share))?;
         }
-        let time = std::time::Duration::try_from_secs_f64(self.stab_seconds).unwrap_or_default();
-        writeln!(f, "stab time      {}", seconds(time))
+        writeln!(f, "stab time      {}", seconds_of(self.stab_seconds))
     }
 }

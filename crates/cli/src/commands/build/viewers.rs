@@ -1,7 +1,6 @@
 //! Where viewers can be, as the file of a scene states it.
 
-use schemars::JsonSchema;
-use serde::Serialize;
+use crate::output::{JsonSchema, Serialize};
 use sightlines::bake::StatedViewers;
 use std::fmt;
 

@@ -3,12 +3,10 @@
 pub(crate) mod office;
 pub(crate) mod tower;
 
-use crate::command::{Done, Verbosity};
+use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::{ErrorAbout, Result};
-use crate::output::{self, bytes, cannot_be_made};
+use crate::output::{self, JsonSchema, Serialize, bytes, cannot_be_made};
 use crate::reasons::reasons;
-use schemars::JsonSchema;
-use serde::Serialize;
 use sightlines::progress::memory;
 use sightlines::pvs::Table;
 use sightlines::viewer::{Figure, Page};
@@ -28,9 +26,8 @@ pub(crate) struct DemoArgs {
     /// Folder for the scene, the table and the pictures; existing files of the same names are replaced
     #[arg(long, help_heading = "Output", value_name = "FOLDER", default_value = "sightlines-demo")]
     out: PathBuf,
-    /// Print the result as JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
+    #[command(flatten)]
+    json: JsonArg,
 }
 
 /// The scenes that can be shown.

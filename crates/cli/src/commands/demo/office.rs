@@ -4,14 +4,12 @@ use super::{DemoArgs, Made, save_page};
 use crate::command::{Done, Verbosity};
 use crate::commands::build::{bake_visibly, plan};
 use crate::error::{ErrorAbout, Result};
-use crate::output::{self, bytes, percent};
+use crate::output::{self, JsonSchema, Serialize, bytes, percent};
 use crate::picture::{PictureKind, draw_plan, save_picture};
-use schemars::JsonSchema;
-use serde::Serialize;
 use sightlines::bake::{BakeRequest, Report};
 use sightlines::formats::geojson;
-use sightlines::pvs::{CellId, Table};
-use sightlines::report::{DrawOptions, View};
+use sightlines::pvs::Table;
+use sightlines::report::{DrawOptions, View, cells_by_seen_floor};
 use sightlines::scenes::{OfficeOptions, office};
 use sightlines::viewer::Figure;
 use std::fmt;
@@ -53,27 +51,12 @@ pub(super) fn run(args: &DemoArgs, Verbosity { show_progress, .. }: Verbosity) -
 /// The pictures: the plan, and what is seen from a cell that sees much, a typical one, and a secluded one.
 fn views(table: &Table) -> Vec<(&'static str, View)> {
     let mut views = vec![("plan", View::Plan)];
-    let ranked = by_seen_floor(table);
+    let ranked = cells_by_seen_floor(table);
     if let Some(last) = ranked.len().checked_sub(1) {
         let at = |share: usize| View::Cell(ranked[last * share / 100]);
         views.extend([("seen-much", at(100)), ("seen-typical", at(50)), ("seen-little", at(5))]);
     }
     views
-}
-
-/// The larger half of the cells, by the floor that they see.
-fn by_seen_floor(table: &Table) -> Vec<CellId> {
-    let area = |cell: &CellId| {
-        let record = &table.cells()[cell.idx()];
-        (record.max[0] - record.min[0]) * (record.max[1] - record.min[1])
-    };
-    let mut cells: Vec<CellId> = (0u32..).take(table.n_cells()).map(CellId).collect();
-    cells.sort_by(|a, b| area(b).total_cmp(&area(a)).then(a.cmp(b)));
-    cells.truncate(cells.len().div_ceil(2));
-    let mut ranked: Vec<(f64, CellId)> =
-        cells.into_iter().map(|cell| (table.visible(cell).map(|seen| area(&seen)).sum(), cell)).collect();
-    ranked.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    ranked.into_iter().map(|(_, cell)| cell).collect()
 }
 
 /// What the demo did.
@@ -96,11 +79,8 @@ impl fmt::Display for Demo {
         writeln!(f, "time           {}", built.times())?;
         done.memory(f)?;
         writeln!(f)?;
-        writeln!(
-            f,
-            "A viewer has to draw {} of the floor; the rest is hidden.",
-            percent(built.table.mean_floor_share)
-        )?;
+        let share = percent(built.table.mean_floor_share);
+        writeln!(f, "A viewer has to draw {share} of the floor; the rest is hidden.")?;
         done.list_files(f)
     }
 }

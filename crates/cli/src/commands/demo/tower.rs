@@ -5,14 +5,12 @@ use crate::command::{Done, Verbosity};
 use crate::commands::build::{bake_visibly, space};
 use crate::error::{ErrorAbout, Result};
 use crate::glb::save_glb;
-use crate::output::{self, bytes, percent};
+use crate::output::{self, JsonSchema, Serialize, bytes, percent};
 use crate::picture::{self, PictureKind, save_picture};
-use schemars::JsonSchema;
-use serde::Serialize;
 use sightlines::bake::{BakeRequest, Report};
 use sightlines::formats::scene::read_scene;
-use sightlines::pvs::{CellId, Table};
-use sightlines::report::{IsometricOptions, SliceOptions, View, isometric_svg, slice_svg};
+use sightlines::pvs::Table;
+use sightlines::report::{IsometricOptions, SliceOptions, View, isometric_svg, secluded_cell, slice_svg};
 use sightlines::scenes::{TowerOptions, tower};
 use sightlines::viewer::Figure;
 use std::fmt;
@@ -52,7 +50,7 @@ pub(super) fn run(args: &DemoArgs, Verbosity { show_progress, .. }: Verbosity) -
 /// height, and the boxes.
 fn pictures(path: &Path, table: &Table) -> Result<Vec<(&'static str, String)>> {
     let up = picture::up_of(table);
-    let viewer = viewer(table);
+    let viewer = secluded_cell(table);
     let view = viewer.map_or(View::Plan, View::Cell);
     let below = |view| IsometricOptions { view, up, ..IsometricOptions::default() };
     let mut drawn =
@@ -63,18 +61,6 @@ fn pictures(path: &Path, table: &Table) -> Result<Vec<(&'static str, String)>> {
     }
     let named = |(name, svg): (&'static str, Result<String, _>)| Ok((name, svg.in_file(path)?));
     drawn.into_iter().map(named).collect()
-}
-
-/// A cell to look from; none in a table without cells.
-fn viewer(table: &Table) -> Option<CellId> {
-    let volume = |cell: CellId| {
-        let record = &table.cells()[cell.idx()];
-        (0..3).map(|k| record.max[k] - record.min[k]).product::<f64>()
-    };
-    let sees_little = |cell: &CellId| 2 * table.visible(*cell).count() < table.n_cells();
-    let larger = |a: &CellId, b: &CellId| volume(*a).total_cmp(&volume(*b)).then(b.cmp(a));
-    let cells = || (0u32..).take(table.n_cells()).map(CellId);
-    cells().filter(sees_little).max_by(larger).or_else(|| cells().max_by(larger))
 }
 
 /// What the demo did.

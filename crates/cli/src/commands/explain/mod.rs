@@ -1,11 +1,10 @@
 //! `explain`: the line of sight between two cells, or why there is none.
 
-pub(crate) mod json;
 mod picture;
 pub(crate) mod report;
 mod text;
 
-use crate::command::{Answer, Done, Verbosity};
+use crate::command::{Answer, Done, JsonArg, Verbosity};
 use crate::error::{ErrorAbout, Result, anyhow};
 use crate::picture::{PictureKind, save_picture};
 use crate::place::Place;
@@ -54,9 +53,8 @@ pub(crate) struct ExplainArgs {
     /// If hidden: how many blocked ways, sequences or walls to show
     #[arg(long, help_heading = "Output", value_name = "N", default_value_t = 3)]
     proofs: usize,
-    /// Print the result as JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
+    #[command(flatten)]
+    json: JsonArg,
 }
 
 pub(crate) fn run(args: &ExplainArgs, _: Verbosity) -> Result<Done> {

@@ -1,10 +1,10 @@
-//! An explanation of a pair of cells: the pair, what the table lists, and the answer. [`json`](super::json) and [`text`](super::text) write it.
+//! An explanation of a pair of cells: the pair, what the table lists, and the answer. [`text`](super::text) writes it for people.
 
-use crate::command::Done;
+use crate::command::{Done, JsonArg};
+use crate::output::{JsonSchema, Serialize};
 use crate::place::Place;
-use schemars::JsonSchema;
-use serde::Serialize;
 use sightlines::bake::explain::Explanation;
+use sightlines::bake::explain::json::Explained;
 use sightlines::pvs::{CellId, Table, TableKind};
 use std::fmt;
 
@@ -30,12 +30,13 @@ impl<'a> Report<'a> {
     }
 
     /// The end of the command with this report. The answer is that of the engine, else that of the table, and yes without one.
-    pub(super) fn done(&self, json: bool) -> Done {
+    pub(super) fn done(&self, json: JsonArg) -> Done {
         let verdict = self.explanation.answer.verdict();
         // A table may hide what portals let through, past walls that are no borders of cells.
         let is_hidden_by_region = self.has_regions && verdict == Some(true) && self.listed == Some(false);
         let is_visible = verdict.filter(|_| !is_hidden_by_region).or(self.listed).unwrap_or(true);
-        Done::in_two_forms(json, || self.fields(), || self.to_string()).answering_whether(is_visible)
+        Done::in_two_forms(json, || Explained::new(self.explanation, self.pair, self.listed), || self.to_string())
+            .answering_whether(is_visible)
     }
 }
 

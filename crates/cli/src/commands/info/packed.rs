@@ -1,13 +1,13 @@
 //! What a packed table holds, without unpacking it.
 
-use super::{Object, as_map, write_sources};
 use crate::error::{ErrorAbout, Result};
-use crate::facts::{DigestFacts, DoorFacts, FrameFacts, Source, write_doors};
-use crate::output::{bytes, percent};
-use crate::tables::{self, Class};
-use schemars::JsonSchema;
-use serde::Serialize;
+use crate::output::{JsonSchema, Serialize, bytes, percent};
+use crate::tables;
+use sightlines::packed::{PartSize, SizeClass};
 use sightlines::pvs::ObjectId;
+use sightlines::report::{
+    DigestFacts, DoorFacts, FrameFacts, InfoFacts, ObjectFacts, ObjectPlace, write_doors, write_sources,
+};
 use std::fmt;
 use std::path::Path;
 
@@ -22,7 +22,7 @@ pub(crate) struct PackedInfo {
     /// `packed`.
     kind: &'static str,
     /// Layout of the file, `small` or `large`.
-    class: Class,
+    class: &'static str,
     /// 2 in the plane, 3 in space.
     dimension: u8,
     /// Bytes of the file.
@@ -45,7 +45,7 @@ pub(crate) struct PackedInfo {
     doors: Vec<DoorFacts>,
     /// With `--objects`: all objects.
     #[serde(skip_serializing_if = "Option::is_none")]
-    objects: Option<Vec<Object>>,
+    objects: Option<Vec<ObjectFacts>>,
     /// Bytes that stay in memory as they are in the file.
     resident_bytes: usize,
     /// The parts of the file.
@@ -57,9 +57,7 @@ pub(crate) struct PackedInfo {
     #[serde(skip_serializing_if = "Option::is_none")]
     digests: Option<DigestFacts>,
     /// As in a table.
-    #[serde(serialize_with = "as_map")]
-    #[schemars(with = "std::collections::BTreeMap<String, String>")]
-    info: Vec<(String, String)>,
+    info: InfoFacts,
 }
 
 /// A part of the file.
@@ -75,56 +73,27 @@ struct Part {
     resident: bool,
 }
 
-/// What the parts are.
-const PARTS: [(&str, &str); 26] = [
-    ("HEAD", "numbers"),
-    ("BOXS", "boxes of cells"),
-    ("POLY", "corners of cells"),
-    ("LOCA", "tree to find cells"),
-    ("LOCT", "top of a tree to find cells"),
-    ("PLAN", "planes to find cells"),
-    ("MIRR", "mirrors"),
-    ("FRAM", "axes of its own"),
-    ("KIND", "kind of its subdivision"),
-    ("INFO", "how it was made"),
-    ("COAR", "coarse visibility"),
-    ("CLAS", "equal rows"),
-    ("SCLR", "equal rows of objects"),
-    ("SCLC", "equal objects"),
-    ("DGST", "digests of the scene"),
-    ("OSRC", "objects in their file"),
-    ("DOOR", "doors"),
-    ("BLKS", "index of blocks"),
-    ("ROWS", "cells seen"),
-    ("SEEN", "objects seen"),
-    ("CELL", "exits, objects in cells"),
-    ("PORT", "portals"),
-    ("OBJS", "objects"),
-    ("STAB", "stab trees"),
-    ("CNAM", "names of cells"),
-    ("PLAC", "pages of a tree to find cells"),
-];
-
 impl PackedInfo {
     pub(super) fn read(path: &Path, with_objects: bool) -> Result<Self> {
         let packed = tables::packed(path, if with_objects { CACHE } else { 0 })?;
         let (mut n_objects_with_source, mut objects) = (0, Vec::new());
         for id in (0..packed.n_objects() as u32).map(ObjectId) {
-            let source = packed.source_of(id).in_file(path)?.map(Source::from);
+            let source = packed.source_of(id).in_file(path)?.map(ObjectPlace::from);
             n_objects_with_source += usize::from(source.is_some());
             if with_objects {
-                objects.push(Object { id: id.0, name: packed.object_name(id).in_file(path)?, source });
+                objects.push(ObjectFacts { id: id.0, name: packed.object_name(id).in_file(path)?, source });
             }
         }
-        let part = |part: sightlines::packed::PartSize| {
-            let name = part.id.to_string();
-            let what = PARTS.iter().find(|(known, _)| *known == name).map_or("unknown", |(_, what)| what);
-            Part { name, what, n_bytes: part.bytes, resident: part.resident }
+        let part = |part: PartSize| Part {
+            name: part.id.to_string(),
+            what: part.about(),
+            n_bytes: part.bytes,
+            resident: part.resident,
         };
         Ok(Self {
             file: path.display().to_string(),
             kind: "packed",
-            class: Class::of(packed.size_class()),
+            class: packed.size_class().name(),
             dimension: packed.dimension(),
             n_bytes: std::fs::metadata(path).in_file(path)?.len(),
             n_cells: packed.n_cells(),
@@ -140,14 +109,14 @@ impl PackedInfo {
             parts: packed.part_sizes().into_iter().map(part).collect(),
             frame: packed.frame().map(FrameFacts::from),
             digests: packed.digest().map(DigestFacts::from),
-            info: packed.info().to_vec(),
+            info: packed.info().into(),
         })
     }
 }
 
 impl fmt::Display for PackedInfo {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let large = if self.class == Class::Large { "large " } else { "" };
+        let large = if self.class == SizeClass::Large.name() { "large " } else { "" };
         let n_bytes = bytes(self.n_bytes);
         writeln!(f, "{}: {large}packed visibility table in {}D, {n_bytes}", self.file, self.dimension)?;
         let names = if self.has_cell_names { ", with names" } else { "" };
@@ -173,6 +142,6 @@ impl fmt::Display for PackedInfo {
         }
         self.frame.iter().try_for_each(|frame| writeln!(f, "frame          {frame}"))?;
         self.digests.iter().try_for_each(|digests| write!(f, "{digests}"))?;
-        self.info.iter().try_for_each(|(key, value)| writeln!(f, "{key:<14} {value}"))
+        write!(f, "{}", self.info)
     }
 }

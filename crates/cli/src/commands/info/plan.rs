@@ -1,9 +1,8 @@
 //! What a floor plan holds.
 
 use crate::error::Result;
+use crate::output::{JsonSchema, Serialize};
 use crate::plans;
-use schemars::JsonSchema;
-use serde::Serialize;
 use sightlines::formats::{PlanReadOptions, detect_file};
 use std::fmt;
 use std::path::Path;

@@ -1,9 +1,7 @@
 //! What a Quake map or its portal file holds.
 
 use crate::error::Result;
-use crate::output::{count, percent};
-use schemars::JsonSchema;
-use serde::Serialize;
+use crate::output::{JsonSchema, Serialize, count, percent, unless_none};
 use sightlines::formats::Bsp;
 use sightlines::formats::quake::visibility::read_visibility;
 use sightlines::formats::quake::{LeafClusters, read_bsp, read_prt};
@@ -55,23 +53,14 @@ impl PrtInfo {
 impl fmt::Display for PrtInfo {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}: portal file of a Quake map, {}", self.file, self.portal_format)?;
-        let closed = match self.n_closed_clusters {
-            0 => String::new(),
-            n => format!(", {n} of them without a portal"),
-        };
+        let closed = unless_none(self.n_closed_clusters, |n| format!(", {n} of them without a portal"));
         writeln!(f, "clusters       {}{closed}", self.n_clusters)?;
         match self.n_leafs {
             Some(n) => writeln!(f, "leafs          {n}")?,
             None => writeln!(f, "leafs          not listed")?,
         }
-        let degenerate = match self.n_degenerate_portals {
-            0 => String::new(),
-            n => format!(", {n} of them without area"),
-        };
-        let repeated = match self.n_repeated_portals {
-            0 => String::new(),
-            n => format!(", {n} of them repeats"),
-        };
+        let degenerate = unless_none(self.n_degenerate_portals, |n| format!(", {n} of them without area"));
+        let repeated = unless_none(self.n_repeated_portals, |n| format!(", {n} of them repeats"));
         writeln!(f, "portals        {}{degenerate}{repeated}", self.n_portals)
     }
 }

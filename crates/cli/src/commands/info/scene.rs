@@ -3,10 +3,8 @@
 use crate::error::Result;
 use crate::facts::Stated;
 use crate::input;
-use crate::output::{coordinate, count, distance, point};
+use crate::output::{JsonSchema, Serialize, coordinate, count, distance, point, unless_none};
 use crate::surfaces::Surfaces;
-use schemars::JsonSchema;
-use serde::Serialize;
 use sightlines::cells::{MovingObject, Scene};
 use sightlines::formats::scene::SceneReadOptions;
 use sightlines::geometry::Aabb;
@@ -99,28 +97,16 @@ impl SceneInfo {
 impl fmt::Display for SceneInfo {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}: scene in space, {}", self.file, self.stated)?;
-        let empty = match self.n_objects_without_triangles {
-            0 => String::new(),
-            n => format!(", {n} of them without triangles"),
-        };
+        let empty = unless_none(self.n_objects_without_triangles, |n| format!(", {n} of them without triangles"));
         writeln!(f, "objects        {}{empty}", self.n_objects)?;
-        let degenerate = match self.n_degenerate_triangles {
-            0 => String::new(),
-            n => format!(", besides {n} without area"),
-        };
+        let degenerate = unless_none(self.n_degenerate_triangles, |n| format!(", besides {n} without area"));
         writeln!(f, "triangles      {}{degenerate}", self.n_triangles)?;
         write!(f, "{}", self.surfaces)?;
         if !self.movers.is_empty() {
             let n_bounded = self.movers.iter().filter(|mover| mover.min.is_some()).count();
-            let anywhere = match self.movers.len() - n_bounded {
-                0 => String::new(),
-                n => format!(", {n} anywhere"),
-            };
-            writeln!(
-                f,
-                "moving         {}: {n_bounded} within a box{anywhere}",
-                count(self.movers.len() as u64, "object")
-            )?;
+            let anywhere = unless_none(self.movers.len() - n_bounded, |n| format!(", {n} anywhere"));
+            let movers = count(self.movers.len() as u64, "object");
+            writeln!(f, "moving         {movers}: {n_bounded} within a box{anywhere}")?;
         }
         writeln!(f, "extent         {} to {}", point(&self.min), point(&self.max))?;
         let size: [f64; 3] = std::array::from_fn(|k| self.max[k] - self.min[k]);

@@ -1,9 +1,7 @@
 //! What a WAD holds.
 
 use crate::error::Result;
-use crate::output::{count, percent};
-use schemars::JsonSchema;
-use serde::Serialize;
+use crate::output::{JsonSchema, Serialize, count, percent};
 use sightlines::formats::doom::{DoomMap, MapLumps, list_maps};
 use sightlines::formats::wad::WadKind;
 use sightlines::formats::{RejectTable, Wad};

@@ -2,15 +2,13 @@
 
 pub(crate) mod space;
 
-use crate::command::{Done, Verbosity};
+use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::{ErrorAbout, Result, anyhow, bail};
 use crate::input::{self, refuse};
-use crate::output::{self, bytes, count};
+use crate::output::{self, JsonSchema, Serialize, bytes, count};
 use crate::place::Point;
 use crate::plans::PlanArgs;
 use crate::surfaces::SurfaceArgs;
-use schemars::JsonSchema;
-use serde::Serialize;
 use sightlines::bake::Bakeable;
 use sightlines::cells::Plan;
 use sightlines::formats::points::read_points;
@@ -71,9 +69,8 @@ pub(crate) struct IsovistArgs {
     /// and the visible share of each object, with their intervals of 95 %
     #[arg(short, long, help_heading = "Output", value_name = "OUT.geojson|OUT.csv|OUT.svg|OUT.png")]
     output: PathBuf,
-    /// Print the result as JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
+    #[command(flatten)]
+    json: JsonArg,
 }
 
 /// What is written.

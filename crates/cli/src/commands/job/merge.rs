@@ -3,7 +3,7 @@
 use super::outcome::{Merged, Missing};
 use super::task::{Made, Task};
 use super::{absolute, open, stopped};
-use crate::command::{Answer, Done, Verbosity};
+use crate::command::{Answer, Done, JsonArg, Verbosity};
 use crate::error::Result;
 use crate::interrupt;
 use crate::kept::Keeping;
@@ -23,9 +23,8 @@ pub(crate) struct MergeArgs {
     /// The file to write [default: the output of the command that was planned]
     #[arg(short, long, help_heading = "Output", value_name = "OUT")]
     output: Option<PathBuf>,
-    /// Print the result as JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
+    #[command(flatten)]
+    json: JsonArg,
 }
 
 /// How far a merge came.
@@ -90,7 +89,7 @@ pub(crate) fn run(args: &MergeArgs, Verbosity { show_progress, verbose }: Verbos
 }
 
 /// How far a merge came.
-pub(super) fn report(job: &Path, found: Progress, json: bool) -> Done {
+pub(super) fn report(job: &Path, found: Progress, json: JsonArg) -> Done {
     let name = job.display().to_string();
     let (merged, answer) = match found {
         Progress::Written(made, out) => (Merged::written(name, &out, &made), Answer::Yes),

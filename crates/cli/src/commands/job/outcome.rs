@@ -1,10 +1,8 @@
 //! What is printed about a job.
 
 use super::task::Made;
-use crate::output::{count, percent, seconds};
+use crate::output::{JsonSchema, Serialize, count, percent, seconds_of};
 use crate::progress::rough;
-use schemars::JsonSchema;
-use serde::Serialize;
 use sightlines::checkpoint::{Job, PhasePlan, ShardState, in_words};
 use std::fmt;
 use std::path::Path;
@@ -112,7 +110,7 @@ impl fmt::Display for ShardsDone {
             let how = if *was_done { "done already" } else { "done" };
             writeln!(f, "shard {shard} of {}: {units} of phase {phase}, {how}", self.job)?;
         }
-        writeln!(f, "in {}", seconds(Duration::try_from_secs_f64(self.seconds).unwrap_or_default()))
+        writeln!(f, "in {}", seconds_of(self.seconds))
     }
 }
 
@@ -269,13 +267,8 @@ impl fmt::Display for Status {
         writeln!(f, "job            {}: {}", self.job, self.command.join(" "))?;
         for phase in &self.phases {
             let PhaseStatus { facts, n_done, done_share, begun, undone, seconds_left } = phase;
-            writeln!(
-                f,
-                "phase {:<9} {n_done} of {} done, {} of the cost",
-                facts.phase,
-                count(facts.n_shards as u64, "shard"),
-                percent(*done_share)
-            )?;
+            let (shards, share) = (count(facts.n_shards as u64, "shard"), percent(*done_share));
+            writeln!(f, "phase {:<9} {n_done} of {shards} done, {share} of the cost", facts.phase)?;
             if let Some(left) = seconds_left.and_then(|left| Duration::try_from_secs_f64(left).ok()) {
                 writeln!(f, "               about {} left, at the pace since it was planned", rough(left))?;
             }

@@ -3,7 +3,7 @@
 use super::absolute;
 use super::outcome::Planned;
 use super::task::Task;
-use crate::command::{Done, Verbosity};
+use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::Result;
 use crate::kept::{Keeping, PROGRAM};
 use sightlines::checkpoint::{Identity, Job, JobSlot, JobStore, Manifest, Outcome, Role};
@@ -25,9 +25,8 @@ pub(crate) struct PlanArgs {
     /// The folder of the job, which is made
     #[arg(short, long, help_heading = "Output", value_name = "JOB")]
     output: PathBuf,
-    /// Print the result as JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
+    #[command(flatten)]
+    json: JsonArg,
     /// The command, as it is without a job: what it writes, `job merge` writes
     #[arg(value_name = "COMMAND", trailing_var_arg = true, allow_hyphen_values = true, required = true)]
     command: Vec<String>,

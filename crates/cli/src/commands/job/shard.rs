@@ -3,7 +3,7 @@
 use super::outcome::{ShardDone, ShardsDone};
 use super::task::Task;
 use super::{absolute, open, stopped};
-use crate::command::{Done, Verbosity};
+use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::{Result, anyhow};
 use crate::interrupt;
 use crate::kept::Keeping;
@@ -30,9 +30,8 @@ pub(crate) struct ShardArgs {
     /// Seconds after which results are kept for a later run of the same shard
     #[arg(long, help_heading = "Resuming", value_name = "SECONDS", default_value_t = 10)]
     save_after: u64,
-    /// Print the result as JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
+    #[command(flatten)]
+    json: JsonArg,
 }
 
 pub(crate) fn run(args: &ShardArgs, Verbosity { show_progress, .. }: Verbosity) -> Result<Done> {

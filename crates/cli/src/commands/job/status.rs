@@ -2,7 +2,7 @@
 
 use super::outcome::{Missing, PhaseFacts, PhaseStatus, Status};
 use super::{absolute, open};
-use crate::command::{Done, Verbosity};
+use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::Result;
 use sightlines::checkpoint::{Job, ShardState};
 use std::path::PathBuf;
@@ -13,9 +13,8 @@ pub(crate) struct StatusArgs {
     /// The folder of the job
     #[arg(value_name = "JOB")]
     job: PathBuf,
-    /// Print the result as JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
+    #[command(flatten)]
+    json: JsonArg,
 }
 
 pub(crate) fn run(args: &StatusArgs, _: Verbosity) -> Result<Done> {

@@ -4,7 +4,7 @@ use super::merge::{Progress, merge, report};
 use super::outcome::Submitted;
 use super::task::Task;
 use super::{absolute, interrupted, open};
-use crate::command::{Done, Verbosity};
+use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::{ErrorAbout, Result, bail};
 use crate::interrupt;
 use crate::kept::PROGRAM;
@@ -60,9 +60,8 @@ pub(crate) struct SubmitArgs {
     /// The file to write [default: the output of the command that was planned]
     #[arg(short, long, help_heading = "Output", value_name = "OUT")]
     output: Option<PathBuf>,
-    /// Print the result as JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
+    #[command(flatten)]
+    json: JsonArg,
 }
 
 pub(crate) fn run(args: &SubmitArgs, Verbosity { show_progress, verbose }: Verbosity) -> Result<Done> {

@@ -3,7 +3,7 @@
 use super::absolute;
 use super::merge::{report, through};
 use super::task::Task;
-use crate::command::{Done, Verbosity};
+use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::Result;
 use crate::interrupt;
 use crate::memory::MemoryArgs;
@@ -31,9 +31,8 @@ pub(crate) struct WorkArgs {
     /// The file to write [default: the output of the command that was planned]
     #[arg(short, long, help_heading = "Output", value_name = "OUT")]
     output: Option<PathBuf>,
-    /// Print the result as JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
+    #[command(flatten)]
+    json: JsonArg,
 }
 
 pub(crate) fn run(args: &WorkArgs, Verbosity { verbose, .. }: Verbosity) -> Result<Done> {

@@ -2,11 +2,11 @@
 
 pub(crate) mod outcome;
 
-use crate::command::{Done, Verbosity};
+use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::{Result, anyhow};
 use crate::input;
 use crate::kept::{self, Keeping, Kept, ResumeArgs};
-use crate::memory::{MemoryArgs, Size};
+use crate::memory::MemoryArgs;
 use crate::progress::Bar;
 use crate::simplification::{self, HowArgs, OutFormat, ReadScene, read, written};
 use outcome::Outcome;
@@ -15,7 +15,7 @@ use sightlines::checkpoint::{Identity, Inputs};
 use sightlines::formats::levels::{INDEX_NAME, LevelFile, LevelsIndex, write_levels_index};
 use sightlines::formats::{FolderError, GltfSource, NewFolder, SceneFile};
 use sightlines::multifocal::FromRegion;
-use sightlines::progress::memory::Needs;
+use sightlines::progress::memory::{MemorySize, Needs};
 use sightlines::simplify::{
     Effort, HiddenBy, LevelOptions, Levels, MakeMethod, SimplifyError, SimplifyOptions, levels_with,
 };
@@ -47,15 +47,14 @@ pub(crate) struct LevelsArgs {
     memory: u64,
     /// Memory that the program may use, such as 2GiB or 800MB, as --memory of `build`: --memory is about levels here
     #[arg(long, help_heading = "Method", value_name = "SIZE")]
-    work_memory: Option<Size>,
+    work_memory: Option<MemorySize>,
     #[command(flatten)]
     resume: ResumeArgs,
     /// The folder to write: a new one, or one that contains only levels, which are replaced
     #[arg(short, long, help_heading = "Output", value_name = "FOLDER")]
     output: PathBuf,
-    /// Print the result as JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
+    #[command(flatten)]
+    json: JsonArg,
 }
 
 /// Whether a file in a folder of levels is one that this command writes.
@@ -111,10 +110,7 @@ pub(crate) fn run(args: &LevelsArgs, Verbosity { show_progress, .. }: Verbosity)
     drop(bar);
     let made =
         made.and_then(|made| write(args, (scene, method), (&file, source.as_ref()), (&made, is_framed), folder, start));
-    match kept.finish(made.is_ok()) {
-        Some(interrupted) => Err(anyhow!("{interrupted}")),
-        None => Ok(Done::new(args.json, made?)),
-    }
+    Ok(Done::new(args.json, kept.end(made)?))
 }
 
 impl LevelsArgs {

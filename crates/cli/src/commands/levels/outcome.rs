@@ -1,10 +1,8 @@
 //! What levels were made, in numbers.
 
 use super::LevelsArgs;
-use crate::output::{bytes, count, percent, seconds};
+use crate::output::{JsonSchema, Serialize, bytes, count, percent, seconds_of};
 use crate::simplification::{Rounded, SingleSided};
-use schemars::JsonSchema;
-use serde::Serialize;
 use sightlines::cells::Scene;
 use sightlines::formats::LevelsIndex;
 use sightlines::formats::scene::Rounding;
@@ -97,12 +95,8 @@ impl fmt::Display for Outcome {
         let share = |n: f64| percent(if self.n_triangles > 0 { n / self.n_triangles as f64 } else { 0.0 });
         let [mean, most] = [self.mean_triangles, self.most_triangles as f64];
         writeln!(f, "before         {}", count(self.n_triangles, "triangle"))?;
-        writeln!(
-            f,
-            "left           {mean:.1} for a cell on average, {}; at most {most}, {}",
-            share(mean),
-            share(most)
-        )?;
+        let [of_mean, of_most] = [mean, most].map(share);
+        writeln!(f, "left           {mean:.1} for a cell on average, {of_mean}; at most {most}, {of_most}")?;
         writeln!(
             f,
             "promised       {:.3e} of the view changes at most, for every eye{}; {:.3e} were allowed",
@@ -111,6 +105,6 @@ impl fmt::Display for Outcome {
         if let Some(rounded) = self.rounded {
             writeln!(f, "rounded        {rounded}")?;
         }
-        writeln!(f, "time           {}", seconds(Duration::from_secs_f64(self.seconds)))
+        writeln!(f, "time           {}", seconds_of(self.seconds))
     }
 }

@@ -4,7 +4,7 @@ mod method;
 pub(crate) mod outcome;
 
 use crate::buffers::method_failed;
-use crate::command::{Done, Verbosity};
+use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::{ErrorAbout, Result};
 use crate::eye::EyeArgs;
 use crate::input;
@@ -76,9 +76,8 @@ pub(crate) struct LightArgs {
     /// The picture to write
     #[arg(short, long, help_heading = "Output", value_name = "OUT.png")]
     output: PathBuf,
-    /// Print the result as JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
+    #[command(flatten)]
+    json: JsonArg,
 }
 
 pub(crate) fn run(args: &LightArgs, _: Verbosity) -> Result<Done> {

@@ -1,8 +1,6 @@
 //! What was drawn.
 
-use crate::output::{count, percent, seconds_of};
-use schemars::JsonSchema;
-use serde::Serialize;
+use crate::output::{JsonSchema, Serialize, count, percent, seconds_of, share};
 use std::fmt;
 
 /// A picture with the shadows of an area light.
@@ -46,11 +44,6 @@ pub(crate) struct Outcome {
     pub(super) draw_seconds: f64,
     /// The picture that was written.
     pub(super) file: String,
-}
-
-/// A part of a whole; 0 of nothing.
-fn share(part: f64, whole: f64) -> f64 {
-    if whole > 0.0 { part / whole } else { 0.0 }
 }
 
 impl fmt::Display for Outcome {

@@ -1,12 +1,10 @@
 //! `multifocal`: the multifocal buffer of a scene on one plane as a picture, and the fields beside it.
 
-mod backend;
 mod chart;
 pub(crate) mod outcome;
-mod target;
 
 use crate::buffers::method_failed;
-use crate::command::{Done, Verbosity};
+use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::{ErrorAbout, Result, anyhow};
 use crate::input;
 use crate::named::{measure, one_of};
@@ -18,11 +16,10 @@ use outcome::{FieldInfo, Outcome};
 use sightlines::bake::methods::{Backend, NotBuiltIn};
 use sightlines::geometry::Point3;
 use sightlines::multifocal::mesh::{PatchOptions, patches};
-use sightlines::multifocal::{Buffer, Job, Measure, Occluder, Plane, Volume};
+use sightlines::multifocal::{Buffer, Job, Measure, Occluder, Plane, PlaneChoice, Texels, Volume, render_by_first};
 use sightlines::multifocal_cpu::fields::{Features, Field};
 use sightlines::report::{PngError, buffer_png, distance_png, voronoi_png};
 use std::path::{Path, PathBuf};
-use target::{PlaneArg, Texels};
 
 /// Arguments of `multifocal`.
 #[derive(Debug, clap::Args)]
@@ -45,7 +42,7 @@ pub(crate) struct MultifocalArgs {
     /// The plane behind the scene, such as z=20, and a window on it along the two axes that follow (for y: z and x), in
     /// scene units [default: the shadow of the scene's box, or its sides where it is beside the volume]
     #[arg(long, help_heading = "Picture", value_name = "AXIS=AT[:U0,V0,U1,V1]", allow_hyphen_values = true)]
-    plane: PlaneArg,
+    plane: PlaneChoice,
     /// Texels along the longer side of the window (texels are then nearly square), or along both
     #[arg(long, help_heading = "Picture", value_name = "N|WxH", default_value = "256")]
     texels: Texels,
@@ -74,9 +71,8 @@ pub(crate) struct MultifocalArgs {
     /// largest
     #[arg(long, help_heading = "Output", value_name = "OUT.png")]
     distance: Option<PathBuf>,
-    /// Print the result as JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
+    #[command(flatten)]
+    json: JsonArg,
 }
 
 pub(crate) fn run(args: &MultifocalArgs, _: Verbosity) -> Result<Done> {
@@ -86,13 +82,15 @@ pub(crate) fn run(args: &MultifocalArgs, _: Verbosity) -> Result<Done> {
     let (up, scene) = (file.info.up, file.scene);
     let triangles: Vec<[Point3; 3]> = scene.occluding_triangles().collect();
     let volume = Volume::new(args.volume.0).about("--volume")?;
-    let plane = args.plane.plane(&volume, &scene.bounds(), args.texels)?;
+    let about = format!("--plane {}", args.plane);
+    let plane = args.plane.plane(&volume, &scene.bounds(), args.texels).about(&about)?;
     let occluders = occluders(&triangles, args.triangles);
-    let job = Job::new(volume, vec![plane], &occluders, args.measure, false)
-        .map_err(|source| anyhow!("--plane {plane}: {source}", plane = args.plane))?;
+    let job = Job::new(volume, vec![plane], &occluders, args.measure, false).about(&about)?;
     let failed = |error: NotBuiltIn| method_failed(&args.scene, error.into());
     let chain = args.backend.open(|text| tracing::warn!("{text}")).map_err(failed)?.chain();
-    let (by, buffer) = backend::fill(chain, &job).in_file(&args.scene)?;
+    let (mut buffers, taken_over) = (Vec::new(), |error| tracing::warn!("{error}; the next one takes over"));
+    let by = render_by_first(chain, &job, &mut buffers, taken_over).in_file(&args.scene)?;
+    let buffer = buffers.pop().expect("a backend fills a buffer for each plane, and there is one");
     let fields = (args.voronoi.is_some() || args.distance.is_some()).then(|| {
         let features = Features::new(triangles.iter().copied());
         let field = Field::new(&features, &plane);

@@ -1,8 +1,6 @@
 //! What was drawn.
 
-use crate::output::{count, percent};
-use schemars::JsonSchema;
-use serde::Serialize;
+use crate::output::{JsonSchema, Serialize, count, percent};
 use sightlines::multifocal_cpu::fields::{Features, Field};
 use std::fmt;
 

@@ -4,21 +4,16 @@ pub(crate) mod sight;
 
 use crate::command::{Done, Verbosity};
 use crate::error::{ErrorAbout, Result};
-use crate::facts::Source;
-use crate::output::count;
+use crate::output::{JsonSchema, Serialize, count};
 use crate::place::Point;
-use crate::tables::{self, Cells, Opened};
+use crate::tables::{self, CACHE, Cells, Opened};
 use crate::view::lifted;
-use schemars::JsonSchema;
-use serde::Serialize;
 use sight::ViewerArgs;
 use sightlines::pvs::{CellId, ObjectId, PlaceBuffer};
+use sightlines::report::ObjectPlace;
 use std::collections::BTreeSet;
 use std::fmt;
 use std::path::PathBuf;
-
-/// Bytes of blocks of a packed table that a query keeps.
-const CACHE: usize = 64 << 20;
 
 /// Arguments of `query`.
 #[derive(Debug, clap::Args)]
@@ -80,7 +75,7 @@ fn rows<C: Cells>(cells: &C, eye: &[f64], at: &[CellId]) -> Result<Found> {
 /// Objects with their names.
 fn named<C: Cells>(cells: &C, objects: impl IntoIterator<Item = ObjectId>) -> Result<Vec<Object>> {
     let object = |id: ObjectId| {
-        let source = cells.source_of(id)?.map(Source::from);
+        let source = cells.source_of(id)?.map(ObjectPlace::from);
         Ok(Object { id: id.0, name: cells.object_name(id)?, source })
     };
     objects.into_iter().map(object).collect()
@@ -143,7 +138,7 @@ struct Object {
     name: String,
     /// If it is known.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
-    source: Option<Source>,
+    source: Option<ObjectPlace>,
 }
 
 /// Without an option that describes the view. Exit code 1 outside every cell.

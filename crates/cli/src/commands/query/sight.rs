@@ -2,12 +2,10 @@
 
 use super::{Object, Place, ids, named, write_seen};
 use crate::error::{ErrorAbout, Result};
-use crate::output::count;
+use crate::output::{JsonSchema, Serialize, count};
 use crate::sight::{Sight, SightArgs, without_direction};
 use crate::tables::Cells;
 use crate::view::Methods;
-use schemars::JsonSchema;
-use serde::Serialize;
 use sightlines::eye_to_cell::{Budget, Method, View};
 use sightlines::pvs::CellId;
 use sightlines::walkthrough::Viewer;

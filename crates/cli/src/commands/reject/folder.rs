@@ -1,7 +1,7 @@
 //! `reject` of a folder: all WADs in it, whose maps are units of one work.
 
 use super::outcome::{FileOutcome, FileStatus, FolderOutcome};
-use super::{BAR, Map, RejectArgs, finish, warn};
+use super::{BAR, Map, RejectArgs, warn};
 use crate::error::{Result, anyhow, bail};
 use crate::interrupt;
 use crate::kept::{self, Keeping, Kept};
@@ -43,7 +43,7 @@ pub(super) fn make(args: &RejectArgs, keeping: Keeping<'_>, show_progress: bool)
         files: folder.files,
         peak_bytes: memory::peak_bytes(),
     });
-    finish(kept, made)
+    kept.end(made)
 }
 
 /// The WADs in a folder, in the order of their names; hidden ones are none.

@@ -5,7 +5,7 @@ pub(crate) mod outcome;
 
 pub(crate) use outcome::Outcome;
 
-use crate::command::{Done, Verbosity};
+use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::{Result, anyhow};
 use crate::kept::{self, Keeping, Kept, ResumeArgs};
 use crate::memory::MemoryArgs;
@@ -53,9 +53,8 @@ pub(crate) struct RejectArgs {
     /// The WAD to write; may be the input. Of a folder, another folder, which is made if it is not there: files of other names in it stay
     #[arg(short, long, help_heading = "Output", value_name = "OUT.wad")]
     pub(crate) output: PathBuf,
-    /// Print the result as JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
+    #[command(flatten)]
+    json: JsonArg,
 }
 
 pub(crate) fn run(args: &RejectArgs, Verbosity { show_progress, .. }: Verbosity) -> Result<Done> {
@@ -100,19 +99,11 @@ fn make_wad(args: &RejectArgs, keeping: Keeping<'_>, show_progress: bool) -> Res
         Ok(WadOutcome { out: args.output.display().to_string(), maps, peak_bytes: memory::peak_bytes() })
     };
     let made = made();
-    finish(kept, made)
+    kept.end(made)
 }
 
 /// What the bar is of.
 const BAR: &str = "visibility of sectors";
-
-/// Ends the run: an error if it was interrupted.
-fn finish<T>(kept: Kept<'_>, made: Result<T>) -> Result<T> {
-    match kept.finish(made.is_ok()) {
-        Some(interrupted) => Err(anyhow!("{interrupted}")),
-        None => made,
-    }
-}
 
 impl RejectArgs {
     /// Those of the bake, without effects.

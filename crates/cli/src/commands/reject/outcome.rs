@@ -1,11 +1,8 @@
 //! What is printed about REJECT lumps.
 
-use crate::output::{count, percent, seconds};
-use schemars::JsonSchema;
-use serde::Serialize;
+use crate::output::{JsonSchema, Serialize, count, percent, seconds_of};
 use sightlines::bake::{MapOutcome, MapStatus};
 use std::fmt;
-use std::time::Duration;
 
 /// What was done.
 #[derive(Debug, Serialize, JsonSchema)]
@@ -165,7 +162,7 @@ impl fmt::Display for Map {
         match (self.status, self.n_rejected) {
             (_, Some(n)) => {
                 let pairs = (f64::from(self.n_sectors) * f64::from(self.n_sectors)).max(1.0);
-                let time = seconds(Duration::from_secs_f64(self.seconds));
+                let time = seconds_of(self.seconds);
                 write!(f, "{:>5} sectors, {:>7} of pairs rejected, {time}", self.n_sectors, percent(n as f64 / pairs))?;
                 match self.n_effects {
                     Some(n @ 1..) => write!(f, ", {} changed by effects", count(n, "pair")),

@@ -1,41 +1,22 @@
 //! What is left out before anything is drawn.
 
 use crate::error::{ErrorAbout, Result, bail};
+use crate::output::{JsonSchema, Serialize};
 use crate::tables::{Cells, Opened};
-use schemars::JsonSchema;
-use serde::Serialize;
 use sightlines::cells::{Scene, unlike};
 use sightlines::geometry::Point3;
 use sightlines::pvs::{ObjectId, Place, PlaceBuffer};
-use sightlines::visible_surface::hierarchical::{self, DepthPyramid};
-use sightlines::visible_surface::{Camera, DepthFormat, FaceMask, Faces, RenderInput, VisibleSurface, ZBuffer, cull};
+use sightlines::visible_surface::{Camera, CullStep, FaceMask, Faces};
 use std::path::Path;
 use std::time::Instant;
 
-/// Bytes of blocks of a packed table that are kept.
-pub(super) const CACHE: usize = 64 << 20;
-
-/// A way to leave faces out, as an argument.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub(super) enum Cull {
-    /// Back-facing triangles
-    Backface,
-    /// Everything outside the view frustum, first by boxes of objects, then by faces
-    Frustum,
-    /// Everything that is not visible from the cell of the eye, according to --table
-    Pvs,
-    /// Everything behind a hierarchical z-buffer of the rest
-    HierarchicalZ,
-}
-
-impl Cull {
-    pub(super) const fn name(self) -> &'static str {
-        match self {
-            Self::Backface => "backface",
-            Self::Frustum => "frustum",
-            Self::Pvs => "pvs",
-            Self::HierarchicalZ => "hierarchical-z",
-        }
+/// What a way to leave faces out takes away, for help texts.
+pub(super) const fn about(way: CullStep) -> &'static str {
+    match way {
+        CullStep::Backface => "Back-facing triangles",
+        CullStep::Frustum => "Everything outside the view frustum, first by boxes of objects, then by faces",
+        CullStep::Pvs => "Everything that is not visible from the cell of the eye, according to --table",
+        CullStep::HierarchicalZ => "Everything behind a hierarchical z-buffer of the rest",
     }
 }
 
@@ -53,24 +34,16 @@ pub(super) struct Gone {
 /// Leaves faces out of `chosen`, by each way in turn. `seen` has, for each object of the scene, whether the table shows
 /// it; `None` skips the table.
 pub(super) fn leave_out(
-    ways: &[Cull],
+    ways: &[CullStep],
     faces: &Faces,
     camera: &Camera,
     seen: Option<&[bool]>,
     chosen: &mut FaceMask,
 ) -> Vec<Gone> {
-    let each = |&by: &Cull| {
+    let each = |by: &CullStep| {
         let start = Instant::now();
-        let n = match by {
-            Cull::Backface => cull::backface(faces, camera, chosen),
-            Cull::Frustum => cull::frustum(faces, camera, chosen),
-            Cull::Pvs => seen.map_or(0, |seen| cull::objects(faces, chosen, |object| seen[object as usize])),
-            Cull::HierarchicalZ => {
-                let (image, _) = ZBuffer::new(DepthFormat::Exact).picture(&RenderInput { faces, camera, mask: chosen });
-                hierarchical::cull(faces, chosen, &DepthPyramid::sampled(faces, camera, &image))
-            }
-        };
-        Gone { by: by.name(), n_faces: n, seconds: start.elapsed().as_secs_f64() }
+        let n_faces = by.apply(faces, camera, seen, chosen);
+        Gone { by: by.name(), n_faces, seconds: start.elapsed().as_secs_f64() }
     };
     ways.iter().map(each).collect()
 }

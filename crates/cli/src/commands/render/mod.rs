@@ -1,10 +1,9 @@
 //! `render`: what one eye sees of a scene, drawn by one method, or by all side by side.
 
 mod cull;
-mod method;
 pub(crate) mod outcome;
 
-use crate::command::{Done, Verbosity};
+use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::{ErrorAbout, Result, anyhow, bail};
 use crate::eye::EyeArgs;
 use crate::input;
@@ -13,14 +12,14 @@ use crate::output::{self, count};
 use crate::picture;
 use crate::progress::Bar;
 use crate::surfaces::{self, SurfaceArgs};
-use crate::tables;
+use crate::tables::{self, CACHE};
 use crate::view::Up;
-use cull::{CACHE, Cull, leave_out, seen_by_table};
-use method::{Drawn, Kind, Readied, Ready, compared};
-use outcome::Outcome;
-use outcome::Row;
+use cull::{leave_out, seen_by_table};
+use outcome::{Outcome, Row};
 use sightlines::report::{PngError, SheetPicture, faces_png, sheet_png, sheet_size};
-use sightlines::visible_surface::{Camera, Comparison, DepthFormat, FaceMask, Faces, NOTHING, RenderInput, compare};
+use sightlines::visible_surface::{
+    Camera, Comparison, CullStep, DepthFormat, FaceMask, Faces, NOTHING, Preparer, RenderInput, Technique, compare,
+};
 use std::path::{Path, PathBuf};
 
 /// The most pixels of a sheet: 400 MB of colours.
@@ -48,8 +47,9 @@ pub(crate) struct RenderArgs {
     #[command(flatten)]
     eye: EyeArgs,
     /// The method; this or --compare is needed. With --compare several, separated by commas
-    #[arg(long, help_heading = "Method", value_name = "NAME[,NAME...]", value_enum, value_delimiter = ',')]
-    method: Vec<Kind>,
+    #[arg(long, help_heading = "Method", value_name = "NAME[,NAME...]", value_delimiter = ',')]
+    #[arg(value_parser = one_of(&Technique::ALL, Technique::name, Technique::about))]
+    method: Vec<Technique>,
     /// Draw all methods, or those of --method, side by side with the ray caster in one sheet, and count the pixels that
     /// differ from it
     #[arg(long, help_heading = "Method")]
@@ -58,8 +58,9 @@ pub(crate) struct RenderArgs {
     #[arg(long, help_heading = "Method", value_name = "FORMAT", value_parser = one_of(&DepthFormat::ALL, DepthFormat::name, DepthFormat::about))]
     depth: Option<DepthFormat>,
     /// What to cull before drawing, in this order; separated by commas
-    #[arg(long, help_heading = "Method", value_name = "WAY[,WAY...]", value_enum, value_delimiter = ',')]
-    cull: Vec<Cull>,
+    #[arg(long, help_heading = "Method", value_name = "WAY[,WAY...]", value_delimiter = ',')]
+    #[arg(value_parser = one_of(&CullStep::ALL, CullStep::name, cull::about))]
+    cull: Vec<CullStep>,
     /// For --cull pvs: the table of the scene, plain or packed
     #[arg(long, help_heading = "Method", value_name = "FILE.pvs")]
     table: Option<PathBuf>,
@@ -69,9 +70,8 @@ pub(crate) struct RenderArgs {
     /// The picture to write
     #[arg(short, long, help_heading = "Output", value_name = "OUT.png")]
     output: PathBuf,
-    /// Print the result as JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
+    #[command(flatten)]
+    json: JsonArg,
 }
 
 pub(crate) fn run(args: &RenderArgs, Verbosity { show_progress, .. }: Verbosity) -> Result<Done> {
@@ -81,7 +81,7 @@ pub(crate) fn run(args: &RenderArgs, Verbosity { show_progress, .. }: Verbosity)
         args.table.as_ref().map(|path| Ok::<_, anyhow::Error>((path, tables::open(path, CACHE)?))).transpose()?;
     let options = args.surfaces.options_with(table.as_ref().map_or(&[], |(_, opened)| opened.info()));
     let file = input::scene(&args.scene, &options)?;
-    if args.cull.contains(&Cull::Pvs) {
+    if args.cull.contains(&CullStep::Pvs) {
         input::check_occluder(&args.scene, &file)?;
         if !file.scene.front_occluders().is_empty() {
             bail!(
@@ -107,9 +107,8 @@ pub(crate) fn run(args: &RenderArgs, Verbosity { show_progress, .. }: Verbosity)
         side_by_side(args, &shot, &methods, &bar)
     } else {
         let (kind, depth) = methods[0];
-        let drawn = Ready::new(kind, depth, &faces).draw(&shot);
-        let png = faces_png(camera.size(), &shown(args, &faces, drawn.image.faces()));
-        (vec![Row::new(&drawn, None)], png)
+        let (image, row) = Row::draw(&Preparer::new(&faces).prepare(kind, depth), &shot);
+        (vec![row], faces_png(camera.size(), &shown(args, &faces, image.faces())))
     };
     drop(bar);
     let png = png.in_file(&args.output)?;
@@ -139,8 +138,8 @@ fn check(args: &RenderArgs) -> Result<()> {
     picture::check_png_name(&args.output)?;
     let inputs: Vec<&Path> = std::iter::once(&args.scene).chain(&args.table).map(PathBuf::as_path).collect();
     output::check(&inputs, &[&args.output])?;
-    let has_buffer = args.method.contains(&Kind::Zbuffer) || args.method.is_empty();
-    match (args.cull.contains(&Cull::Pvs), &args.table) {
+    let has_buffer = args.method.contains(&Technique::Zbuffer) || args.method.is_empty();
+    match (args.cull.contains(&CullStep::Pvs), &args.table) {
         (true, None) => Err(anyhow!("--cull pvs: this needs a table of the scene: name it with --table")),
         (false, Some(_)) => Err(anyhow!("--table: the table is not used: add --cull pvs")),
         _ if args.method.len() > 1 && !args.compare => {
@@ -154,7 +153,7 @@ fn check(args: &RenderArgs) -> Result<()> {
 }
 
 /// The methods that are drawn. With `--compare` the ray caster is one of them, and their sheet is not too large.
-fn methods(args: &RenderArgs, camera: &Camera) -> Result<Vec<(Kind, DepthFormat)>> {
+fn methods(args: &RenderArgs, camera: &Camera) -> Result<Vec<(Technique, DepthFormat)>> {
     if !args.compare {
         return Ok(args.method.iter().map(|&kind| (kind, args.depth.unwrap_or_default())).collect());
     }
@@ -170,30 +169,48 @@ fn methods(args: &RenderArgs, camera: &Camera) -> Result<Vec<(Kind, DepthFormat)
     }
 }
 
+/// The methods that are compared, each with what a z-buffer keeps: those that are named and the ray caster, or all if none are; z-buffers
+/// of all formats unless one is named.
+fn compared(named: &[Technique], depth: Option<DepthFormat>) -> Vec<(Technique, DepthFormat)> {
+    let named = if named.is_empty() { &Technique::ALL } else { named };
+    let mut all = Vec::new();
+    for &technique in named {
+        match (technique, depth) {
+            (Technique::Zbuffer, None) => all.extend(DepthFormat::ALL.map(|format| (technique, format))),
+            _ => all.push((technique, depth.unwrap_or_default())),
+        }
+    }
+    if !named.contains(&Technique::Raycast) {
+        all.push((Technique::Raycast, DepthFormat::Exact));
+    }
+    all
+}
+
 /// Draws by several methods, and compares with what the ray caster sees where nothing but back faces was left out.
 fn side_by_side(
     args: &RenderArgs,
     shot: &RenderInput<'_>,
-    methods: &[(Kind, DepthFormat)],
+    methods: &[(Technique, DepthFormat)],
     bar: &Bar,
 ) -> (Vec<Row>, Result<Vec<u8>, PngError>) {
     let RenderInput { faces, camera, .. } = *shot;
-    let caster = Ready::new(Kind::Raycast, DepthFormat::Exact, faces);
+    let mut preparer = Preparer::new(faces);
+    let caster = preparer.prepare(Technique::Raycast, DepthFormat::Exact);
     let mut whole = FaceMask::all(faces);
-    let facing: Vec<Cull> = args.cull.iter().copied().filter(|way| *way == Cull::Backface).collect();
+    let facing: Vec<CullStep> = args.cull.iter().copied().filter(|way| *way == CullStep::Backface).collect();
     leave_out(&facing, faces, camera, None, &mut whole);
-    let reference = caster.draw(&RenderInput { mask: &whole, ..*shot }).image;
+    let reference = caster.method.picture(&RenderInput { mask: &whole, ..*shot }).0;
     let mut all: Vec<(Vec<u32>, Comparison)> = Vec::new();
-    let (mut rows, mut readied) = (Vec::new(), Readied::default());
+    let mut rows = Vec::new();
     for (k, &(kind, depth)) in methods.iter().enumerate() {
         bar.set(k, methods.len());
-        let drawn: Drawn = match kind {
-            Kind::Raycast => caster.draw(shot),
-            _ => readied.next(kind, depth, faces).draw(shot),
+        let (image, row) = match kind {
+            Technique::Raycast => Row::draw(&caster, shot),
+            _ => Row::draw(&preparer.prepare(kind, depth), shot),
         };
-        let comparison = compare(shot, &reference, &drawn.image);
-        rows.push(Row::new(&drawn, Some(&comparison)));
-        all.push((shown(args, faces, drawn.image.faces()), comparison));
+        let comparison = compare(shot, &reference, &image);
+        rows.push(row.compared(&comparison));
+        all.push((shown(args, faces, image.faces()), comparison));
     }
     let notes: Vec<String> = all.iter().map(|(_, c)| count(c.wrong.len() as u64, "wrong pixel")).collect();
     let pictures: Vec<SheetPicture<'_>> = (0..all.len())

@@ -1,14 +1,12 @@
 //! What was drawn.
 
 use super::cull::Gone;
-use super::method::Drawn;
-use crate::output::{count, percent, seconds_of};
-use schemars::JsonSchema;
-use serde::Serialize;
+use crate::output::{JsonSchema, Serialize, count, percent, seconds_of};
 use sightlines::geometry::Point3;
-use sightlines::visible_surface::Comparison;
+use sightlines::visible_surface::{Comparison, Image, Prepared, RenderInput};
 use std::collections::BTreeMap;
 use std::fmt;
+use std::time::Instant;
 
 /// Pictures of a scene.
 #[derive(Debug, Serialize, JsonSchema)]
@@ -79,14 +77,17 @@ pub(super) struct Row {
 }
 
 impl Row {
-    pub(super) fn new(Drawn { method, prepared, time, counters, .. }: &Drawn, comparison: Option<&Comparison>) -> Self {
-        Self {
-            method,
-            wrong: comparison.map(|c| c.wrong.len()),
-            in_doubt: comparison.map(|c| c.ties),
-            prepare_seconds: prepared.time.as_secs_f64(),
-            prepare_splits: prepared.splits,
-            draw_seconds: time.as_secs_f64(),
+    /// Draws, and counts what that took.
+    pub(super) fn draw(Prepared { method, time, splits }: &Prepared, shot: &RenderInput<'_>) -> (Image, Self) {
+        let start = Instant::now();
+        let (image, counters) = method.picture(shot);
+        let row = Self {
+            method: method.name(),
+            wrong: None,
+            in_doubt: None,
+            prepare_seconds: time.as_secs_f64(),
+            prepare_splits: *splits,
+            draw_seconds: start.elapsed().as_secs_f64(),
             polygons: counters.polygons,
             fragments: counters.fragments,
             splits: counters.splits,
@@ -94,8 +95,14 @@ impl Row {
             covered: counters.covered,
             overdraw: counters.overdraw(),
             exact: counters.exact,
-            tests: counters.tests.clone(),
-        }
+            tests: counters.tests,
+        };
+        (image, row)
+    }
+
+    /// The same, compared with the ray caster.
+    pub(super) fn compared(self, Comparison { wrong, ties, .. }: &Comparison) -> Self {
+        Self { wrong: Some(wrong.len()), in_doubt: Some(*ties), ..self }
     }
 
     /// Splits for the picture, and before.
@@ -136,17 +143,10 @@ impl Outcome {
         }
         let n_pixels = self.size.map(u64::from).iter().product::<u64>();
         let share = percent(row.covered as f64 / n_pixels as f64);
-        writeln!(
-            f,
-            "pixels         {share} covered, each written {:.2} times; {} exact decisions",
-            row.overdraw, row.exact
-        )?;
-        writeln!(
-            f,
-            "time           {} to prepare, {} to draw",
-            seconds_of(row.prepare_seconds),
-            seconds_of(row.draw_seconds)
-        )
+        let Row { overdraw, exact, .. } = row;
+        writeln!(f, "pixels         {share} covered, each written {overdraw:.2} times; {exact} exact decisions")?;
+        let [prepare, draw] = [row.prepare_seconds, row.draw_seconds].map(seconds_of);
+        writeln!(f, "time           {prepare} to prepare, {draw} to draw")
     }
 
     /// A line for each method, with the number of its picture in the sheet.

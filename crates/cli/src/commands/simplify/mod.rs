@@ -3,7 +3,7 @@
 mod eyes;
 pub(crate) mod outcome;
 
-use crate::command::{Done, Verbosity};
+use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::{Result, anyhow};
 use crate::output;
 use crate::progress::Bar;
@@ -46,9 +46,8 @@ pub(crate) struct SimplifyArgs {
     /// Also measure the change with fresh rays, over all eyes and for the worst one
     #[arg(long, help_heading = "Output")]
     report: bool,
-    /// Print the result as JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
+    #[command(flatten)]
+    json: JsonArg,
 }
 
 pub(crate) fn run(args: &SimplifyArgs, Verbosity { show_progress, .. }: Verbosity) -> Result<Done> {

@@ -2,10 +2,8 @@
 
 use super::SimplifyArgs;
 use crate::error::Result;
-use crate::output::{bytes, count, percent, seconds};
+use crate::output::{JsonSchema, Serialize, bytes, count, percent, seconds_of, share};
 use crate::simplification::{Rounded, SingleSided, Written};
-use schemars::JsonSchema;
-use serde::Serialize;
 use sightlines::cells::Scene;
 use sightlines::geometry::Point3;
 use sightlines::simplify::estimate::interval;
@@ -168,7 +166,7 @@ impl fmt::Display for Outcome {
         let table = self.table.as_ref().map_or(String::new(), |table| format!(", and the table {table}"));
         let method = if self.method == "none" { "no method" } else { self.method };
         writeln!(f, "eyes           in {}; hidden by {method}{table}", boxes(self.n_volumes))?;
-        let share = |n: usize| percent(if self.n_before > 0 { n as f64 / self.n_before as f64 } else { 0.0 });
+        let share = |n: usize| percent(share(n as f64, self.n_before as f64));
         writeln!(f, "before         {}", count(self.n_before as u64, "triangle"))?;
         if self.n_without_area > 0 {
             writeln!(f, "without area   {}", self.n_without_area)?;
@@ -181,23 +179,14 @@ impl fmt::Display for Outcome {
             writeln!(f, "merged         {} more into {}", self.n_merged_away, self.n_merged)?;
         }
         writeln!(f, "left           {}, {}", self.n_left, share(self.n_left))?;
-        writeln!(
-            f,
-            "promised       {} of the view changes at most, for every eye{}; {} were allowed",
-            parts(self.bound),
-            self.single_sided,
-            parts(self.budget)
-        )?;
+        let ([bound, budget], eye) = ([self.bound, self.budget].map(parts), self.single_sided);
+        writeln!(f, "promised       {bound} of the view changes at most, for every eye{eye}; {budget} were allowed")?;
         if let Some(report) = &self.report {
             let [x, y, z] = report.worst_eye;
             writeln!(f, "measured       {} of {} rays meet another face", parts(report.changed), report.n_rays)?;
             writeln!(f, "               {} at the worst eye, {x},{y},{z}", parts(report.worst))?;
-            writeln!(
-                f,
-                "               {} another object, {} another object or depth",
-                parts(report.other_object),
-                parts(report.moved)
-            )?;
+            let [object, moved] = [report.other_object, report.moved].map(parts);
+            writeln!(f, "               {object} another object, {moved} another object or depth")?;
             let [low, high] = report.estimate_interval.map(parts);
             writeln!(
                 f,
@@ -216,7 +205,7 @@ impl fmt::Display for Outcome {
         if let Some(rounded) = self.rounded {
             writeln!(f, "rounded        {rounded}")?;
         }
-        writeln!(f, "time           {}", seconds(Duration::from_secs_f64(self.seconds)))
+        writeln!(f, "time           {}", seconds_of(self.seconds))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::outcome::Outcome;
 use crate::buffers::method_failed;
-use crate::command::{Done, Verbosity};
+use crate::command::{Done, JsonArg, Verbosity};
 use crate::commands::build::region::RegionArgs;
 use crate::error::{Result, anyhow, bail};
 use crate::input::no_occluder;
@@ -50,9 +50,8 @@ pub(crate) struct TilesBuildArgs {
     /// The folder of the world: a new one, or that of an earlier bake, from which tiles that have not changed are kept
     #[arg(short, long, help_heading = "Output", value_name = "FOLDER")]
     pub(crate) output: PathBuf,
-    /// Print the result as JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
+    #[command(flatten)]
+    json: JsonArg,
 }
 
 pub(crate) fn run(args: &TilesBuildArgs, Verbosity { show_progress, .. }: Verbosity) -> Result<Done> {

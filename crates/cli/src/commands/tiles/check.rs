@@ -1,11 +1,9 @@
 //! `tiles check`: whether the files of a baked world are whole and belong together.
 
-use crate::command::{Done, Verbosity};
+use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::Result;
-use crate::output::{bytes, count};
+use crate::output::{JsonSchema, Serialize, bytes, count};
 use crate::progress::Bar;
-use schemars::JsonSchema;
-use serde::Serialize;
 use sightlines::tiles::{TileTables, World};
 use std::fmt;
 use std::path::PathBuf;
@@ -16,9 +14,8 @@ pub(crate) struct TilesCheckArgs {
     /// The folder of the world
     #[arg(value_name = "FOLDER")]
     world: PathBuf,
-    /// Print the result as JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
+    #[command(flatten)]
+    json: JsonArg,
 }
 
 /// What was read.

@@ -1,11 +1,9 @@
 //! `tiles query`: what may be seen from a point of a baked world.
 
-use crate::command::{Done, Verbosity};
+use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::Result;
-use crate::output::count;
+use crate::output::{JsonSchema, Serialize, count};
 use crate::place::Point;
-use schemars::JsonSchema;
-use serde::Serialize;
 use sightlines::tiles::{Seen, TileId, TileScratch, TileTables, World};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -23,9 +21,8 @@ pub(crate) struct TilesQueryArgs {
     /// The eye, in scene units; exit code 1 outside every cell, where everything may be visible
     #[arg(long, help_heading = "Viewer", value_name = "X,Y,Z", allow_hyphen_values = true)]
     eye: Point,
-    /// Print the result as JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
+    #[command(flatten)]
+    json: JsonArg,
 }
 
 /// What is seen of a tile.

@@ -7,7 +7,7 @@ mod proofs;
 mod truth;
 mod violations;
 
-use crate::command::{Done, Verbosity};
+use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::{Result, anyhow};
 use crate::input;
 use crate::input::refuse;
@@ -18,10 +18,9 @@ use crate::surfaces::SurfaceArgs;
 use crate::unproven::Unproven;
 use crate::{output, tables};
 use outcome::{Outcome, With};
-use sightlines::formats::InputKind;
 use sightlines::pvs::Table;
 use sightlines::verify::{ProofFindings, VerifyOptions, can_be_proven, verify};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 use violations::Violations;
 
@@ -68,13 +67,9 @@ pub(crate) struct VerifyArgs {
     /// Draw the first violating ray, on the plan or on the floor where it starts
     #[arg(long, help_heading = "Output", value_name = "OUT.svg|OUT.png")]
     draw: Option<PathBuf>,
-    /// Print the result as JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
+    #[command(flatten)]
+    json: JsonArg,
 }
-
-/// Bytes of blocks of a packed table that are kept while it is unpacked.
-const CACHE: usize = 64 << 20;
 
 pub(crate) fn run(args: &VerifyArgs, Verbosity { show_progress, .. }: Verbosity) -> Result<Done> {
     if let Some(picture) = &args.draw {
@@ -84,7 +79,7 @@ pub(crate) fn run(args: &VerifyArgs, Verbosity { show_progress, .. }: Verbosity)
     let own = own::read(&args.table, &args.scene, args.map.as_deref(), args.prt.as_deref())?;
     let table = match &own {
         Some(own) => &own.table,
-        None => &read_table(&args.table)?,
+        None => &tables::read(&args.table)?,
     };
     // What the table was built with holds without being said again.
     let options = args.surfaces.options_with(table.info());
@@ -139,13 +134,4 @@ pub(crate) fn run(args: &VerifyArgs, Verbosity { show_progress, .. }: Verbosity)
 fn unproven(table: &Table) -> Option<Unproven> {
     let found = || ProofFindings::without_proofs(table);
     (!can_be_proven(table)).then(|| Unproven::new(table, &found()))
-}
-
-/// Reads a table of either kind.
-fn read_table(path: &Path) -> Result<Table> {
-    if input::kind_of(path)? != Some(InputKind::Packed) {
-        return input::table(path);
-    }
-    let failed = |source| anyhow!("{}: {source}", path.display());
-    tables::packed(path, CACHE)?.to_table().map_err(failed)
 }

@@ -3,12 +3,10 @@
 use super::own::About;
 use super::proofs::ProofOutcome;
 use super::violations::{ReportedViolation, Violations};
-use crate::facts::FrameFacts;
-use crate::output::{count, percent, seconds};
+use crate::output::{JsonSchema, Serialize, count, percent, seconds_of};
 use crate::unproven::Unproven;
-use schemars::JsonSchema;
-use serde::Serialize;
 use sightlines::pvs::Frame;
+use sightlines::report::FrameFacts;
 use sightlines::verify::{Confirmed, Findings, Remarks, Violation};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -323,7 +321,7 @@ impl fmt::Display for Outcome {
         if let Some(picture) = &self.picture {
             writeln!(f, "picture        {picture}")?;
         }
-        writeln!(f, "time           {}", seconds(Duration::from_secs_f64(self.seconds)))?;
+        writeln!(f, "time           {}", seconds_of(self.seconds))?;
         match self.n_violations {
             0 if self.is_true && !self.checked.has_any() => {
                 writeln!(

@@ -3,9 +3,7 @@
 use crate::error::{Result, anyhow, bail};
 use crate::input;
 use crate::map_portals::{do_not_fit, portals_for};
-use crate::output::{bytes, count};
-use schemars::JsonSchema;
-use serde::Serialize;
+use crate::output::{JsonSchema, Serialize, bytes, count};
 use sightlines::bake::BakeError;
 use sightlines::formats::InputKind;
 use sightlines::formats::quake::{Prt, read_bsp, read_prt};

@@ -1,9 +1,7 @@
 //! Proofs that `build --certify` wrote, checked against their table.
 
 use crate::error::{ErrorAbout, Result, anyhow, bail};
-use crate::output::{bytes, count, seconds};
-use schemars::JsonSchema;
-use serde::Serialize;
+use crate::output::{JsonSchema, Serialize, bytes, count, seconds_of};
 use sightlines::certificates::Refusal;
 use sightlines::pvs::Table;
 use sightlines::verify::{
@@ -181,7 +179,7 @@ impl fmt::Display for ProofOutcome {
             )?;
             return writeln!(f, "               not checked; build the table with --certify again, or remove the file");
         }
-        let time = seconds(Duration::try_from_secs_f64(self.seconds).unwrap_or_default());
+        let time = seconds_of(self.seconds);
         writeln!(f, "proofs         {}, {}, checked in {time}", self.file, bytes(self.n_bytes as u64))?;
         let [shown, hidden] =
             [(self.n_visible, "visible"), (self.n_hidden, "hidden")].map(|(n, what)| count(n, &format!("{what} pair")));

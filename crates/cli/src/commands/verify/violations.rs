@@ -1,7 +1,6 @@
 //! The violations that are reported.
 
-use schemars::JsonSchema;
-use serde::Serialize;
+use crate::output::{JsonSchema, Serialize};
 use sightlines::verify::{Findings, OwnViolation, OwnVisibility, VerifyOptions, Violation};
 use std::collections::BTreeMap;
 

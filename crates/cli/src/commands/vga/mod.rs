@@ -4,7 +4,7 @@ mod kind;
 pub(crate) mod outcome;
 mod points;
 
-use crate::command::{Done, Verbosity};
+use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::{ErrorAbout, Result, anyhow, bail};
 use crate::input;
 use crate::kept::{self, Keeping, Kept, ResumeArgs};
@@ -26,7 +26,7 @@ use sightlines::isovist::{Touch, WallMesh};
 use sightlines::progress::memory::{self, Needs};
 use sightlines::report::{Field, MAX_SIZE, MIN_SIZE, PointColumn, field_png, field_svg, points_csv, points_geojson};
 use sightlines::visibility_graph::{
-    Analysis, AnalysisOptions, Effort, Group, Measure, Points, Turns, UNDEFINED, VisibilityGraph,
+    Analysis, AnalysisOptions, Effort, Group, Measure, MeasureSet, Points, Turns, UNDEFINED, VisibilityGraph,
 };
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -64,9 +64,9 @@ pub(crate) struct VgaArgs {
         help_heading = "Method",
         value_name = "NAME[,NAME...]",
         value_delimiter = ',',
-        value_parser = one_of(&Choice::all(), Choice::name, Choice::about)
+        value_parser = one_of(&MeasureSet::all(), MeasureSet::name, about)
     )]
-    measures: Vec<Choice>,
+    measures: Vec<MeasureSet>,
     /// The most steps that count in global measures [default: any number]
     #[arg(long, help_heading = "Method", value_name = "N")]
     radius: Option<u32>,
@@ -78,11 +78,11 @@ pub(crate) struct VgaArgs {
     angular_radius: Option<f64>,
     /// Where metric and angular paths may turn
     #[arg(long, help_heading = "Method", value_name = "WHERE", default_value = "near-walls")]
-    #[arg(value_parser = one_of(&[Turns::NearWalls, Turns::Anywhere], turns_name, turns_about))]
+    #[arg(value_parser = one_of(&Turns::ALL, Turns::name, turns_about))]
     turns: Turns,
     /// Whether a line of sight that touches a wall without crossing it is blocked
     #[arg(long, help_heading = "Method", value_name = "HOW", default_value = "blocks")]
-    #[arg(value_parser = one_of(&[Touch::Blocks, Touch::Passes], touch_name, touch_about))]
+    #[arg(value_parser = one_of(&Touch::ALL, Touch::name, touch_about))]
     touch: Touch,
     /// Number of threads; 0 uses every core
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::numbers::threads)]
@@ -102,57 +102,19 @@ pub(crate) struct VgaArgs {
     /// What to write, by the ending of its name: .csv, .geojson, or a picture as .svg or .png
     #[arg(short, long, help_heading = "Output", value_name = "OUT")]
     output: PathBuf,
-    /// Print the result as JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
+    #[command(flatten)]
+    json: JsonArg,
 }
 
-/// An entry of `--measures`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Choice {
-    All,
-    Group(Group),
-    One(Measure),
-}
-
-impl Choice {
-    fn all() -> Vec<Self> {
-        let groups = Group::ALL.into_iter().map(Self::Group);
-        std::iter::once(Self::All).chain(groups).chain(Measure::ALL.into_iter().map(Self::One)).collect()
-    }
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::All => "all",
-            Self::Group(group) => group.name(),
-            Self::One(measure) => measure.name(),
-        }
-    }
-
-    fn about(self) -> &'static str {
-        match self {
-            Self::All => "All measures",
-            Self::Group(Group::Local) => "What a point sees, and what sees that: as set if nothing is named",
-            Self::Group(Group::Global) => "How many steps all others are away",
-            Self::Group(Group::Metric) => "How long the shortest paths to all others are",
-            Self::Group(Group::Angular) => "How much paths to all others turn",
-            Self::One(measure) => measure.title(),
-        }
-    }
-
-    fn has(self, measure: Measure) -> bool {
-        match self {
-            Self::All => true,
-            Self::Group(group) => measure.group() == group,
-            Self::One(one) => measure == one,
-        }
-    }
-}
-
-const fn turns_name(turns: Turns) -> &'static str {
-    match turns {
-        Turns::NearWalls => "near-walls",
-        Turns::Anywhere => "anywhere",
+/// What the entries of `--measures` are.
+const fn about(measures: MeasureSet) -> &'static str {
+    match measures {
+        MeasureSet::All => "All measures",
+        MeasureSet::Group(Group::Local) => "What a point sees, and what sees that: as set if nothing is named",
+        MeasureSet::Group(Group::Global) => "How many steps all others are away",
+        MeasureSet::Group(Group::Metric) => "How long the shortest paths to all others are",
+        MeasureSet::Group(Group::Angular) => "How much paths to all others turn",
+        MeasureSet::One(measure) => measure.title(),
     }
 }
 
@@ -160,13 +122,6 @@ const fn turns_about(turns: Turns) -> &'static str {
     match turns {
         Turns::NearWalls => "At points next to a wall, as in depthmapX",
         Turns::Anywhere => "At any point: slower, and sometimes a little shorter",
-    }
-}
-
-const fn touch_name(touch: Touch) -> &'static str {
-    match touch {
-        Touch::Blocks => "blocks",
-        Touch::Passes => "passes",
     }
 }
 
@@ -217,10 +172,7 @@ pub(crate) fn run(args: &VgaArgs, Verbosity { show_progress, .. }: Verbosity) ->
         Ok((analysed, columns))
     });
     // Results are of use until the output is written.
-    if let Some(interrupted) = kept.finish(written.is_ok()) {
-        bail!("{interrupted}");
-    }
-    let (Analysed { graph, graph_seconds, measure_seconds, .. }, columns) = written?;
+    let (Analysed { graph, graph_seconds, measure_seconds, .. }, columns) = kept.end(written)?;
     let outcome = Outcome {
         plan: args.plan.display().to_string(),
         n_walls: walls(&plan).len(),
@@ -334,9 +286,9 @@ fn walls(plan: &Plan) -> Vec<Segment2> {
 fn measures(args: &VgaArgs, kind: Kind) -> Vec<Measure> {
     let mut named = args.measures.clone();
     if named.is_empty() && !(kind.is_picture() && args.measure.is_some()) {
-        named.push(Choice::Group(Group::Local));
+        named.push(MeasureSet::Group(Group::Local));
     }
-    named.extend(args.measure.map(Choice::One));
+    named.extend(args.measure.map(MeasureSet::One));
     Measure::ALL.into_iter().filter(|&measure| named.iter().any(|choice| choice.has(measure))).collect()
 }
 

@@ -1,11 +1,8 @@
 //! What was measured.
 
-use crate::output::{bytes, count, seconds};
-use schemars::JsonSchema;
-use serde::Serialize;
+use crate::output::{JsonSchema, Serialize, bytes, count, seconds_of};
 use sightlines::visibility_graph::{Measure, UNDEFINED};
 use std::fmt;
-use std::time::Duration;
 
 /// The measures of the points of a plan.
 #[derive(Debug, Serialize, JsonSchema)]
@@ -85,13 +82,8 @@ impl fmt::Display for Outcome {
         }
         let pairs = count(self.n_visible_pairs, "pair");
         writeln!(f, "graph          {pairs} that see each other, {}", bytes(self.n_graph_bytes as u64))?;
-        let time = |s: f64| seconds(Duration::from_secs_f64(s));
-        writeln!(
-            f,
-            "time           {} for the graph, {} for measures",
-            time(self.graph_seconds),
-            time(self.measure_seconds)
-        )?;
+        let [graph, measures] = [self.graph_seconds, self.measure_seconds].map(seconds_of);
+        writeln!(f, "time           {graph} for the graph, {measures} for measures")?;
         for Range { title, unit, n_values, minimum, mean, maximum, .. } in &self.measures {
             let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
             match (minimum, mean, maximum) {

@@ -2,24 +2,17 @@
 
 mod scene;
 
-use crate::command::{Done, Verbosity};
+use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::{ErrorAbout, Result, anyhow};
-use crate::output::{self, bytes, count};
+use crate::output::{self, JsonSchema, Serialize, bytes, count};
 use crate::plans::PlanArgs;
 use crate::reasons::reasons;
 use crate::surfaces::SurfaceArgs;
-use crate::{input, tables, walk_path};
-use schemars::JsonSchema;
-use serde::Serialize;
-use sightlines::formats::InputKind;
-use sightlines::pvs::Table;
+use crate::{tables, walk_path};
 use sightlines::viewer::{Frame, Page};
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-
-/// Bytes of blocks of a packed table that are kept while it is unpacked.
-const CACHE: usize = 64 << 20;
 
 /// Arguments of `view`.
 #[derive(Debug, clap::Args)]
@@ -60,9 +53,8 @@ pub(crate) struct ViewArgs {
     /// The page to write
     #[arg(short, long, help_heading = "Output", value_name = "OUT.html")]
     output: PathBuf,
-    /// Print the result as JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
+    #[command(flatten)]
+    json: JsonArg,
 }
 
 pub(crate) fn run(args: &ViewArgs, Verbosity { show_progress, .. }: Verbosity) -> Result<Done> {
@@ -70,9 +62,9 @@ pub(crate) fn run(args: &ViewArgs, Verbosity { show_progress, .. }: Verbosity) -
     let inputs: Vec<&Path> =
         std::iter::once(args.table.as_path()).chain(others.into_iter().filter_map(Option::as_deref)).collect();
     output::check(&inputs, &[&args.output])?;
-    let table = read(&args.table)?;
+    let table = tables::read(&args.table)?;
     let figure = args.scene.as_ref().map(|path| scene::figure(path, args, &table)).transpose()?;
-    let against = args.against.as_deref().map(read).transpose()?;
+    let against = args.against.as_deref().map(tables::read).transpose()?;
     let name = args.table.file_name().unwrap_or_default().to_string_lossy();
     let reasons = reasons(&table, args.lines as usize, show_progress);
     let page = Page {
@@ -104,15 +96,6 @@ pub(crate) fn run(args: &ViewArgs, Verbosity { show_progress, .. }: Verbosity) -
             .map_err(|error| anyhow!("{}: was written, but no browser could be started: {error}", page.display()))
     };
     Ok(done.then(show))
-}
-
-/// Reads a table of either kind.
-fn read(path: &Path) -> Result<Table> {
-    if input::kind_of(path)? == Some(InputKind::Packed) {
-        let packed = tables::packed(path, CACHE)?;
-        return packed.to_table().in_file(path);
-    }
-    input::table(path)
 }
 
 fn frames(path: &Path, dimension: u8) -> Result<Vec<Frame>> {

@@ -1,10 +1,9 @@
 //! `vis`: the visibility of a Quake map.
 
-mod certify;
 pub(crate) mod outcome;
 mod sounds;
 
-use crate::command::{Done, Verbosity};
+use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::{Result, anyhow, bail};
 pub(crate) use outcome::Outcome;
 pub(crate) use sounds::Sound;
@@ -16,7 +15,6 @@ use crate::map_portals::{MapPortals, do_not_fit, portal_file, portals_for};
 use crate::memory::MemoryArgs;
 use crate::output;
 use crate::progress::Bar;
-use certify::certify;
 use sightlines::bake::{PrtBakeError, PrtOptions, portals_need, vis_map};
 use sightlines::checkpoint::{Identity, Inputs};
 use sightlines::formats::InputKind;
@@ -54,9 +52,8 @@ pub(crate) struct VisArgs {
     /// The map to write [default: the input]
     #[arg(short, long, help_heading = "Output", value_name = "OUT.bsp")]
     pub(crate) output: Option<PathBuf>,
-    /// Print the result as JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
+    #[command(flatten)]
+    json: JsonArg,
 }
 
 impl VisArgs {
@@ -72,7 +69,7 @@ impl VisArgs {
             certify: None,
             silence: Vec::new(),
             output: None,
-            json: false,
+            json: JsonArg::default(),
         }
     }
 }
@@ -161,7 +158,8 @@ pub(crate) fn compute(args: &VisArgs, run: VisRun<'_, '_>) -> Result<Outcome> {
     // Before anything is written: a table that is proven wrong should not be.
     let certified = args.certify.map(|n| {
         let bar = Bar::new("proofs", run.show_progress);
-        certify(&prt_path, &map.graph, &map.clusters.seen, n, args.fast, &bar)
+        let proven = map.prove_some(n, args.fast, |done, all| bar.set(done, all));
+        proven.map_err(|error| anyhow!("{}: {error}; nothing was written", prt_path.display()))
     });
     let certified = certified.transpose()?;
     if let Err(error) = output::save(out, &map.bytes) {

@@ -1,16 +1,13 @@
 //! The report of `vis`.
 
-use super::certify::Certified;
 use crate::clusters::Clusters;
-use crate::output::{bytes, count, seconds};
-use schemars::JsonSchema;
-use serde::Serialize;
+use crate::output::{JsonSchema, Serialize, bytes, count, seconds_of};
 use sightlines::bake::VisMap;
+use sightlines::bake::quake::{ProvenPairs, SampledProofs};
 use sightlines::formats::quake::Bsp;
 use sightlines::progress::memory;
 use std::fmt;
 use std::path::Path;
-use std::time::Duration;
 
 /// The map that was written.
 #[derive(Debug, Serialize, JsonSchema)]
@@ -30,7 +27,7 @@ pub(crate) struct Outcome {
     /// Whether an interrupted run was resumed.
     pub(super) resumed: bool,
     /// With `--certify`: what was proven; null without.
-    pub(super) certified: Option<Certified>,
+    pub(super) certified: Option<SampledProofs>,
     /// Bytes of the map.
     pub(crate) n_bytes: usize,
     /// Seconds in all, reading and writing included.
@@ -72,11 +69,28 @@ impl fmt::Display for Outcome {
             write!(f, "{}", self.clusters.undecided_pairs())?;
         }
         if let Some(certified) = &self.certified {
-            write!(f, "{certified}")?;
+            write_proofs(f, certified)?;
         }
-        let all = seconds(Duration::from_secs_f64(self.seconds));
+        let all = seconds_of(self.seconds);
         let run = if self.resumed { ", in this run" } else { "" };
         writeln!(f, "time           {} to compute visibility, {all} in all{run}", self.clusters.time())?;
         self.peak_bytes.map_or(Ok(()), |peak| writeln!(f, "memory         {} at most", bytes(peak)))
     }
+}
+
+/// The lines about proofs of some pairs.
+fn write_proofs(f: &mut fmt::Formatter<'_>, proofs: &SampledProofs) -> fmt::Result {
+    for (what, proven) in [("visible", &proofs.visible), ("hidden", &proofs.hidden)] {
+        let ProvenPairs { n_picked, n_accepted, n_loose, n_too_many, n_undecided } = proven;
+        write!(f, "certified      {n_accepted} of {} checked", count(*n_picked as u64, &format!("{what} pair")))?;
+        for (n, why) in
+            [(n_loose, "hidden after all"), (n_too_many, "with too many sequences"), (n_undecided, "undecided")]
+        {
+            if *n > 0 {
+                write!(f, ", {n} {why}")?;
+            }
+        }
+        writeln!(f)?;
+    }
+    Ok(())
 }

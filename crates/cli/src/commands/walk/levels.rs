@@ -1,10 +1,8 @@
 //! What is drawn along a walk with the levels of a folder, and without.
 
 use crate::error::{ErrorAbout, Result, bail};
-use crate::output::percent;
+use crate::output::{JsonSchema, Serialize, percent, share};
 use crate::tables::Cells;
-use schemars::JsonSchema;
-use serde::Serialize;
 use sightlines::eye_to_cell::View;
 use sightlines::formats::levels::{INDEX_NAME, read_levels_index};
 use sightlines::walkthrough::{LevelIndex, LevelSize, LevelsDrawn};
@@ -55,26 +53,19 @@ pub(super) fn drawn<C: Cells>(folder: &Path, cells: &C, file: &Path, views: &[Vi
         n_frames,
         n_with_level,
         without: index.n_triangles,
-        with_mean: if n_frames > 0 { n_triangles as f64 / n_frames as f64 } else { 0.0 },
+        with_mean: share(n_triangles as f64, n_frames as f64),
         with_most: most,
     })
 }
 
 impl fmt::Display for Drawn {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let share = |n: f64| percent(if self.without > 0 { n / self.without as f64 } else { 0.0 });
+        let [of_mean, of_most] =
+            [self.with_mean, self.with_most as f64].map(|n| percent(share(n, self.without as f64)));
         let (mean, most) = (self.with_mean, self.with_most);
-        writeln!(
-            f,
-            "levels         {} of {}, in {} of {} frames inside",
-            self.n_levels, self.folder, self.n_with_level, self.n_frames
-        )?;
+        let Self { folder, n_levels, n_frames, n_with_level, .. } = self;
+        writeln!(f, "levels         {n_levels} of {folder}, in {n_with_level} of {n_frames} frames inside")?;
         writeln!(f, "triangles      {} a frame without levels", self.without)?;
-        writeln!(
-            f,
-            "               {mean:.1} with levels on average, {}; at most {most}, {}",
-            share(mean),
-            share(most as f64)
-        )
+        writeln!(f, "               {mean:.1} with levels on average, {of_mean}; at most {most}, {of_most}")
     }
 }

@@ -3,7 +3,7 @@
 mod levels;
 pub(crate) mod outcome;
 
-use crate::command::{Done, Verbosity};
+use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::{ErrorAbout, Result, anyhow, bail};
 use crate::output;
 use crate::progress::Bar;
@@ -39,7 +39,7 @@ pub(crate) struct WalkArgs {
     #[arg(long, help_heading = "Walk", value_name = "S", default_value_t = 1, conflicts_with = "path")]
     seed: u64,
     /// Distance from frame to frame of a random walk, in scene units [default: 1/400 of the scene's diagonal]
-    #[arg(long, help_heading = "Walk", value_name = "UNITS", value_parser = step, allow_hyphen_values = true, conflicts_with = "path")]
+    #[arg(long, help_heading = "Walk", value_name = "UNITS", value_parser = crate::numbers::above_zero, allow_hyphen_values = true, conflicts_with = "path")]
     step: Option<f64>,
     #[command(flatten)]
     lens: LensArgs,
@@ -69,16 +69,8 @@ pub(crate) struct WalkArgs {
     /// The numbers to write as CSV, one line for each method
     #[arg(long, help_heading = "Output", value_name = "OUT.csv")]
     csv: Option<PathBuf>,
-    /// Print the result as JSON
-    #[arg(long, help_heading = "Output")]
-    json: bool,
-}
-
-fn step(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(x) if x.is_finite() && x > 0.0 => Ok(x),
-        _ => Err("not a number above 0".to_owned()),
-    }
+    #[command(flatten)]
+    json: JsonArg,
 }
 
 fn steps(text: &str) -> Result<Budget, String> {

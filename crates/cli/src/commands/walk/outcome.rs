@@ -2,10 +2,8 @@
 
 use super::WalkArgs;
 use super::levels::Drawn;
-use crate::output::{bytes, count};
+use crate::output::{JsonSchema, Serialize, bytes, count, share};
 use crate::tables::Cells;
-use schemars::JsonSchema;
-use serde::Serialize;
 use sightlines::eye_to_cell::Budget;
 use sightlines::report::WalkBar;
 use sightlines::walkthrough::{LeftToDraw, MethodSums, WalkMeasured};
@@ -93,11 +91,6 @@ struct Kept {
     share_of_cell_to_cell: f64,
     /// The same by the number in the table.
     share_of_all: f64,
-}
-
-/// A quotient; 0 / 0 is 0.
-fn share(part: f64, whole: f64) -> f64 {
-    if whole > 0.0 { part / whole } else { 0.0 }
 }
 
 fn micros(time: Duration) -> f64 {

@@ -1,6 +1,7 @@
 //! What commands print with `--json`: every object has a version, and `docs/json.md` lists its fields, no more and no less.
 
 mod commands;
+mod page;
 
 use crate::common::Folder;
 use commands::Results;
@@ -172,7 +173,7 @@ fn differences(page: &str, results: &[(&str, Value)]) -> Vec<String> {
 #[test]
 fn results_have_a_version_and_the_fields_on_the_page() {
     let results = Results::of_all_commands();
-    let page = &sightlines_cli::json_page();
+    let page = &page::page();
     let wrong = differences(page, &results);
     assert!(wrong.is_empty(), "{} differences:\n{}", wrong.len(), wrong.join("\n"));
     assert!(results.len() > 60 && sections(page).len() > 30, "{} results", results.len());
@@ -220,7 +221,7 @@ fn every_command_with_json_is_on_the_page() {
     }
     let folder = Folder::new();
     let help = folder.run(&["--help"]).expect(0).out;
-    let page = &sightlines_cli::json_page();
+    let page = &page::page();
     let list = help.split_once("Commands:").expect("a list of commands").1;
     let of_json = |command: &&str| {
         let args = match *command {
@@ -258,7 +259,7 @@ fn a_table_is_not_written_as_json() {
 /// The page in the documentation; `BLESS=1` writes it.
 #[test]
 fn the_page_is_that_of_the_program() {
-    let (path, page) = (concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/json.md"), sightlines_cli::json_page());
+    let (path, page) = (concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/json.md"), page::page());
     if std::env::var_os("BLESS").is_some_and(|v| v == "1") {
         std::fs::write(path, &page).unwrap();
     }

@@ -1,16 +1,16 @@
-//! The plane, its window and its texels as arguments.
+//! Planes, their windows and their texels as texts.
 
-use crate::error::{Result, anyhow, bail};
-use sightlines::geometry::{Aabb, CoordinateError, check_coordinate};
-use sightlines::multifocal::{MAX_TEXELS, Plane, Volume};
+use crate::{MAX_TEXELS, Plane, PlaneError, Volume};
+use sightlines_geometry::{Aabb, CoordinateError, check_coordinate};
 use std::fmt;
 use std::str::FromStr;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// A plane perpendicular to an axis, perhaps with a window.
+/// A plane perpendicular to an axis, perhaps with a window, as people write it: `z=20`, or `z=20:-4,-4,4,4` with the lower and the upper corner
+/// of the window along the two axes that follow (for y: z and x).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct PlaneArg {
+pub struct PlaneChoice {
     axis: usize,
     at: f64,
     window: Option<Window>,
@@ -19,59 +19,78 @@ pub(super) struct PlaneArg {
 /// Lower and upper corner along the two axes that follow the plane's.
 type Window = [[f64; 2]; 2];
 
-/// Why a text is not a plane.
+/// Why a text is not a plane, or the plane not one for a view volume.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub(super) enum PlaneArgError {
+#[non_exhaustive]
+pub enum PlaneChoiceError {
+    /// Neither an axis nor a place on it.
     #[error("a plane is an axis and a place on it, such as z=20 or z=20:-4,-4,4,4")]
     Shape,
+    /// Not four numbers.
     #[error("a window is four comma-separated numbers: the lower corner, then the upper one")]
     Window,
+    /// A part that is not a number.
     #[error("'{0}' is not a number")]
     Number(String),
+    /// A number that no coordinate can be.
     #[error(transparent)]
     Coordinate(#[from] CoordinateError),
+    /// The plane goes through the view volume.
+    #[error("the plane goes through the view volume, which reaches from {axis}={low} to {axis}={high}")]
+    Through {
+        /// The axis, by its name.
+        axis: &'static str,
+        /// Where the volume begins along it.
+        low: f64,
+        /// Where it ends.
+        high: f64,
+    },
+    /// The window or the texels are none.
+    #[error(transparent)]
+    Plane(#[from] PlaneError),
 }
 
-impl FromStr for PlaneArg {
-    type Err = PlaneArgError;
+impl FromStr for PlaneChoice {
+    type Err = PlaneChoiceError;
 
-    fn from_str(text: &str) -> Result<Self, PlaneArgError> {
-        let number = |part: &str| -> Result<f64, PlaneArgError> {
-            let x: f64 = part.trim().parse().map_err(|_| PlaneArgError::Number(part.trim().to_owned()))?;
+    fn from_str(text: &str) -> Result<Self, PlaneChoiceError> {
+        let number = |part: &str| -> Result<f64, PlaneChoiceError> {
+            let x: f64 = part.trim().parse().map_err(|_| PlaneChoiceError::Number(part.trim().to_owned()))?;
             Ok(check_coordinate(x)?)
         };
         let (plane, window) = text.split_once(':').map_or((text, None), |(plane, window)| (plane, Some(window)));
-        let (axis, at) = plane.split_once('=').ok_or(PlaneArgError::Shape)?;
-        let axis = AXES.iter().position(|name| axis.trim().eq_ignore_ascii_case(name)).ok_or(PlaneArgError::Shape)?;
-        let window = window.map(|window| -> Result<Window, PlaneArgError> {
+        let (axis, at) = plane.split_once('=').ok_or(PlaneChoiceError::Shape)?;
+        let axis =
+            AXES.iter().position(|name| axis.trim().eq_ignore_ascii_case(name)).ok_or(PlaneChoiceError::Shape)?;
+        let window = window.map(|window| -> Result<Window, PlaneChoiceError> {
             let parts: Vec<&str> = window.split(',').collect();
-            let &[u0, v0, u1, v1] = &parts[..] else { return Err(PlaneArgError::Window) };
+            let &[u0, v0, u1, v1] = &parts[..] else { return Err(PlaneChoiceError::Window) };
             Ok([[number(u0)?, number(v0)?], [number(u1)?, number(v1)?]])
         });
         Ok(Self { axis, at: number(at)?, window: window.transpose()? })
     }
 }
 
-impl fmt::Display for PlaneArg {
+impl fmt::Display for PlaneChoice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}={}", AXES[self.axis], self.at)
     }
 }
 
-impl PlaneArg {
-    /// The plane with its window and texels.
-    pub(super) fn plane(&self, volume: &Volume, scene: &Aabb<3>, texels: Texels) -> Result<Plane> {
+impl PlaneChoice {
+    /// The plane with its window and texels. Without a window it has that around the shadow of the scene's box, or, where the box is beside the
+    /// volume, around the box.
+    ///
+    /// # Errors
+    /// [`PlaneChoiceError::Through`] and [`PlaneChoiceError::Plane`].
+    pub fn plane(&self, volume: &Volume, scene: &Aabb<3>, texels: Texels) -> Result<Plane, PlaneChoiceError> {
         let (low, high) = (volume.bounds().min[self.axis], volume.bounds().max[self.axis]);
         if low <= self.at && self.at <= high {
-            let axis = AXES[self.axis];
-            bail!(
-                "--plane {self}: the plane goes through the view volume, which reaches from {axis}={low} to {axis}={high}"
-            );
+            return Err(PlaneChoiceError::Through { axis: AXES[self.axis], low, high });
         }
         let [min, max] = self.window.unwrap_or_else(|| self.shadow(volume.bounds(), scene));
         let texels = texels.of([0, 1].map(|k| max[k] - min[k]));
-        Plane::new(self.axis, self.at > high, self.at, min, max, texels)
-            .map_err(|source| anyhow!("--plane {self}: {source}"))
+        Ok(Plane::new(self.axis, self.at > high, self.at, min, max, texels)?)
     }
 
     /// The window around the shadow of a box: where lines from eyes through the part of it that is in front of the
@@ -99,29 +118,17 @@ impl PlaneArg {
                 let (v, e) = (end(0, [eyes.min[k], eyes.max[k]]), end(1, [scene.min[k], scene.max[k]]));
                 let (from, by) = (end(2, of_eyes), end(3, of_scene));
                 let place = v + (plane - from) / (by - from) * (e - v);
-                window = [window[0].map_at(i, |x| x.min(place)), window[1].map_at(i, |x| x.max(place))];
+                (window[0][i], window[1][i]) = (window[0][i].min(place), window[1][i].max(place));
             }
         }
         window
     }
 }
 
-/// A pair with one of its numbers changed.
-trait MapAt {
-    fn map_at(self, i: usize, change: impl FnOnce(f64) -> f64) -> Self;
-}
-
-impl MapAt for [f64; 2] {
-    fn map_at(mut self, i: usize, change: impl FnOnce(f64) -> f64) -> Self {
-        self[i] = change(self[i]);
-        self
-    }
-}
-
-/// How many texels.
+/// How many texels a window has, as people write it: `256`, or `64x48`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Texels {
-    /// Along the longer side.
+pub enum Texels {
+    /// Along the longer side; they are nearly square.
     Longer(u32),
     /// Along both.
     Both([u32; 2]),
@@ -162,16 +169,16 @@ mod tests {
 
     #[test]
     fn planes_are_parsed() {
-        let plane = |text: &str| text.parse::<PlaneArg>();
-        assert_eq!(plane("z=20"), Ok(PlaneArg { axis: 2, at: 20.0, window: None }));
+        let plane = |text: &str| text.parse::<PlaneChoice>();
+        assert_eq!(plane("z=20"), Ok(PlaneChoice { axis: 2, at: 20.0, window: None }));
         let window = Some([[-4.0, -3.0], [4.0, 1.5]]);
-        assert_eq!(plane("X=-1e1:-4,-3, 4,1.5"), Ok(PlaneArg { axis: 0, at: -10.0, window }));
-        assert_eq!([plane("20"), plane("w=2"), plane("")], [const { Err(PlaneArgError::Shape) }; 3]);
-        assert_eq!(plane("z=1:2,3,4"), Err(PlaneArgError::Window));
-        assert_eq!(plane("z=a"), Err(PlaneArgError::Number("a".into())));
-        assert_eq!(plane("z=1:2,3,4,b"), Err(PlaneArgError::Number("b".into())));
+        assert_eq!(plane("X=-1e1:-4,-3, 4,1.5"), Ok(PlaneChoice { axis: 0, at: -10.0, window }));
+        assert_eq!([plane("20"), plane("w=2"), plane("")], [const { Err(PlaneChoiceError::Shape) }; 3]);
+        assert_eq!(plane("z=1:2,3,4"), Err(PlaneChoiceError::Window));
+        assert_eq!(plane("z=a"), Err(PlaneChoiceError::Number("a".into())));
+        assert_eq!(plane("z=1:2,3,4,b"), Err(PlaneChoiceError::Number("b".into())));
         for bad in ["z=NaN", "z=inf", "y=1:0,0,1,1e300"] {
-            assert!(matches!(plane(bad), Err(PlaneArgError::Coordinate(_))), "{bad}");
+            assert!(matches!(plane(bad), Err(PlaneChoiceError::Coordinate(_))), "{bad}");
         }
     }
 
@@ -190,7 +197,7 @@ mod tests {
 
     #[test]
     fn windows_are_shadows() {
-        let plane = |axis: usize, at: f64| PlaneArg { axis, at, window: None };
+        let plane = |axis: usize, at: f64| PlaneChoice { axis, at, window: None };
         let b = |min, max| Aabb { min, max };
         let eyes = b([-1.0; 3], [1.0; 3]);
         // From -1 by way of 1 at a distance of 2, in all 4: as far again. From above by way of below likewise.

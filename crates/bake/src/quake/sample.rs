@@ -1,64 +1,89 @@
-//! Proofs for some of the pairs of a table, before it is written.
+//! Proofs for some of the pairs of a map, as a check of what is about to be written.
 
-use crate::error::{Result, anyhow};
-use crate::output::count;
-use crate::progress::Bar;
-use schemars::JsonSchema;
-use serde::Serialize;
-use sightlines::cells::{CellGraph, CellId, Convex};
-use sightlines::sightline::Verdict;
-use sightlines::stabtree::{ConvexDoubt, ConvexExplainer, ConvexVisibility, MOST_EXPLAINED, check_convex};
-use std::fmt;
-use std::path::Path;
+use super::VisMap;
+use sightlines_cells::{CellGraph, CellId, Convex};
+use sightlines_sightline::Verdict;
+use sightlines_stabtree::{ConvexDoubt, ConvexExplainer, ConvexVisibility, MOST_EXPLAINED, check_convex};
 
 /// What was proven of the pairs that were picked.
-#[derive(Debug, Default, PartialEq, Eq, Serialize, JsonSchema)]
-pub(super) struct Certified {
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+pub struct SampledProofs {
     /// Of the visible pairs that were picked.
-    visible: Proven,
+    pub visible: ProvenPairs,
     /// Of the hidden pairs that were picked: those where one cluster is next to another that the other one sees.
-    hidden: Proven,
+    pub hidden: ProvenPairs,
 }
 
 /// Proven pairs of a kind.
-#[derive(Debug, Default, PartialEq, Eq, Serialize, JsonSchema)]
-struct Proven {
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+pub struct ProvenPairs {
     /// Pairs that were picked.
-    n_picked: usize,
+    pub n_picked: usize,
     /// Pairs proven as listed, with a proof that the independent checker accepts.
-    n_accepted: usize,
+    pub n_accepted: usize,
     /// Pairs listed as visible but proven hidden: by a fast search, or undecided.
-    n_loose: usize,
+    pub n_loose: usize,
     /// Pairs given up because there were too many sequences of portals.
-    n_too_many: usize,
+    pub n_too_many: usize,
     /// Pairs with a sequence of portals that was not decided.
-    n_undecided: usize,
+    pub n_undecided: usize,
+}
+
+/// A proof about two clusters that contradicts what was found: our bug.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("clusters {} and {} are listed as {}, but {found}", pair[0], pair[1], if *listed { "visible" } else { "hidden" })]
+pub struct WrongPair {
+    /// The clusters.
+    pub pair: [u32; 2],
+    /// Whether they were found to see each other.
+    pub listed: bool,
+    /// What is proven, in words.
+    pub found: &'static str,
+}
+
+impl VisMap {
+    /// Explains `n` visible and `n` hidden pairs, the same ones each time, and checks what it finds by code that shares nothing with the search.
+    ///
+    /// * `fast`: whether the search was a fast one, which may list hidden pairs as visible
+    /// * `report`: takes how many pairs are done, and of how many
+    ///
+    /// # Errors
+    /// [`WrongPair`] if the map is wrong: for a hidden pair with a line, a visible one without (unless it is listed as undecided, or the search was a
+    /// fast one), and proofs that do not hold.
+    pub fn prove_some(
+        &self,
+        n: usize,
+        fast: bool,
+        report: impl FnMut(usize, usize),
+    ) -> Result<SampledProofs, WrongPair> {
+        sampled(&self.graph, &self.clusters.seen, n, fast, report)
+    }
 }
 
 /// Explains `n` visible and `n` hidden pairs, the same ones each time, and checks what it finds.
-///
-/// Refuses a table that is wrong: a hidden pair with a line, a visible one without (unless it is listed as undecided,
-/// or the search was a fast one), and proofs that do not hold.
-pub(super) fn certify(
-    path: &Path,
+fn sampled(
     graph: &CellGraph<Convex>,
     seen: &ConvexVisibility,
     n: usize,
     fast: bool,
-    bar: &Bar,
-) -> Result<Certified> {
+    mut report: impl FnMut(usize, usize),
+) -> Result<SampledProofs, WrongPair> {
     let explainer = ConvexExplainer::new(graph);
     let (visible, hidden) = (spread(visible_pairs(seen), n), spread(border_pairs(graph, seen), n));
-    let mut certified = Certified::default();
+    let mut certified = SampledProofs::default();
     let all = visible.len() + hidden.len();
     let pairs = visible.iter().map(|p| (p, true)).chain(hidden.iter().map(|p| (p, false)));
     for (done, (&pair, listed)) in pairs.enumerate() {
-        bar.set(done, all);
+        report(done, all);
         let [a, b] = pair.map(CellId);
         let explanation = explainer.explain(a, b, MOST_EXPLAINED);
         let proven = if listed { &mut certified.visible } else { &mut certified.hidden };
         proven.n_picked += 1;
-        let wrong = |found| Err(contradiction(path, pair, listed, found));
+        let wrong = |found| Err(WrongPair { pair, listed, found });
         let shown = match explanation {
             Verdict::Undecided(ConvexDoubt::Limit(_)) => {
                 proven.n_too_many += 1;
@@ -82,12 +107,6 @@ pub(super) fn certify(
         }
     }
     Ok(certified)
-}
-
-/// A proof about two clusters that contradicts what the table lists: our bug.
-fn contradiction(path: &Path, [a, b]: [u32; 2], is_listed: bool, found: &str) -> anyhow::Error {
-    let listed = if is_listed { "visible" } else { "hidden" };
-    anyhow!("{}: clusters {a} and {b} are listed as {listed}, but {found}; nothing was written", path.display())
 }
 
 /// Pairs of different clusters that see each other, lower number first.
@@ -117,30 +136,12 @@ fn spread(pairs: Vec<[u32; 2]>, n: usize) -> Vec<[u32; 2]> {
     (0..n).map(|k| pairs[(2 * k + 1) * pairs.len() / (2 * n)]).collect()
 }
 
-impl fmt::Display for Certified {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (what, proven) in [("visible", &self.visible), ("hidden", &self.hidden)] {
-            let Proven { n_picked, n_accepted, n_loose, n_too_many, n_undecided } = proven;
-            write!(f, "certified      {n_accepted} of {} checked", count(*n_picked as u64, &format!("{what} pair")))?;
-            for (n, why) in
-                [(n_loose, "hidden after all"), (n_too_many, "with too many sequences"), (n_undecided, "undecided")]
-            {
-                if *n > 0 {
-                    write!(f, ", {n} {why}")?;
-                }
-            }
-            writeln!(f)?;
-        }
-        Ok(())
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sightlines::formats::quake::graph_of_prt;
-    use sightlines::formats::quake::prt::parse_prt;
-    use sightlines::stabtree::{ConvexOptions, ConvexSearch};
+    use sightlines_formats::quake::graph_of_prt;
+    use sightlines_formats::quake::prt::parse_prt;
+    use sightlines_stabtree::{ConvexOptions, ConvexSearch};
 
     /// Three rooms in a row, of which the first and the last do not see each other, and a fourth behind the last.
     const ROOMS: &str = "PRT1\n4\n3\n4 0 1 (8 0 0) (8 1 0) (8 1 1) (8 0 1)\n4 1 2 (16 6 0) (16 7 0) (16 7 1) (16 6 1)\n\
@@ -153,9 +154,8 @@ mod tests {
         (graph, search.finish())
     }
 
-    fn tried(graph: &CellGraph<Convex>, seen: &ConvexVisibility, fast: bool) -> Result<Certified, String> {
-        let bar = Bar::new("test", false);
-        certify(Path::new("a.prt"), graph, seen, 99, fast, &bar).map_err(|error| error.to_string())
+    fn tried(graph: &CellGraph<Convex>, seen: &ConvexVisibility, fast: bool) -> Result<SampledProofs, String> {
+        sampled(graph, seen, 99, fast, |_, _| {}).map_err(|error| error.to_string())
     }
 
     #[test]
@@ -182,7 +182,7 @@ mod tests {
         for &pair in &hidden {
             let mut other = with(pair, true);
             let error = tried(&graph, &other, false).unwrap_err();
-            assert!(error.ends_with("are listed as visible, but no line joins them; nothing was written"), "{error}");
+            assert!(error.ends_with("are listed as visible, but no line joins them"), "{error}");
             // An answer of unknown is not wrong.
             assert_eq!(tried(&graph, &other, true).unwrap().visible.n_loose, 1);
             other.undecided.push(pair);
@@ -193,7 +193,7 @@ mod tests {
             let other = with(pair, false);
             if border_pairs(&graph, &other).contains(&pair) {
                 let error = tried(&graph, &other, false).unwrap_err();
-                assert!(error.starts_with("a.prt: clusters ") && error.contains("but a line joins them"), "{error}");
+                assert!(error.starts_with("clusters ") && error.contains("but a line joins them"), "{error}");
                 n_refused += 1;
             }
         }
