@@ -189,10 +189,11 @@ impl Surfaces {
         }
         if self.n_single_sided_triangles > 0 {
             let behind = match self.backs {
-                Some(SeenBacks { n_at_most: 0, .. }) => ", none seen from behind".to_owned(),
-                Some(SeenBacks { n_at_most, n_by_rays }) => {
-                    format!(", {n_by_rays} to {n_at_most} of them seen from behind")
-                }
+                Some(SeenBacks { n_at_most: 0, .. }) => ", whose backs no viewer sees".to_owned(),
+                Some(SeenBacks { n_at_most, n_by_rays }) => format!(
+                    "; viewers see the backs of {n_by_rays} to {n_at_most}, through which engines show what is behind unless they \
+                     draw backs: see --single-sided"
+                ),
                 None => String::new(),
             };
             all.push(count(self.n_single_sided_triangles as u64, "single-sided triangle") + &behind);
