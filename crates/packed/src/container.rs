@@ -3,7 +3,7 @@
 use crate::bytes::{Place, u32_at, u64_at};
 use crate::error::{PackedError, PackedErrorKind as Kind};
 use crate::format::{END, ENTRY, FIXED, MAGIC, MAJOR, MAJOR_LARGE, OPTIONAL, SECTIONS, SizeClass, TAIL};
-use crate::source::Source;
+use crate::source::ByteSource;
 use sightlines_pvs::SectionId;
 use std::ops::Range;
 
@@ -37,7 +37,7 @@ impl ResidentPart {
     /// Reads and checks header, section table and sections; also returns the length of the file.
     ///
     /// Takes no more memory than the length of the file.
-    pub(crate) fn read(source: &impl Source) -> Result<(Self, u64), PackedError> {
+    pub(crate) fn read(source: &impl ByteSource) -> Result<(Self, u64), PackedError> {
         let fail = |offset: u64, kind| PackedError::new(None, offset, kind);
         let io = |offset: u64| move |error: std::io::Error| fail(offset, Kind::Io(error));
         let len = source.len().map_err(io(0))?;
@@ -129,7 +129,7 @@ impl ResidentPart {
 type Layout = Vec<(SectionId, Range<usize>, u32)>;
 
 /// The sections of a small file, and where they begin: header, section table, sections, blocks.
-fn small_layout(source: &impl Source, fixed: &[u8; FIXED], len: u64) -> Result<(u64, Layout), PackedError> {
+fn small_layout(source: &impl ByteSource, fixed: &[u8; FIXED], len: u64) -> Result<(u64, Layout), PackedError> {
     let fail = |offset: u64, kind| PackedError::new(None, offset, kind);
     let n_table = ENTRY as u64 * u64::from(u32_at(fixed, 12));
     let base = FIXED as u64 + n_table + 4;
@@ -151,7 +151,7 @@ fn small_layout(source: &impl Source, fixed: &[u8; FIXED], len: u64) -> Result<(
 }
 
 /// The sections of a large file, where they begin, and their length: header, blocks, sections, section table, tail.
-fn large_layout(source: &impl Source, fixed: &[u8; FIXED], len: u64) -> Result<(u64, usize, Layout), PackedError> {
+fn large_layout(source: &impl ByteSource, fixed: &[u8; FIXED], len: u64) -> Result<(u64, usize, Layout), PackedError> {
     let fail = |offset: u64, kind| PackedError::new(None, offset, kind);
     if len < (FIXED + TAIL) as u64 {
         return Err(fail(len, Kind::Cut));

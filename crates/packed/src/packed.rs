@@ -12,7 +12,7 @@ use crate::locate::{PointLocation, planes};
 use crate::masks;
 use crate::pages::Pages;
 use crate::rows::{DenseRows, Rows};
-use crate::source::Source;
+use crate::source::ByteSource;
 use sightlines_pvs::{Axis, CellId, DoorRecord, Frame, GeometryDigest, MirrorRecord, PlaneTree, SectionId, TableKind};
 use std::ops::Range;
 use std::sync::Arc;
@@ -23,7 +23,7 @@ use std::sync::Arc;
 /// kept until others need their space. Of a large file boxes and locator are read on demand too: see
 /// [`SizeClass`]. Any number of threads may query it at once.
 #[derive(Debug)]
-pub struct Packed<S: Source> {
+pub struct Packed<S: ByteSource> {
     pub(crate) source: S,
     pub(crate) resident: ResidentPart,
     pub(crate) index: Index,
@@ -99,7 +99,7 @@ impl Head {
     }
 }
 
-impl<S: Source> Packed<S> {
+impl<S: ByteSource> Packed<S> {
     /// Opens a file: reads and checks the resident part. At most `cache_bytes` of unpacked blocks will be kept; with 0
     /// every query reads its blocks anew.
     ///

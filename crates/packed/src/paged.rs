@@ -6,10 +6,10 @@ use crate::format::{self, NONE};
 use crate::locate::{NODE, for_each_leaf};
 use crate::packed::Packed;
 use crate::pages::{Page, Pages, box_at, corners};
-use crate::source::Source;
+use crate::source::ByteSource;
 use sightlines_pvs::{CellId, LocatorNode, polygon_may_contain};
 
-impl<S: Source> Packed<S> {
+impl<S: ByteSource> Packed<S> {
     /// Puts the cells that a box with finite corners touches into `out`, in any order, perhaps repeated. If `is_point`, the
     /// polygons of cells decide too, else they are taken for their boxes, which finds more. `pending` is scratch space.
     ///

@@ -21,24 +21,24 @@ use super::{Answer, Board, Kind, Method, Outcome, Sweep};
 use scene::{Gap, Scene, Sizes};
 use sightlines::geometry::Random;
 use sightlines::multifocal::mesh::{PatchOptions, patches};
-use sightlines::multifocal::{Buffer, Job, Measure, MultifocalBackend, Occluder};
+use sightlines::multifocal::{Buffer, BufferJob, Measure, MultifocalBackend, Occluder};
 use sightlines::multifocal_cpu::{Fast, Reference};
 use std::fmt::Debug;
 
 /// Fills the only buffer of a job.
-type Fill = fn(&Job<'_>) -> Buffer;
+type Fill = fn(&BufferJob<'_>) -> Buffer;
 
-fn render(backend: &mut dyn MultifocalBackend, job: &Job<'_>) -> Buffer {
+fn render(backend: &mut dyn MultifocalBackend, job: &BufferJob<'_>) -> Buffer {
     let mut out = Vec::new();
     backend.render(job, &mut out).expect("processors have no device to lose");
     out.swap_remove(0)
 }
 
-fn integers(job: &Job<'_>) -> Buffer {
+fn integers(job: &BufferJob<'_>) -> Buffer {
     render(&mut Fast::new(), job)
 }
 
-fn reference(job: &Job<'_>) -> Buffer {
+fn reference(job: &BufferJob<'_>) -> Buffer {
     render(&mut Reference, job)
 }
 
@@ -98,7 +98,7 @@ struct Found<'a> {
 }
 
 /// What a method fills; nothing if it panics.
-fn filled(fill: Fill, job: &Job<'_>) -> Option<Buffer> {
+fn filled(fill: Fill, job: &BufferJob<'_>) -> Option<Buffer> {
     let mut out = None;
     let answer = caught(|| {
         out = Some(fill(job));

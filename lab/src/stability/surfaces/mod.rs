@@ -19,7 +19,7 @@ use naive::Ordered;
 use scene::{PIXELS, Setting, View};
 use sightlines::geometry::Random;
 use sightlines::visible_surface::{
-    Bsp, BspOptions, DepthFormat, FaceMask, NOTHING, Newell, Painter, RayCaster, RenderInput, Schumacker,
+    BspOptions, DepthFormat, FaceBsp, FaceMask, NOTHING, Newell, Painter, RayCaster, RenderInput, Schumacker,
     SchumackerOptions, VisibleSurface, ZBuffer,
 };
 use std::fmt::Debug;
@@ -43,7 +43,7 @@ const EPSILON: f64 = 1e-6;
 const METHODS: [(Method, Draw); 16] = [
     (method("newell", Kind::Shipped), |v| drawn(v, &Newell)),
     (method("schumacker", Kind::Shipped), |v| drawn(v, &Schumacker::build(&v.faces, &SchumackerOptions::default()))),
-    (method("bsp", Kind::Shipped), |v| drawn(v, &Bsp::build(&v.faces, &BspOptions::default()))),
+    (method("bsp", Kind::Shipped), |v| drawn(v, &FaceBsp::build(&v.faces, &BspOptions::default()))),
     (method("zbuffer", Kind::Shipped), |v| drawn(v, &ZBuffer::new(DepthFormat::Exact))),
     (method("raycast", Kind::Reference), |v| drawn(v, &RayCaster::build(&v.faces))),
     (method("painter", Kind::Naive), |v| drawn(v, &Painter)),
