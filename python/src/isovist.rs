@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use rayon::prelude::*;
 use sightlines_geometry::{Aabb, Point2};
 use sightlines_isovist::{
-    Boundary, EyeError, Isovist, LimitError, Limits, Measures, MeshError, Sector, Touch, IsovistFinder, WallMesh,
+    Boundary, EyeError, Isovist, IsovistFinder, LimitError, Limits, Measures, MeshError, Sector, Touch, WallMesh,
 };
 use sightlines_progress::{Cancelled, Counter, Observer};
 

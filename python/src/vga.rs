@@ -10,8 +10,8 @@ use pyo3::prelude::*;
 use sightlines_geometry::Point2;
 use sightlines_progress::{Cancelled, Halt, Observer};
 use sightlines_visibility_graph::{
-    Analysis, AnalysisOptions, WorkOptions, GraphError, PixelGrid, GridError, Group, Measure, Points, Turns, UNDEFINED,
-    VisibilityGraph,
+    Analysis, AnalysisOptions, GraphError, GridError, Group, Measure, PixelGrid, Points, Turns, UNDEFINED,
+    VisibilityGraph, WorkOptions,
 };
 
 /// What was computed: points (n, 2), values by name, and how many pairs see each other.

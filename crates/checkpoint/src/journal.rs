@@ -5,7 +5,7 @@ use crate::error::StateError;
 use crate::index::Results;
 use crate::key::Key;
 use crate::lock::{lock, new_mark};
-use crate::records::{self, DIVISION, Owner, Place, record};
+use crate::records::{self, DIVISION, Owner, RecordSpan, record};
 use sightlines_progress::{Halt, Pass, Phase, UnitStore};
 use std::collections::BTreeMap;
 use std::fs::{self, File, OpenOptions};
@@ -272,7 +272,7 @@ fn append(results: &mut Results, phase: &str, unit: u64, result: &[u8]) -> io::R
         let _ = file.set_len(offset);
         return Err(error);
     }
-    results.add(phase, unit, Place { offset, n_bytes: record.len() as u64 });
+    results.add(phase, unit, RecordSpan { offset, n_bytes: record.len() as u64 });
     results.end = offset + record.len() as u64;
     Ok(())
 }

@@ -2,7 +2,7 @@
 
 use crate::edge::{NONE, next, previous};
 use crate::expand::{Rays, Visitor, Window};
-use crate::locate::Place;
+use crate::locate::MeshPlace;
 use crate::{EyeError, Touch, WallMesh};
 use sightlines_geometry::{Point2, Segment2, orient2d, polygon_contains};
 use sightlines_pvs::{CellId, CellRecord, Table, bits};
@@ -137,16 +137,16 @@ impl WallMesh {
     }
 
     /// Whether a wall leaves the eye strictly between the two sides of a triangle.
-    fn has_wall_between(&self, triangle: &Triangle, place: Place) -> bool {
+    fn has_wall_between(&self, triangle: &Triangle, place: MeshPlace) -> bool {
         let is_between =
             |corner: u32| triangle.is_right_of_left(self, corner) && triangle.is_left_of_right(self, corner);
         let is_wall = |edge: u32| self.edges[edge as usize].wall != NONE;
         match place {
-            Place::Inside(_) => false,
-            Place::OnEdge(edge) => {
+            MeshPlace::Inside(_) => false,
+            MeshPlace::OnEdge(edge) => {
                 is_wall(edge) && [edge, next(edge)].into_iter().any(|e| is_between(self.edges[e as usize].from))
             }
-            Place::OnCorner(edge) => self.leaving(edge).any(|out| {
+            MeshPlace::OnCorner(edge) => self.leaving(edge).any(|out| {
                 let ends = [(out, next(out)), (previous(out), previous(out))];
                 ends.into_iter().any(|(edge, to)| is_wall(edge) && is_between(self.edges[to as usize].from))
             }),

@@ -34,7 +34,7 @@ pub mod surround;
 pub mod union_method;
 pub mod volume;
 
-pub use adaptive::{Split, VolumeCounts};
+pub use adaptive::{Split, WorkDone};
 pub use backend::{BackendError, MultifocalBackend};
 pub use buffer::Buffer;
 pub use carry::Carry;

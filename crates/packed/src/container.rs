@@ -1,6 +1,6 @@
 //! Header, section table, sections: the resident part of a file, and the check that it is intact.
 
-use crate::bytes::{Place, u32_at, u64_at};
+use crate::bytes::{Origin, u32_at, u64_at};
 use crate::error::{PackedError, PackedErrorKind as Kind};
 use crate::format::{END, ENTRY, FIXED, MAGIC, MAJOR, MAJOR_LARGE, OPTIONAL, SECTIONS, SizeClass, TAIL};
 use crate::source::ByteSource;
@@ -22,7 +22,7 @@ pub(crate) struct ResidentPart {
 #[derive(Clone, Copy)]
 pub(crate) struct Section<'a> {
     pub(crate) bytes: &'a [u8],
-    pub(crate) place: Place,
+    pub(crate) place: Origin,
 }
 
 impl Section<'_> {
@@ -66,7 +66,7 @@ impl ResidentPart {
         source.read_at(base, &mut bytes).map_err(io(base))?;
         let mut found = [const { None }; SECTIONS.len()];
         for (id, range, crc) in sections {
-            let place = Place { section: id, offset: base + range.start as u64 };
+            let place = Origin { section: id, offset: base + range.start as u64 };
             check_crc(crc, crc32fast::hash(&bytes[range.clone()]), |kind| place.fail(kind))?;
             if let Some(known) = SECTIONS.iter().position(|(known, _)| *known == id) {
                 found[known] = Some(range);
@@ -89,7 +89,7 @@ impl ResidentPart {
     /// A section that may be missing.
     pub(crate) fn find(&self, id: SectionId) -> Option<Section<'_>> {
         let range = self.range(id)?;
-        let place = Place { section: id, offset: self.base + range.start as u64 };
+        let place = Origin { section: id, offset: self.base + range.start as u64 };
         Some(Section { bytes: &self.bytes[range], place })
     }
 

@@ -1,6 +1,6 @@
 //! An opened file and its queries.
 
-use crate::bytes::{Place, Reader, u32_at, u64_at};
+use crate::bytes::{Origin, Reader, u32_at, u64_at};
 use crate::cache::{Block, Cache, PackedStats};
 use crate::container::ResidentPart;
 use crate::doors::{self, Sources};
@@ -307,7 +307,7 @@ impl<S: ByteSource> Packed<S> {
     ) -> Result<T, PackedError> {
         let Spot { number, k, n } = store.find(record);
         let kept = self.block(id, number, |bytes| Ok(Block::Bytes(bytes)))?;
-        let place = Place { section: id, offset: self.index.entries[number].offset };
+        let place = Origin { section: id, offset: self.index.entries[number].offset };
         let Block::Bytes(bytes) = &*kept else { unreachable!("blocks of records are kept as bytes") };
         visit(Reader::new(record_of(bytes, k, n, place)?, place))
     }
@@ -317,11 +317,11 @@ impl<S: ByteSource> Packed<S> {
         &self,
         (id, store): (SectionId, &StoreIndex),
         record: u32,
-        check: impl Fn(&[u8], Place) -> Result<(), PackedError>,
+        check: impl Fn(&[u8], Origin) -> Result<(), PackedError>,
         visit: impl FnOnce(&[u8]) -> T,
     ) -> Result<T, PackedError> {
         let Spot { number, k, n } = store.find(record);
-        let place = Place { section: id, offset: self.index.entries[number].offset };
+        let place = Origin { section: id, offset: self.index.entries[number].offset };
         let decode = |bytes: Vec<u8>| {
             (0..n).try_for_each(|k| check(record_of(&bytes, k, n, place)?, place))?;
             Ok(Block::Bytes(bytes))
@@ -341,7 +341,7 @@ impl<S: ByteSource> Packed<S> {
         let mut record = records.start;
         while record < records.end {
             let Spot { number, k, n } = store.find(record);
-            let place = Place { section: id, offset: self.index.entries[number].offset };
+            let place = Origin { section: id, offset: self.index.entries[number].offset };
             let bytes = self.index.unpack(&self.source, id, number)?;
             for k in k..n {
                 if record == records.end || !visit(record, Reader::new(record_of(&bytes, k, n, place)?, place))? {
@@ -382,7 +382,7 @@ impl<S: ByteSource> Packed<S> {
 }
 
 /// Record `k` of the `n` in a block.
-fn record_of(bytes: &[u8], k: usize, n: usize, place: Place) -> Result<&[u8], PackedError> {
+fn record_of(bytes: &[u8], k: usize, n: usize, place: Origin) -> Result<&[u8], PackedError> {
     let content = 4 * n;
     let ends = bytes.get(..content).ok_or_else(|| place.fail(Kind::Cut))?;
     let begin = if k == 0 { 0 } else { u32_at(ends, 4 * (k - 1)) as usize };

@@ -10,7 +10,7 @@ use sightlines_walkthrough::WalkOptions;
 use std::sync::Arc;
 
 #[cfg(feature = "packed")]
-use sightlines_packed::{Packed, PackedError, ByteSource};
+use sightlines_packed::{ByteSource, Packed, PackedError};
 #[cfg(feature = "packed")]
 use sightlines_walkthrough::{CellBoxes, PackedCells};
 

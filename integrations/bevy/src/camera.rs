@@ -5,7 +5,7 @@ use crate::follow::Follow;
 use crate::tie::{PvsMisfit, Tie};
 use bevy::platform::collections::HashMap;
 use bevy::prelude::*;
-use sightlines_eye_to_cell::{StepBudget, Method, View};
+use sightlines_eye_to_cell::{Method, StepBudget, View};
 use sightlines_pvs::CellId;
 use std::fmt;
 use std::sync::Mutex;

@@ -8,7 +8,7 @@ use bevy::math::{DAffine3, DMat4, DVec3};
 use bevy::prelude::*;
 use bevy_sightlines::pvs::{DoorRecord, ObjectId, PortalId, Table};
 use bevy_sightlines::{PvsCamera, PvsDoor, PvsMethod, PvsObject, PvsState, PvsTable};
-use sightlines_eye_to_cell::{StepBudget, Doors, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph};
+use sightlines_eye_to_cell::{Doors, Method, Scratch, StepBudget, TableCells, View, VisibleSet, VisibleSubgraph};
 use sightlines_pvs::{CellId, PlaceBuffer};
 use sightlines_walkthrough::{CameraPose, wander};
 use std::collections::{BTreeSet, HashMap};

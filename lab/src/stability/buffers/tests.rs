@@ -60,7 +60,7 @@ const NARROW: Kept = Kept {
 };
 
 /// Checks that a method stores too much at a texel of a scene, and that no shipped one does anywhere.
-fn check(kept: &Kept, (method, fill): (Method, Fill), [x, y]: [u32; 2]) {
+fn check(kept: &Kept, (method, fill): (SweepMethod, Fill), [x, y]: [u32; 2]) {
     let scene = kept.scene();
     let job = scene.job(Measure::VertexHeight);
     let (hidden, exact) = (truth::hidden(&scene), reference(&job));

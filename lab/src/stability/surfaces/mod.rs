@@ -14,7 +14,7 @@ mod truth;
 use super::predicates::cases::Apart;
 use super::predicates::powers_of_ten;
 use super::sweep::caught;
-use super::{Answer, Board, Kind, Method, Outcome, Sweep};
+use super::{Answer, Board, Kind, Outcome, Sweep, SweepMethod};
 use naive::Ordered;
 use scene::{PIXELS, Setting, View};
 use sightlines::geometry::Random;
@@ -33,14 +33,14 @@ fn drawn(view: &View, method: &dyn VisibleSurface) -> Vec<u32> {
     method.picture(&shot).0.faces().to_vec()
 }
 
-const fn method(name: &'static str, kind: Kind) -> Method {
-    Method { name, kind }
+const fn method(name: &'static str, kind: Kind) -> SweepMethod {
+    SweepMethod { name, kind }
 }
 
 /// What naive programs take for "on the plane".
 const EPSILON: f64 = 1e-6;
 
-const METHODS: [(Method, Draw); 16] = [
+const METHODS: [(SweepMethod, Draw); 16] = [
     (method("newell", Kind::Shipped), |v| drawn(v, &Newell)),
     (method("schumacker", Kind::Shipped), |v| drawn(v, &Schumacker::build(&v.faces, &SchumackerOptions::default()))),
     (method("bsp", Kind::Shipped), |v| drawn(v, &FaceBsp::build(&v.faces, &BspOptions::default()))),
