@@ -71,7 +71,7 @@ fn scenes(args: &Args) -> Result<Vec<ViewedScene>, Box<dyn Error>> {
 }
 
 /// Planes and texels of buffers, if any; and whether sheets.
-type Method = Option<(u32, u32, bool)>;
+type BufferSettings = Option<(u32, u32, bool)>;
 
 struct Found {
     name: String,
@@ -80,7 +80,7 @@ struct Found {
     time: Duration,
 }
 
-fn bake(case: &Case, name: &str, sightlines: bool, method: Method, start: Instant) -> Found {
+fn bake(case: &Case, name: &str, sightlines: bool, method: BufferSettings, start: Instant) -> Found {
     let triangles = || case.scene.occluding_triangles().collect::<Vec<_>>();
     let shared = method.map(|(planes, texels, sheets)| {
         let triangles = triangles();
@@ -116,7 +116,7 @@ fn rows(case: &Case) -> bool {
     let standard = Layout::default();
     let full = Some((standard.planes, standard.texels, true));
     let sheets = Some((0, standard.texels, true));
-    let mut fixed: Vec<(&str, bool, Method)> =
+    let mut fixed: Vec<(&str, bool, BufferSettings)> =
         vec![("sightlines (default)", true, None), ("sheets", false, sheets), ("sightlines and sheets", true, sheets)];
     if case.is_given() {
         fixed.extend([("multifocal", false, full), ("both", true, full)]);

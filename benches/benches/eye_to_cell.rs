@@ -8,14 +8,14 @@
 use clap::Parser;
 use sightlines::bake::quake::bake_map;
 use sightlines::bake::{PrtOptions, SceneBakeOptions, StabOptions, bake_scene, from_table, with_stab_trees};
-use sightlines::eye_to_cell::{Budget, Doors, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph};
+use sightlines::eye_to_cell::{Doors, Method, Scratch, StepBudget, TableCells, View, VisibleSet, VisibleSubgraph};
 use sightlines::formats::quake::{read_bsp, read_prt};
 use sightlines::geometry::Aabb;
 use sightlines::kdtree::SceneOptions;
-use sightlines::packed::{PackOptions, Packed, Source, pack};
+use sightlines::packed::{ByteSource, PackOptions, Packed, pack};
 use sightlines::pvs::{CellId, ObjectId, Table};
 use sightlines::scenes::{TowerOptions, tower};
-use sightlines::walkthrough::{Answer, CameraPose, PackedCells, WalkOptions, Walkthrough, wander};
+use sightlines::walkthrough::{AnswerKind, CameraPose, PackedCells, WalkOptions, Walkthrough, wander};
 use sightlines_benches::program::{Common, exit};
 use sightlines_tests::data_folder;
 use std::convert::Infallible;
@@ -210,9 +210,9 @@ fn quantile(mut times: Vec<Duration>, q: f64) -> f64 {
 /// A file that takes its time for each block.
 struct Slow(Vec<u8>, Duration);
 
-impl Source for Slow {
+impl ByteSource for Slow {
     fn len(&self) -> io::Result<u64> {
-        Source::len(&self.0)
+        ByteSource::len(&self.0)
     }
 
     fn read_at(&self, offset: u64, buf: &mut [u8]) -> io::Result<()> {
@@ -228,14 +228,17 @@ fn slow_source(table: &Table, stands: &[CameraPose], fov: f64) -> Result<(), Box
     for pause in [Duration::ZERO, Duration::from_millis(2)] {
         let packed = Packed::open(Slow(bytes.clone(), Duration::from_millis(20)), 1 << 16)?;
         let cells = PackedCells::new(packed);
-        let mut walk =
-            Walkthrough::new(cells.clone(), cells, WalkOptions { steps: Budget::UNLIMITED, ..WalkOptions::default() });
+        let mut walk = Walkthrough::new(
+            cells.clone(),
+            cells,
+            WalkOptions { steps: StepBudget::UNLIMITED, ..WalkOptions::default() },
+        );
         let mut times = Vec::new();
         let mut late = 0;
         for stand in stands {
             let view = view(stand, [0.0, 1.0, 0.0], fov)?;
             let start = Instant::now();
-            late += usize::from(walk.frame(&view, Method::Exact).answer == Answer::Late);
+            late += usize::from(walk.frame(&view, Method::Exact).answer == AnswerKind::Late);
             times.push(start.elapsed());
             std::thread::sleep(pause);
         }

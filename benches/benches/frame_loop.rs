@@ -5,10 +5,10 @@
 
 use clap::Parser;
 use sightlines::bake::{SceneBakeOptions, bake_scene};
-use sightlines::eye_to_cell::{Budget, Doors, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph};
+use sightlines::eye_to_cell::{Doors, Method, Scratch, StepBudget, TableCells, View, VisibleSet, VisibleSubgraph};
 use sightlines::pvs::Table;
 use sightlines::scenes::{TowerOptions, tower};
-use sightlines::walkthrough::{Answer, WalkOptions, Walkthrough, wander};
+use sightlines::walkthrough::{AnswerKind, WalkOptions, Walkthrough, wander};
 use sightlines_benches::program::{Common, exit};
 use std::error::Error;
 use std::path::PathBuf;
@@ -56,7 +56,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         .iter()
         .map(|pose| View::perspective_horizontal(pose.eye, pose.dir, [0.0, 1.0, 0.0], 1.2, 1.6))
         .collect::<Result<Vec<_>, _>>()?;
-    let options = WalkOptions { has_thread: false, steps: Budget::UNLIMITED, ..WalkOptions::default() };
+    let options = WalkOptions { has_thread: false, steps: StepBudget::UNLIMITED, ..WalkOptions::default() };
     let mut walk = Walkthrough::new(cells.clone(), cells.clone(), options);
     let start = Instant::now();
     let n_seen = walk_frames(&mut walk, &views);
@@ -79,14 +79,14 @@ fn walk_frames(walk: &mut Walkthrough<Cells, Cells>, views: &[View]) -> usize {
 
 /// Walks again and compares each answer that is not late with the method. Returns how many those are.
 fn check(cells: &Cells, views: &[View]) -> Result<usize, Box<dyn Error>> {
-    let options = WalkOptions { has_thread: false, steps: Budget::UNLIMITED, ..WalkOptions::default() };
+    let options = WalkOptions { has_thread: false, steps: StepBudget::UNLIMITED, ..WalkOptions::default() };
     let mut walk = Walkthrough::new(cells.clone(), cells.clone(), options);
     let (mut scratch, mut expected, doors) = (Scratch::new(), VisibleSet::new(), Doors::all_open());
     let (n_cells, n_objects) = (cells.table().n_cells(), cells.table().objects().len());
     let mut n_checked = 0;
     for (k, view) in views.iter().enumerate() {
         let frame = walk.frame(view, Method::Exact);
-        if frame.answer != Answer::Full {
+        if frame.answer != AnswerKind::Full {
             continue;
         }
         expected.clear(n_cells, n_objects);

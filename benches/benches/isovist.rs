@@ -8,7 +8,7 @@ use sightlines::cells::Plan;
 use sightlines::formats::Wad;
 use sightlines::formats::doom::{DoomMap, choose_map, list_maps};
 use sightlines::geometry::{Point2, Random, Segment2};
-use sightlines::isovist::{Isovist, Touch, Viewer, WallMesh};
+use sightlines::isovist::{Isovist, IsovistFinder, Touch, WallMesh};
 use sightlines::scenes::{OfficeOptions, doom_like, office};
 use sightlines_benches::measure::{CpuClock, Work};
 use sightlines_benches::program::{Common, exit};
@@ -97,7 +97,7 @@ fn measure(args: &Args, name: &str, plan: &Plan) -> Result<(), Box<dyn Error>> {
     for pair in eyes.windows(2).take(200) {
         assert_eq!(mesh.sees(pair[0], pair[1], Touch::Blocks)?, plain(pair[0], pair[1]), "{name}: {pair:?}");
     }
-    let mut viewer = Viewer::new(&mesh);
+    let mut viewer = IsovistFinder::new(&mesh);
     let mut isovist = Isovist::default();
     let (mut n_vertices, mut best, mut best_measured) = (0, f64::INFINITY, f64::INFINITY);
     let rounds = if args.common.test { 1 } else { 5 };

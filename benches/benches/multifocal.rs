@@ -6,7 +6,8 @@
 use clap::Parser;
 use sightlines::geometry::Aabb;
 use sightlines::multifocal::{
-    FromRegion, Job, Layout, Measure, Multifocal, MultifocalBackend, Occluder, OccluderSelection, Plane, Volume,
+    BufferJob, BufferPlane, FromRegion, Layout, Measure, Multifocal, MultifocalBackend, Occluder, OccluderSelection,
+    Volume,
 };
 use sightlines::multifocal_cpu::{Fast, Reference};
 use sightlines::scenes::{Occlusion, OcclusionOptions, occlusion};
@@ -181,9 +182,9 @@ fn fill(args: &Args) {
         let made = occlusion(options).expect("numbers are in range");
         let occluders = occluders(&made);
         let volume = Volume::new(Occlusion::volume(0.25)).expect("cubes are volumes");
-        let plane = Plane::new(2, true, Occlusion::FAR, [-9.0; 2], [9.0; 2], [texels; 2]).expect("a good window");
+        let plane = BufferPlane::new(2, true, Occlusion::FAR, [-9.0; 2], [9.0; 2], [texels; 2]).expect("a good window");
         for measure in [Measure::Euclid, Measure::VertexHeight, Measure::SectionHeight] {
-            let job = Job::new(volume, vec![plane], &occluders, measure, false).expect("a good job");
+            let job = BufferJob::new(volume, vec![plane], &occluders, measure, false).expect("a good job");
             let (mut fast, mut out) = (Fast::new(), Vec::new());
             let mut once = || {
                 let start = Instant::now();

@@ -10,7 +10,7 @@ use sightlines_benches::measure::{CpuClock, Work};
 use sightlines_benches::program::{Common, save};
 use sightlines_benches::quake::MapSpec;
 use sightlines_benches::quake::chart::svg;
-use sightlines_benches::quake::job::{self, Answer, METHODS, Measured, Method};
+use sightlines_benches::quake::job::{self, Answer, ClusterMethod, METHODS, Measured};
 use sightlines_benches::quake::rows::{Row, both_ways, csv, known, markdown, n_missing, n_pairs, of_map, put, read};
 use sightlines_tests::{data_folder, files};
 use std::collections::BTreeSet;
@@ -32,7 +32,7 @@ struct Args {
     maps: Vec<String>,
     /// Methods: base, sampling, separators, symmetric, exact.
     #[arg(long, value_delimiter = ',', default_value = "base,sampling,separators,symmetric,exact")]
-    methods: Vec<Method>,
+    methods: Vec<ClusterMethod>,
     /// Seconds of processor time that the classical walk may take.
     #[arg(long, default_value_t = 120.0)]
     limit: f64,
@@ -153,7 +153,7 @@ fn one_map(args: &Args, spec: &MapSpec, file: &Path, rows: &mut Vec<Row>) -> Res
     let graph = spec.graph()?;
     let (n_clusters, n_portals) = (graph.n_cells(), graph.portals().len());
     let map = Map { args, spec, file, n_clusters, n_portals, witness: spec.witness(n_clusters)? };
-    let wanted: BTreeSet<Method> = args.methods.iter().copied().collect();
+    let wanted: BTreeSet<ClusterMethod> = args.methods.iter().copied().collect();
     let own = of_map(rows, &spec.name());
     if args.resume && wanted.iter().all(|&method| own.iter().any(|row| row.method == method)) {
         return Ok(0);
@@ -163,18 +163,18 @@ fn one_map(args: &Args, spec: &MapSpec, file: &Path, rows: &mut Vec<Row>) -> Res
     let (mut walked, mut answers) = (None, Vec::new());
     for method in wanted {
         let (measured, answer) = match method {
-            Method::Symmetric => {
-                let walk = walked.take().map_or_else(|| map.measure(Method::Separators), Ok)?;
+            ClusterMethod::Symmetric => {
+                let walk = walked.take().map_or_else(|| map.measure(ClusterMethod::Separators), Ok)?;
                 symmetric(walk)
             }
             _ => map.measure(method)?,
         };
         let mut row = map.row(method, measured, &answer);
-        if method == Method::Exact && row.measured.done == 1.0 {
+        if method == ClusterMethod::Exact && row.measured.done == 1.0 {
             n_wrong += usize::from(row.missing > Some(0)) + map.with_threads(&mut row, &answer)?;
         }
         eprintln!("  {method}: {:.2} s, {} pairs, {} missing", row.measured.cpu, row.pairs, row.missing.unwrap_or(0));
-        if method == Method::Separators {
+        if method == ClusterMethod::Separators {
             walked = Some((row.measured.clone(), answer.clone()));
         }
         put(rows, row);
@@ -186,12 +186,12 @@ fn one_map(args: &Args, spec: &MapSpec, file: &Path, rows: &mut Vec<Row>) -> Res
 }
 
 /// Once the exact search is at its end, says of this run's other methods what they hide of its pairs.
-fn prove(map: &str, answers: &[(Method, Answer)], rows: &mut [Row]) {
-    let is_done = |row: &Row| row.map == map && row.method == Method::Exact && row.measured.done == 1.0;
+fn prove(map: &str, answers: &[(ClusterMethod, Answer)], rows: &mut [Row]) {
+    let is_done = |row: &Row| row.map == map && row.method == ClusterMethod::Exact && row.measured.done == 1.0;
     if !rows.iter().any(is_done) {
         return;
     }
-    let Some((_, exact)) = answers.iter().find(|(method, _)| *method == Method::Exact) else { return };
+    let Some((_, exact)) = answers.iter().find(|(method, _)| *method == ClusterMethod::Exact) else { return };
     let proven = exact.proven();
     let n_proven = n_pairs(&proven);
     for row in rows.iter_mut().filter(|row| row.map == map) {
@@ -213,7 +213,7 @@ fn symmetric((mut measured, walked): (Measured, Answer)) -> (Measured, Answer) {
 
 impl Map<'_> {
     /// One thread, the quickest of several runs.
-    fn measure(&self, method: Method) -> Result<(Measured, Answer), Box<dyn Error>> {
+    fn measure(&self, method: ClusterMethod) -> Result<(Measured, Answer), Box<dyn Error>> {
         let mut best = self.run(method, 1)?;
         for _ in 1..self.args.repeats {
             if best.0.cpu < SHORT {
@@ -225,8 +225,8 @@ impl Map<'_> {
         Ok(best)
     }
 
-    fn run(&self, method: Method, threads: usize) -> Result<(Measured, Answer), Box<dyn Error>> {
-        let limit = if method == Method::Exact { self.args.limit_exact } else { self.args.limit };
+    fn run(&self, method: ClusterMethod, threads: usize) -> Result<(Measured, Answer), Box<dyn Error>> {
+        let limit = if method == ClusterMethod::Exact { self.args.limit_exact } else { self.args.limit };
         Ok(job::run(self.spec, (method, threads, limit), self.file, self.n_clusters)?)
     }
 
@@ -236,7 +236,7 @@ impl Map<'_> {
         for threads in [2, 8] {
             let repeats = if threads == 2 && row.measured.cpu < SHORT { self.args.repeats.max(1) } else { 1 };
             for _ in 0..repeats {
-                let (measured, other) = self.run(Method::Exact, threads)?;
+                let (measured, other) = self.run(ClusterMethod::Exact, threads)?;
                 if other != *answer || measured.counters != row.measured.counters {
                     eprintln!("WRONG {}: {threads} threads say something else than one", self.spec);
                     n_wrong += 1;
@@ -249,7 +249,7 @@ impl Map<'_> {
         Ok(n_wrong)
     }
 
-    fn row(&self, method: Method, measured: Measured, answer: &Answer) -> Row {
+    fn row(&self, method: ClusterMethod, measured: Measured, answer: &Answer) -> Row {
         let witness = self.witness.as_ref();
         Row {
             map: self.spec.name(),

@@ -6,7 +6,8 @@ use sightlines::geometry::Segment2;
 use sightlines::isovist::{Touch, WallMesh};
 use sightlines::scenes::{OfficeOptions, office};
 use sightlines::visibility_graph::{
-    AngularMeasures, Effort, GlobalMeasures, Grid, LocalMeasures, MetricMeasures, Points, Turns, VisibilityGraph,
+    AngularMeasures, GlobalMeasures, LocalMeasures, MetricMeasures, PixelGrid, Points, Turns, VisibilityGraph,
+    WorkOptions,
 };
 use sightlines_benches::program::Common;
 use std::hint::black_box;
@@ -49,7 +50,7 @@ fn grid(plan: &Plan, n: usize) -> Points {
     let area = (bounds.max[0] - bounds.min[0]) * (bounds.max[1] - bounds.min[1]);
     // Centres on walls would be left out; few multiples of this spacing are.
     let spacing = (area / n as f64).sqrt() * 0.999;
-    let grid = Grid::over(plan, spacing).unwrap_or_else(|e| panic!("{e}"));
+    let grid = PixelGrid::over(plan, spacing).unwrap_or_else(|e| panic!("{e}"));
     grid.enclosed().unwrap_or_else(|e| panic!("{e}"))
 }
 
@@ -59,7 +60,7 @@ fn timed<T>(what: impl FnOnce() -> T) -> (f64, T) {
     (start.elapsed().as_secs_f64(), result)
 }
 
-fn graph(plan: &Plan, points: &Points, effort: &Effort<'_>) -> VisibilityGraph {
+fn graph(plan: &Plan, points: &Points, effort: &WorkOptions<'_>) -> VisibilityGraph {
     let mesh = WallMesh::new(plan).unwrap_or_else(|e| panic!("{e}"));
     let index = mesh.index(points.coordinates()).unwrap_or_else(|e| panic!("{e}"));
     let seen = |eye: u32, list: &mut Vec<u32>| mesh.points_seen(eye, &index, Touch::Blocks, list);
@@ -67,7 +68,7 @@ fn graph(plan: &Plan, points: &Points, effort: &Effort<'_>) -> VisibilityGraph {
 }
 
 fn small(plan: &Plan, points: &Points, args: &Args) {
-    let effort = Effort { threads: 1, ..Effort::default() };
+    let effort = WorkOptions { threads: 1, ..WorkOptions::default() };
     let walls: Vec<Segment2> = plan.lines().iter().filter(|l| l.opaque).map(|l| Segment2::new(l.a, l.b)).collect();
     let at = points.coordinates();
     let (plain, pairs) = timed(|| {
@@ -118,7 +119,7 @@ fn small(plan: &Plan, points: &Points, args: &Args) {
 }
 
 fn large(plan: &Plan, points: &Points) {
-    let effort = Effort::default();
+    let effort = WorkOptions::default();
     println!("vga: {} points on all threads", points.len());
     let row = |what: &str, seconds: f64| println!("    {what:<28} {seconds:>9.1} s");
     let (building, graph) = timed(|| graph(plan, points, &effort));

@@ -3,7 +3,7 @@
 //! Found on a grid with rays over all triangles, so that it knows nothing of cells.
 
 use sightlines::cells::{Point3, Scene};
-use sightlines::scenes::{SceneError, TowerOptions, TowerRoom, tower_rooms};
+use sightlines::scenes::{GenerateError, TowerOptions, TowerRoom, tower_rooms};
 use sightlines_testkit::rays::RayScene;
 use std::collections::VecDeque;
 
@@ -32,7 +32,7 @@ pub struct CameraPose {
 ///
 /// # Errors
 /// If the options are wrong.
-pub fn walk(scene: &Scene, options: TowerOptions, n: usize) -> Result<Vec<CameraPose>, SceneError> {
+pub fn walk(scene: &Scene, options: TowerOptions, n: usize) -> Result<Vec<CameraPose>, GenerateError> {
     let (rooms, rays) = (tower_rooms(options)?, RayScene::new(scene));
     let mut floors = vec![0, options.floors / 2, options.floors - 1];
     floors.dedup();

@@ -32,7 +32,7 @@ pub enum SpecError {
         /// Its name.
         spec: String,
         /// What is wrong with its options.
-        source: sightlines::scenes::SceneError,
+        source: sightlines::scenes::GenerateError,
     },
 }
 

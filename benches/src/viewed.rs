@@ -5,7 +5,7 @@ use sightlines::formats::ViewCell;
 use sightlines::formats::scene::read_scene;
 use sightlines::formats::view_cells::read_view_cells;
 use sightlines::geometry::Aabb;
-use sightlines::scenes::{CityOptions, SceneError, TowerOptions, city, city_crossings, tower, tower_rooms};
+use sightlines::scenes::{CityOptions, GenerateError, TowerOptions, city, city_crossings, tower, tower_rooms};
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
@@ -31,16 +31,16 @@ impl ViewedScene {
     /// A generated city with the crossings of its streets.
     ///
     /// # Errors
-    /// [`SceneError`] for options out of range.
-    pub fn city(options: CityOptions) -> Result<Self, SceneError> {
+    /// [`GenerateError`] for options out of range.
+    pub fn city(options: CityOptions) -> Result<Self, GenerateError> {
         Ok(Self::new("city".to_owned(), city(options)?, city_crossings(options)?))
     }
 
     /// A generated tower with its rooms.
     ///
     /// # Errors
-    /// [`SceneError`] for options out of range.
-    pub fn tower(options: TowerOptions) -> Result<Self, SceneError> {
+    /// [`GenerateError`] for options out of range.
+    pub fn tower(options: TowerOptions) -> Result<Self, GenerateError> {
         let rooms = tower_rooms(options)?.into_iter().map(|room| room.bounds);
         Ok(Self::new("tower".to_owned(), tower(options)?, rooms))
     }

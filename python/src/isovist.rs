@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use rayon::prelude::*;
 use sightlines_geometry::{Aabb, Point2};
 use sightlines_isovist::{
-    Boundary, EyeError, Isovist, LimitError, Limits, Measures, MeshError, Sector, Touch, Viewer, WallMesh,
+    Boundary, EyeError, Isovist, IsovistFinder, LimitError, Limits, Measures, MeshError, Sector, Touch, WallMesh,
 };
 use sightlines_progress::{Cancelled, Counter, Observer};
 
@@ -181,7 +181,7 @@ fn isovists(
     let counter = Counter::new(Some(observer), "isovists", eyes.len().div_ceil(CHUNK));
     let chunk = |(k, eyes): (usize, &[Point2])| {
         counter.check()?;
-        let (mut viewer, mut isovist) = (Viewer::new(mesh), Isovist::default());
+        let (mut viewer, mut isovist) = (IsovistFinder::new(mesh), Isovist::default());
         let mut all = Isovists::new(eyes.len());
         for (i, eye) in eyes.iter().enumerate() {
             viewer.look(*eye, &mut isovist).map_err(|failure| Failed::Eye(k * CHUNK + i, failure))?;

@@ -10,8 +10,8 @@ use pyo3::prelude::*;
 use sightlines_geometry::Point2;
 use sightlines_progress::{Cancelled, Halt, Observer};
 use sightlines_visibility_graph::{
-    Analysis, AnalysisOptions, Effort, GraphError, Grid, GridError, Group, Measure, Points, Turns, UNDEFINED,
-    VisibilityGraph,
+    Analysis, AnalysisOptions, GraphError, GridError, Group, Measure, PixelGrid, Points, Turns, UNDEFINED,
+    VisibilityGraph, WorkOptions,
 };
 
 /// What was computed: points (n, 2), values by name, and how many pairs see each other.
@@ -88,11 +88,11 @@ fn analyse(
     observer: &dyn Observer,
 ) -> Result<(Points, Analysis, u64), Why> {
     let (spacing, seeds) = grid;
-    let grid = Grid::over(&plan.plan, spacing).map_err(Why::Grid)?;
+    let grid = PixelGrid::over(&plan.plan, spacing).map_err(Why::Grid)?;
     let inside = || grid.interior().map(|interior| interior.points);
     let points = seeds.map_or_else(inside, |seeds| grid.fill(seeds)).map_err(Why::Grid)?;
     let at = points.coordinates();
-    let effort = Effort { threads: options.threads, observer: Some(observer), ..Effort::default() };
+    let effort = WorkOptions { threads: options.threads, observer: Some(observer), ..WorkOptions::default() };
     let graph = plan.mesh_around(at.iter().copied(), |mesh| {
         let index = mesh.index(at).map_err(|failure| Failed::Eye(0, failure))?;
         let seen = |eye: u32, list: &mut Vec<u32>| mesh.points_seen(eye, &index, touch(options.touching), list);

@@ -1,6 +1,6 @@
 //! Checks of files that keep results of units: journals, parts of jobs and their manifests.
 
-use sightlines::checkpoint::{Job, JobStore, Journal, Key, Manifest, Opening, Outcome, Role, ShardState};
+use sightlines::checkpoint::{Job, JobProgress, JobRole, JobStore, Journal, Key, Manifest, OpenMode, ShardState};
 use sightlines::progress::{Halt, Phase, UnitStore, Units};
 use std::fs;
 use std::path::Path;
@@ -39,7 +39,7 @@ fn folder() -> tempfile::TempDir {
 }
 
 fn open(path: &Path) -> Option<Journal> {
-    Journal::open(path, KEY, PROGRAM, Opening::Resume, Duration::ZERO).ok()
+    Journal::open(path, KEY, PROGRAM, OpenMode::Resume, Duration::ZERO).ok()
 }
 
 /// A job in a folder, with its parts.
@@ -48,8 +48,8 @@ fn job(folder: &Path) -> Job {
     let job = Job::create(folder, manifest).expect("an empty folder");
     let run =
         |role| bake(&JobStore::new(Job::open(folder, PROGRAM).expect("a job"), role, Duration::ZERO).expect("a role"));
-    assert_eq!(run(Role::Merge), Err(Halt::Shared));
-    (0..3).for_each(|shard| assert_eq!(run(Role::shard(shard)), Err(Halt::Shared)));
+    assert_eq!(run(JobRole::Merge), Err(Halt::Shared));
+    (0..3).for_each(|shard| assert_eq!(run(JobRole::shard(shard)), Err(Halt::Shared)));
     job
 }
 
@@ -110,7 +110,7 @@ pub fn check_part(bytes: &[u8]) -> bool {
         fs::write(&path, bytes).expect("a part");
         let job = Job::open(folder, PROGRAM).expect("a job");
         let state = job.state(shard).expect("a shard");
-        let store = JobStore::new(job, Role::Merge, Duration::ZERO).expect("a role");
+        let store = JobStore::new(job, JobRole::Merge, Duration::ZERO).expect("a role");
         match state {
             ShardState::Done => {
                 assert!(bytes == before, "a part of other bytes");
@@ -119,7 +119,8 @@ pub fn check_part(bytes: &[u8]) -> bool {
             }
             ShardState::Broken(_) => {
                 assert_eq!(bake(&store), Err(Halt::Shared));
-                let missing = matches!(store.outcome(), Some(Outcome::Missing { shards, .. }) if shards[0].0 == shard);
+                let missing =
+                    matches!(store.outcome(), Some(JobProgress::Missing { shards, .. }) if shards[0].0 == shard);
                 assert!(missing, "shard {shard} is missing");
             }
             state => panic!("{state:?}"),
@@ -155,14 +156,14 @@ pub fn check_manifest(bytes: &[u8]) -> bool {
     for shard in (0..n.min(50)).chain([n]) {
         assert_eq!(job.state(shard).is_ok(), shard < n);
         assert_eq!(job.has_damaged_part(shard).is_ok(), shard < n);
-        let store = JobStore::new(job.clone(), Role::shard(shard), Duration::ZERO);
+        let store = JobStore::new(job.clone(), JobRole::shard(shard), Duration::ZERO);
         assert_eq!(store.is_ok(), shard < n);
         // A shard does its part, or is of another bake.
         if let Ok(store) = store {
             assert!(bake(&store).is_err());
         }
     }
-    let store = JobStore::new(job, Role::Merge, Duration::ZERO).expect("a role");
+    let store = JobStore::new(job, JobRole::Merge, Duration::ZERO).expect("a role");
     // No more than a phase is planned.
     let _ = bake(&store);
     true

@@ -3,7 +3,7 @@
 use crate::numbers::Numbers;
 use sightlines::geometry::Point3;
 use sightlines::visible_surface::{
-    Bsp, BspOptions, Camera, DepthFormat, FaceMask, Faces, Newell, Painter, RayCaster, RenderInput, Schumacker,
+    BspOptions, Camera, DepthFormat, FaceBsp, FaceMask, Faces, Newell, Painter, RayCaster, RenderInput, Schumacker,
     SchumackerOptions, VisibleSurface, ZBuffer, compare, cull,
 };
 
@@ -60,7 +60,7 @@ impl SmallShot {
         let shot = RenderInput { faces, camera, mask: &all };
         let caster = RayCaster::build(faces);
         let reference = caster.picture(&shot).0;
-        let bsp = Bsp::build(faces, &BspOptions::default());
+        let bsp = FaceBsp::build(faces, &BspOptions::default());
         let exact: [Box<dyn VisibleSurface>; 5] = [
             Box::new(ZBuffer::new(DepthFormat::Exact)),
             Box::new(Newell),

@@ -5,8 +5,8 @@ use sightlines::cells::{Scene, SceneObject};
 use sightlines::geometry::{Aabb, Point3};
 use sightlines::multifocal::mesh::{PatchOptions, SheetMethod, patches};
 use sightlines::multifocal::{
-    Buffer, FromRegion, Job, Layout, Measure, Multifocal, MultifocalBackend, OccluderSelection, Plane, UnionMethod,
-    Volume,
+    Buffer, BufferJob, BufferPlane, FromRegion, Layout, Measure, Multifocal, MultifocalBackend, OccluderSelection,
+    UnionMethod, Volume,
 };
 use sightlines::multifocal_cpu::{Fast, Reference};
 use sightlines_testkit::sampled_view;
@@ -84,12 +84,13 @@ impl SmallWorld {
     pub fn check_backends(&self) {
         let occluders = patches(&self.triangles(), &PatchOptions::default());
         let volume = Volume::new(self.volume).expect("a box");
-        let plane =
-            |(at, n): (f64, u32)| Plane::new(1, true, at, [-9.0, -8.0], [9.0, 10.0], [n, n + 1]).expect("a plane");
-        let planes: Vec<Plane> = [(6.0, 5), (9.5, 7)].map(plane).to_vec();
+        let plane = |(at, n): (f64, u32)| {
+            BufferPlane::new(1, true, at, [-9.0, -8.0], [9.0, 10.0], [n, n + 1]).expect("a plane")
+        };
+        let planes: Vec<BufferPlane> = [(6.0, 5), (9.5, 7)].map(plane).to_vec();
         for measure in [Measure::VertexHeight, Measure::SectionHeight] {
-            let job =
-                Job::new(volume, planes.clone(), &occluders, measure, true).expect("planes in front of the volume");
+            let job = BufferJob::new(volume, planes.clone(), &occluders, measure, true)
+                .expect("planes in front of the volume");
             let (mut fast, mut exact) = (Vec::<Buffer>::new(), Vec::new());
             Fast::new().render(&job, &mut fast).expect("the CPU does not fail");
             Reference.render(&job, &mut exact).expect("the CPU does not fail");

@@ -9,7 +9,7 @@ use sightlines::eye_to_cell::{Doors, Method, Scratch, TableCells, View, VisibleS
 use sightlines::formats::ViewCells;
 use sightlines::formats::view_cells::ViewCell;
 use sightlines::geometry::{Aabb, Adaptive, AxialDoor, Point3, Portal3};
-use sightlines::multifocal::{Job, Measure, MultifocalBackend, Occluder, Plane, Volume};
+use sightlines::multifocal::{BufferJob, BufferPlane, Measure, MultifocalBackend, Occluder, Volume};
 use sightlines::multifocal_cpu::Fast;
 use sightlines::packed::{PackOptions, Packed, pack};
 use sightlines::pvs::{CellId, Table};
@@ -229,8 +229,8 @@ fn buffer(rates: &Rates, short: bool) -> Path {
         })
         .collect();
     let volume = Volume::new(Aabb { min: [-0.5; 3], max: [0.5; 3] }).expect("a box");
-    let plane = Plane::new(2, true, 20.0, [-20.0; 2], [20.0; 2], [texels; 2]).expect("a plane");
-    let job = Job::new(volume, vec![plane], &occluders, Measure::VertexHeight, false).expect("a job");
+    let plane = BufferPlane::new(2, true, 20.0, [-20.0; 2], [20.0; 2], [texels; 2]).expect("a plane");
+    let job = BufferJob::new(volume, vec![plane], &occluders, Measure::VertexHeight, false).expect("a job");
     let (mut backend, mut out) = (Fast::new(), Vec::new());
     let seconds = least(|| backend.render(&job, &mut out).expect("the processor does not fail"));
     Path {

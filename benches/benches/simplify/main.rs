@@ -11,7 +11,7 @@ mod meshopt;
 
 use clap::Parser;
 use measured::Row;
-use sightlines::simplify::{HiddenBy, Prepared, SimplifyOptions};
+use sightlines::simplify::{HiddenBy, PreparedScene, SimplifyOptions};
 use sightlines_benches::chart::{Panel, Series, svg};
 use sightlines_benches::program::{Common, Files, read_csv, write_csv};
 use std::error::Error;
@@ -86,7 +86,7 @@ fn measure(args: &Args) -> Result<Vec<Row>, Box<dyn Error>> {
             let make = || case.method();
             let by = HiddenBy { method: Some(&make), table: case.table.as_deref() };
             let start = Instant::now();
-            let prepared = Prepared::new(&case.scene, &case.views, &by, &SimplifyOptions::default())?;
+            let prepared = PreparedScene::new(&case.scene, &case.views, &by, &SimplifyOptions::default())?;
             let seconds = start.elapsed().as_secs_f64();
             eprintln!("{name}, view {}: {seconds:.1} s to ask what is hidden", case.view);
             for &budget in &args.budgets {

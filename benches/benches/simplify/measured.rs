@@ -2,7 +2,7 @@
 
 use crate::cases::Case;
 use sightlines::simplify::{
-    MeasureOptions, Prepared, Simplified, SimplifyOptions, estimate, geometric, measure, measure_aimed,
+    MeasureOptions, PreparedScene, Simplified, SimplifyOptions, estimate, geometric, measure, measure_aimed,
 };
 use sightlines_benches::csv_row;
 use std::error::Error;
@@ -61,7 +61,7 @@ impl Row {
 /// Ours, and the others at the same count.
 pub(crate) fn all(
     case: &Case,
-    prepared: &Prepared<'_>,
+    prepared: &PreparedScene<'_>,
     budget: f64,
     (collapse, flat): (f64, bool),
     n_eyes: usize,

@@ -2,7 +2,7 @@
 
 use crate::families::{Case, Family, camera};
 use sightlines::visible_surface::{
-    Bsp, BspOptions, Counters, DepthFormat, FaceMask, Faces, Image, Newell, Painter, RayCaster, RenderInput,
+    BspOptions, Counters, DepthFormat, FaceBsp, FaceMask, Faces, Image, Newell, Painter, RayCaster, RenderInput,
     Schumacker, SchumackerOptions, VisibleSurface, ZBuffer, compare,
 };
 use sightlines_benches::csv_row;
@@ -62,8 +62,8 @@ fn methods() -> Vec<(&'static str, bool, Make)> {
         ("painter", false, Box::new(|_| Box::new(Painter))),
         ("newell", true, Box::new(|_| Box::new(Newell))),
         ("schumacker", true, Box::new(|f| Box::new(Schumacker::build(f, &SchumackerOptions::default())))),
-        ("bsp", true, Box::new(|f| Box::new(Bsp::build(f, &BspOptions::default())))),
-        ("bsp-front", true, Box::new(|f| Box::new(Bsp::build(f, &BspOptions::default()).front_to_back()))),
+        ("bsp", true, Box::new(|f| Box::new(FaceBsp::build(f, &BspOptions::default())))),
+        ("bsp-front", true, Box::new(|f| Box::new(FaceBsp::build(f, &BspOptions::default()).front_to_back()))),
         ("zbuffer", true, z(DepthFormat::Exact)),
         ("zbuffer-f32", false, z(DepthFormat::F32)),
         ("zbuffer-f32-reversed", false, z(DepthFormat::F32Reversed)),

@@ -3,7 +3,7 @@
 use sightlines::bake::{SceneBakeOptions, bake_scene};
 use sightlines::scenes::{TowerOptions, tower, tower_rooms};
 use sightlines::visible_surface::{
-    Bsp, BspOptions, Camera, FaceMask, Faces, RenderInput, VisibleSurface, ZBuffer, cull,
+    BspOptions, Camera, FaceBsp, FaceMask, Faces, RenderInput, VisibleSurface, ZBuffer, cull,
 };
 use std::error::Error;
 use std::time::Instant;
@@ -19,7 +19,7 @@ pub(crate) fn print(test: bool, size: [u32; 2]) -> Result<(), Box<dyn Error>> {
     let table = bake_scene(&scene, &SceneBakeOptions::default())?.table;
     let faces = Faces::of_scene(&scene)?;
     let start = Instant::now();
-    let bsp = Bsp::build(&faces, &BspOptions::default()).front_to_back();
+    let bsp = FaceBsp::build(&faces, &BspOptions::default()).front_to_back();
     let built = start.elapsed().as_secs_f64();
     let all = FaceMask::all(&faces);
     let (mut totals, mut n_eyes) = ([[0.0; 4]; 2], 0u32);

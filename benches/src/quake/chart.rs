@@ -1,6 +1,6 @@
 //! Time against over-estimation, a panel for each map: the same numbers give the same bytes.
 
-use super::job::{METHODS, Method};
+use super::job::{ClusterMethod, METHODS};
 use super::rows::{Row, known, maps, of_map};
 use sightlines::report::chart::{PAPER, Paint, RULE, Scale, Svg, Words, power_of_ten};
 
@@ -19,18 +19,18 @@ const SHARES: [(f64, &str); 6] =
 /// The ends of that axis.
 const ENDS: [f64; 2] = [-0.7, 8.0];
 
-fn colour(method: Method) -> &'static str {
+fn colour(method: ClusterMethod) -> &'static str {
     match method {
-        Method::Base => "#7b8794",
-        Method::Sampling => "#3a9150",
-        Method::Separators => "#e07a1f",
-        Method::Symmetric => "#8a5cd6",
-        Method::Exact => "#1f6fb4",
+        ClusterMethod::Base => "#7b8794",
+        ClusterMethod::Sampling => "#3a9150",
+        ClusterMethod::Separators => "#e07a1f",
+        ClusterMethod::Symmetric => "#8a5cd6",
+        ClusterMethod::Exact => "#1f6fb4",
     }
 }
 
 /// A mark; hollow for what was stopped before its end.
-fn mark(svg: &mut Svg, method: Method, [x, y]: [f64; 2], is_done: bool) {
+fn mark(svg: &mut Svg, method: ClusterMethod, [x, y]: [f64; 2], is_done: bool) {
     let colour = colour(method);
     let paint = Paint { fill: Some(if is_done { colour } else { PAPER }), stroke: Some((colour, 1.5)) };
     let mut polygon = |corners: &[[f64; 2]]| {
@@ -38,11 +38,11 @@ fn mark(svg: &mut Svg, method: Method, [x, y]: [f64; 2], is_done: bool) {
         svg.polygon(&corners, paint);
     };
     match method {
-        Method::Base => polygon(&[[-5.0, 4.0], [5.0, 4.0], [0.0, -5.0]]),
-        Method::Sampling => polygon(&[[-5.0, -4.0], [5.0, -4.0], [0.0, 5.0]]),
-        Method::Separators => polygon(&[[-4.0, -4.0], [4.0, -4.0], [4.0, 4.0], [-4.0, 4.0]]),
-        Method::Symmetric => polygon(&[[-5.5, 0.0], [0.0, -5.5], [5.5, 0.0], [0.0, 5.5]]),
-        Method::Exact => svg.circle([x, y], 4.5, paint),
+        ClusterMethod::Base => polygon(&[[-5.0, 4.0], [5.0, 4.0], [0.0, -5.0]]),
+        ClusterMethod::Sampling => polygon(&[[-5.0, -4.0], [5.0, -4.0], [0.0, 5.0]]),
+        ClusterMethod::Separators => polygon(&[[-4.0, -4.0], [4.0, -4.0], [4.0, 4.0], [-4.0, 4.0]]),
+        ClusterMethod::Symmetric => polygon(&[[-5.5, 0.0], [0.0, -5.5], [5.5, 0.0], [0.0, 5.5]]),
+        ClusterMethod::Exact => svg.circle([x, y], 4.5, paint),
     }
     if !is_done {
         let tip = [x, y - 17.0];
@@ -117,8 +117,9 @@ fn panel(svg: &mut Svg, at: [f64; 2], (map, rows): (&str, &[&Row]), times: [f64;
         mark(svg, row.method, at, row.measured.done == 1.0);
         // A surplus elsewhere may make up for what is missing. Sampling misses most by design.
         let missing = row.proven.map_or(0, |[_, missing]| missing);
-        if missing > 0 && row.method != Method::Sampling {
-            let (words, aside) = if row.method == Method::Symmetric { (Words::END, -8.0) } else { (Words::START, 7.0) };
+        if missing > 0 && row.method != ClusterMethod::Sampling {
+            let (words, aside) =
+                if row.method == ClusterMethod::Symmetric { (Words::END, -8.0) } else { (Words::START, 7.0) };
             let words = words.sized(9.0).coloured(colour(row.method));
             svg.text([at[0] + aside, at[1] + 3.0], words, &format!("−{missing}"));
         }

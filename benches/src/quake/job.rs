@@ -17,7 +17,7 @@ const JOB: &str = "--quake-job";
 
 /// A way to find out which clusters see which.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Method {
+pub enum ClusterMethod {
     /// Only the first, coarse bound of our search.
     Base,
     /// The lines that our search begins with, and nothing else.
@@ -31,9 +31,15 @@ pub enum Method {
 }
 
 /// All methods, in the order of tables.
-pub const METHODS: [Method; 5] = [Method::Base, Method::Sampling, Method::Separators, Method::Symmetric, Method::Exact];
+pub const METHODS: [ClusterMethod; 5] = [
+    ClusterMethod::Base,
+    ClusterMethod::Sampling,
+    ClusterMethod::Separators,
+    ClusterMethod::Symmetric,
+    ClusterMethod::Exact,
+];
 
-impl Method {
+impl ClusterMethod {
     /// What it is called in files and on the command line.
     pub fn name(self) -> &'static str {
         match self {
@@ -57,7 +63,7 @@ impl Method {
     }
 }
 
-impl FromStr for Method {
+impl FromStr for ClusterMethod {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -66,7 +72,7 @@ impl FromStr for Method {
     }
 }
 
-impl fmt::Display for Method {
+impl fmt::Display for ClusterMethod {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name())
     }
@@ -138,32 +144,32 @@ fn answer(args: &[String]) -> Result<Measured, Box<dyn std::error::Error>> {
 
 /// Runs a method in this process; after `limit` seconds of processor time it is stopped at the next occasion, and what
 /// is not decided by then counts as visible. The peak is that of the process.
-pub fn measure(graph: &CellGraph<Convex>, method: Method, threads: usize, limit: f64) -> (Measured, Answer) {
+pub fn measure(graph: &CellGraph<Convex>, method: ClusterMethod, threads: usize, limit: f64) -> (Measured, Answer) {
     let clock = CpuClock::start(Work::Threads);
     let took = || clock.elapsed().as_secs_f64();
     let mut measured = Measured { done: 1.0, ..Measured::default() };
     let mut undecided = Vec::new();
     let table = match method {
-        Method::Separators | Method::Symmetric => {
+        ClusterMethod::Separators | ClusterMethod::Symmetric => {
             let level =
-                if method == Method::Symmetric { ClassicalLevel::Symmetric } else { ClassicalLevel::Separators };
+                if method == ClusterMethod::Symmetric { ClassicalLevel::Symmetric } else { ClassicalLevel::Separators };
             let options = ClassicalOptions { level, ..ClassicalOptions::default() };
             let seen = classical(graph, options, || took() > limit);
             measured.done = seen.n_finished as f64 / seen.n_gates.max(1) as f64;
             measured.counters = format!("clips={} steps={}", seen.clips, seen.steps);
             matrix_of(graph.n_cells(), &seen.rows.concat()).expect("a row for each cell")
         }
-        Method::Base | Method::Sampling | Method::Exact => {
-            let options = ConvexOptions { fast: method == Method::Base, threads };
+        ClusterMethod::Base | ClusterMethod::Sampling | ClusterMethod::Exact => {
+            let options = ConvexOptions { fast: method == ClusterMethod::Base, threads };
             let mut search = ConvexSearch::new(graph, options);
-            let is_over = |search: &ConvexSearch| method == Method::Sampling && search.state().stage >= 2;
+            let is_over = |search: &ConvexSearch| method == ClusterMethod::Sampling && search.state().stage >= 2;
             let mut is_going = true;
             // Nothing is known before the first stage is done.
             while is_going && !is_over(&search) && (search.state().stage == 0 || took() <= limit) {
                 is_going = search.advance();
             }
             measured.counters = search.state().counters.named().map(|(k, v)| format!("{k}={v}")).join(" ");
-            if method == Method::Exact {
+            if method == ClusterMethod::Exact {
                 let chain = search.chain();
                 measured.counters += &format!(" work={} chain={}", chain.all, chain.longest);
             }
@@ -193,7 +199,7 @@ pub fn measure(graph: &CellGraph<Convex>, method: Method, threads: usize, limit:
 /// Processes that cannot be started, or fail, which then is on standard error too.
 pub fn run(
     spec: &MapSpec,
-    (method, threads, limit): (Method, usize, f64),
+    (method, threads, limit): (ClusterMethod, usize, f64),
     file: &Path,
     n_clusters: usize,
 ) -> Result<(Measured, Answer), MapError> {
@@ -238,7 +244,7 @@ mod tests {
 
     #[test]
     fn answers_are_read_back() {
-        let (measured, mut answer) = measure(&level(), Method::Exact, 1, f64::INFINITY);
+        let (measured, mut answer) = measure(&level(), ClusterMethod::Exact, 1, f64::INFINITY);
         assert!(
             measured.cpu > 0.0
                 && measured.done == 1.0
@@ -261,8 +267,8 @@ mod tests {
     #[test]
     fn what_is_stopped_says_how_far_it_came() {
         let graph = level();
-        let (exact, Answer { table: seen, .. }) = measure(&graph, Method::Exact, 1, f64::INFINITY);
-        let (stopped, Answer { table: possible, .. }) = measure(&graph, Method::Exact, 1, 0.0);
+        let (exact, Answer { table: seen, .. }) = measure(&graph, ClusterMethod::Exact, 1, f64::INFINITY);
+        let (stopped, Answer { table: possible, .. }) = measure(&graph, ClusterMethod::Exact, 1, 0.0);
         assert!(exact.done == 1.0 && stopped.done < 1.0, "{stopped:?}");
         let hidden = |row: usize| possible.row(row).iter().zip(seen.row(row)).any(|(may, seen)| seen & !may != 0);
         assert!(!(0..seen.n_rows()).any(hidden) && possible.count_ones() > seen.count_ones());

@@ -49,7 +49,7 @@ pub enum MapError {
         /// Its name.
         spec: String,
         /// What is wrong with its options.
-        source: sightlines::scenes::SceneError,
+        source: sightlines::scenes::GenerateError,
     },
 }
 

@@ -1,6 +1,6 @@
 //! What was measured, as a file that grows map by map and as a table for people.
 
-use super::job::{Measured, Method};
+use super::job::{ClusterMethod, Measured};
 use crate::program::read_rows;
 use sightlines::pvs::BitMatrix;
 use std::fmt::Write;
@@ -17,7 +17,7 @@ pub struct Row {
     /// Ordered pairs of different clusters that are known to see each other; `None` where nothing is known.
     pub witnessed: Option<u64>,
     /// The method.
-    pub method: Method,
+    pub method: ClusterMethod,
     /// What it took on one thread.
     pub measured: Measured,
     /// Seconds by the clock with two threads; only of the exact search.
@@ -203,7 +203,8 @@ pub fn markdown(rows: &[Row]) -> String {
         .to_owned();
     for map in maps(rows) {
         let own = of_map(rows, map);
-        let exact = own.iter().find(|r| r.method == Method::Exact && r.measured.done == 1.0).map(|r| r.measured.cpu);
+        let exact =
+            own.iter().find(|r| r.method == ClusterMethod::Exact && r.measured.done == 1.0).map(|r| r.measured.cpu);
         for (row, is_first) in own.iter().zip(std::iter::once(true).chain(std::iter::repeat(false))) {
             let head =
                 if is_first { format!("{map} | {} | {}", row.clusters, row.portals) } else { " | | ".to_owned() };
@@ -214,7 +215,7 @@ pub fn markdown(rows: &[Row]) -> String {
          | map | peak, MiB | one thread, wall s | two threads, wall s | ratio | counted |\n\
          | --- | --: | --: | --: | --: | --- |\n";
     for map in maps(rows) {
-        for row in of_map(rows, map).into_iter().filter(|row| row.method == Method::Exact) {
+        for row in of_map(rows, map).into_iter().filter(|row| row.method == ClusterMethod::Exact) {
             let m = &row.measured;
             let [two, ratio] =
                 row.wall_two.map_or([const { String::new() }; 2], |two| [seconds(two), format!("{:.2}", m.wall / two)]);
@@ -245,7 +246,7 @@ fn fields(row: &Row, exact: Option<f64>) -> [String; 9] {
         over(row.proven.map(|[n, _]| n)),
         text(row.missing),
         text(row.proven.map(|[_, n]| n)),
-        text((row.method == Method::Exact).then_some(row.undecided)),
+        text((row.method == ClusterMethod::Exact).then_some(row.undecided)),
     ]
 }
 
@@ -253,7 +254,7 @@ fn fields(row: &Row, exact: Option<f64>) -> [String; 9] {
 pub(crate) mod tests {
     use super::*;
 
-    pub(crate) fn example(map: &str, method: Method, pairs: u64) -> Row {
+    pub(crate) fn example(map: &str, method: ClusterMethod, pairs: u64) -> Row {
         let measured =
             Measured { cpu: 0.5, wall: 0.75, peak: 3 << 20, counters: "clips=7 lines=9".into(), ..Measured::default() };
         Row {
@@ -263,7 +264,7 @@ pub(crate) mod tests {
             witnessed: Some(40),
             method,
             measured: Measured { done: 1.0, ..measured },
-            wall_two: (method == Method::Exact).then_some(0.5),
+            wall_two: (method == ClusterMethod::Exact).then_some(0.5),
             pairs,
             missing: Some(0),
             undecided: 2,
@@ -274,9 +275,12 @@ pub(crate) mod tests {
     #[test]
     fn files_are_read_back_and_rows_replaced() {
         let mut rows = Vec::new();
-        for (map, method, pairs) in
-            [("b", Method::Exact, 44), ("a", Method::Exact, 50), ("b", Method::Base, 60), ("b", Method::Exact, 42)]
-        {
+        for (map, method, pairs) in [
+            ("b", ClusterMethod::Exact, 44),
+            ("a", ClusterMethod::Exact, 50),
+            ("b", ClusterMethod::Base, 60),
+            ("b", ClusterMethod::Exact, 42),
+        ] {
             put(&mut rows, example(map, method, pairs));
         }
         rows[0].witnessed = None;
@@ -295,7 +299,7 @@ pub(crate) mod tests {
 
     #[test]
     fn tables_say_what_is_known() {
-        let mut rows = vec![example("a", Method::Separators, 41), example("a", Method::Exact, 40)];
+        let mut rows = vec![example("a", ClusterMethod::Separators, 41), example("a", ClusterMethod::Exact, 40)];
         rows[0].measured.done = 0.25;
         let says = |rows: &[Row], what: &str| assert!(markdown(rows).contains(what), "{}", markdown(rows));
         let stopped = "| separators only, not finished in 0 s (25.0 % done) | > 0.50 | > 1.00 | 41 |";

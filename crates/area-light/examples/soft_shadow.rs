@@ -2,7 +2,7 @@
 //!
 //! `cargo run -p sightlines-area-light --example soft_shadow`
 
-use sightlines_area_light::{Options, Shade, Shadows, Sides, shown};
+use sightlines_area_light::{LightOptions, Shade, Shadows, Sides, shown};
 use sightlines_from_region::ViewShafts;
 use sightlines_geometry::{Aabb, Point3};
 use sightlines_multifocal::Volume;
@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut method = ViewShafts::new(patches(&triangles, &PatchOptions::default()));
     println!("depth   umbra     lit  doubt   rays of those that tracing all takes");
     for max_depth in [2, 4, 6, 8, 10, 12] {
-        let options = Options { max_depth, sides: Sides::Towards(eye), ..Options::default() };
+        let options = LightOptions { max_depth, sides: Sides::Towards(eye), ..LightOptions::default() };
         let lighting = shadows.classify(&shown(&faces, &image), &light, &mut method, &options)?;
         let picture = shadows.picture(&lighting, &camera, &image, 64);
         let areas = lighting.areas();

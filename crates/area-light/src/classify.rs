@@ -4,7 +4,7 @@ use crate::hull::{Hull, Light};
 use crate::lighting::{LightCounters, Lighting};
 use crate::rays::Blockers;
 use crate::vector::area;
-use crate::{LightingAreas, Options, Piece, Side, State};
+use crate::{LightOptions, LightingAreas, Piece, Side, State};
 use sightlines_geometry::{Aabb, BoxTree, Point3, check_coordinate};
 use sightlines_multifocal::{BackendError, FromRegion, Umbra, Volume};
 use sightlines_visible_surface::{FaceMask, Faces};
@@ -53,7 +53,7 @@ impl<'a> Shadows<'a> {
         chosen: &FaceMask,
         light: &Volume,
         method: &mut dyn FromRegion,
-        options: &Options,
+        options: &LightOptions,
     ) -> Result<Lighting, BackendError> {
         let guarantee = method.guarantee();
         let mut asking = Asking {
@@ -94,7 +94,7 @@ impl<'a> Shadows<'a> {
 struct Asking<'a, 'u> {
     shadows: &'a Shadows<'a>,
     light: Light,
-    options: &'a Options,
+    options: &'a LightOptions,
     umbra: Box<dyn Umbra + 'u>,
     counters: LightCounters,
     pieces: Vec<Piece>,

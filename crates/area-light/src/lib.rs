@@ -27,6 +27,6 @@ mod vector;
 
 pub use classify::Shadows;
 pub use lighting::{LightCounters, Lighting, LightingAreas};
-pub use options::{Options, Side, Sides};
+pub use options::{LightOptions, Side, Sides};
 pub use picture::{LightPicture, Shade, shown};
 pub use piece::{Piece, State};

@@ -59,7 +59,7 @@ impl Sides {
 
 /// How finely faces are cut.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Options {
+pub struct LightOptions {
     /// Which sides are classified.
     pub sides: Sides,
     /// How often a piece is halved at most: a face becomes up to `2^max_depth` pieces for each side.
@@ -68,7 +68,7 @@ pub struct Options {
     pub min_size: f64,
 }
 
-impl Default for Options {
+impl Default for LightOptions {
     /// Both sides, up to 1024 pieces of a face, of any size.
     fn default() -> Self {
         Self { sides: Sides::Both, max_depth: 10, min_size: 0.0 }

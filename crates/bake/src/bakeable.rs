@@ -5,7 +5,7 @@ use crate::quake::{PortalsError, portals_of_map};
 use sightlines_cells::{Plan, PlanError};
 use sightlines_formats::doom::{MapChoiceError, choose_map, list_maps};
 use sightlines_formats::quake::{Bsp, Prt};
-use sightlines_formats::{DoomMap, Input, LumpName, Malformed, ReadError, SceneFile, Simplified, Source, Wad};
+use sightlines_formats::{DoomMap, Input, LumpName, Malformed, ReadError, SceneFile, Simplification, Source, Wad};
 
 /// What was read from a file and can be baked. Owns what a [`BakeInput`] borrows: [`bake`](fn@crate::bake) takes a reference.
 #[derive(Debug)]
@@ -83,7 +83,7 @@ impl Bakeable {
             Input::Plan(file) => Ok(Self::Plan { plan: file.plan, map: None }),
             Input::Wad(wad) => Self::of_wad(&wad, map),
             Input::Scene(file) => match file.info.simplified {
-                Some(Simplified { occluder: false }) => Err(BakeableError::Moved),
+                Some(Simplification { occluder: false }) => Err(BakeableError::Moved),
                 _ => Ok(Self::Scene(file)),
             },
             Input::Prt(prt) => Ok(Self::Portals(prt)),

@@ -4,7 +4,7 @@
 //!
 //! # Scope
 //!
-//! - **Owns**: the whole way for any input ([`bake`](fn@bake)): what to bake ([`BakeRequest`]), all decisions before the work ([`Prepared`]), the work; from a file of any format ([`Bakeable`]), and the steps for each kind of it ([`bake_plan`], [`bake_scene`],
+//! - **Owns**: the whole way for any input ([`bake`](fn@bake)): what to bake ([`BakeRequest`]), all decisions before the work ([`PreparedBake`]), the work; from a file of any format ([`Bakeable`]), and the steps for each kind of it ([`bake_plan`], [`bake_scene`],
 //!   [`bake_regions`], [`bake_prt`], [`bake_map`]), all of which return the graph, the table and a report ([`Baked`]); stab
 //!   trees ([`with_stab_trees`]) and proofs ([`certify_table`]) from a graph, and the graph of a stored table ([`from_table`]);
 //!   from-region methods and backends by name ([`methods`]), and the choice of methods from the properties of an input
@@ -76,7 +76,7 @@ pub use needs::portals_need;
 pub use options::{ParseSceneMethodError, Recipe, SceneMethod};
 pub use places::PlaceOptions;
 pub use plan::{PlanBakeOptions, bake_plan};
-pub use prepared::{Decisions, Prepared, StatedViewers};
+pub use prepared::{BakeDecisions, PreparedBake, StatedViewers};
 pub use quake::{PrtBakeError, PrtOptions, VisMap, bake_map, bake_prt, vis_map};
 pub use region::{CellsFrom, MakeMethod, RegionBakeOptions, bake_regions};
 pub use reject::{

@@ -105,7 +105,7 @@ fn cut(plan: &Plan, options: &PlanBakeOptions<'_>) -> Result<(CellGraph<Planar>,
     if by_tree {
         let cut = sightlines_kdtree::subdivide_plan(
             plan,
-            &sightlines_kdtree::Options { tau: options.tau, ..Default::default() },
+            &sightlines_kdtree::KdOptions { tau: options.tau, ..Default::default() },
         )?;
         let n_ignored_walls = cut.left_over.len();
         Ok((cut.graph, PlanReport { subdivide: Subdivide::KdTree, n_ignored_walls, ..PlanReport::default() }))

@@ -27,10 +27,10 @@ impl BakeRequest {
         &self,
         input: impl Into<BakeInput<'i>>,
         runtime: &Runtime<'_>,
-    ) -> Result<Prepared<'i>, BakeError> {
+    ) -> Result<PreparedBake<'i>, BakeError> {
         let input = input.into();
         self.check(&input)?;
-        Prepared::new(self, input, runtime)
+        PreparedBake::new(self, input, runtime)
     }
 }
 
@@ -47,7 +47,7 @@ impl Runtime<'_> {
 /// What was decided of an input, and why: beside what the request said.
 #[derive(Debug, Clone, Default)]
 #[non_exhaustive]
-pub struct Decisions {
+pub struct BakeDecisions {
     /// The box around the view volumes that the file of a scene states, if viewers are there; along the axes of the file.
     pub viewers: Option<StatedViewers>,
     /// How many times the surface of given cells the boxes have that are taken in their place; see [`growth_of_cells`].
@@ -67,17 +67,17 @@ pub struct StatedViewers {
 
 /// An input with all decisions about its bake: what [`BakeRequest::prepare`] returns.
 #[derive(Debug)]
-pub struct Prepared<'i> {
+pub struct PreparedBake<'i> {
     input: BakeInput<'i>,
     framed: Option<Framed>,
     recipe: Recipe,
-    decisions: Decisions,
+    decisions: BakeDecisions,
 }
 
-impl<'i> Prepared<'i> {
+impl<'i> PreparedBake<'i> {
     pub(crate) fn new(request: &BakeRequest, input: BakeInput<'i>, runtime: &Runtime<'_>) -> Result<Self, BakeError> {
         let is_auto = request.method == Some(SceneMethod::Auto);
-        let mut decisions = Decisions { cells_growth: 1.0, ..Decisions::default() };
+        let mut decisions = BakeDecisions { cells_growth: 1.0, ..BakeDecisions::default() };
         let mut recipe = request.recipe();
         let BakeInput::Scene(of_file, file) = input else {
             decisions.choice = is_auto.then(|| no_choice(&input));
@@ -138,7 +138,7 @@ impl<'i> Prepared<'i> {
     }
 
     /// What was decided beside what the request said.
-    pub fn decisions(&self) -> &Decisions {
+    pub fn decisions(&self) -> &BakeDecisions {
         &self.decisions
     }
 

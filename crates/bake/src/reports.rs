@@ -5,7 +5,7 @@ use crate::limit::LimitReport;
 use crate::places::PlaceSummary;
 use crate::subdivide::Subdivide;
 use sightlines_kdtree::SceneSummary;
-use sightlines_multifocal::Effort;
+use sightlines_multifocal::WorkDone;
 use sightlines_sightline::ShaftCounters;
 use sightlines_stabtree::ConvexVisibility;
 use std::collections::BTreeMap;
@@ -134,7 +134,7 @@ pub struct RegionReport {
     /// Name of the from-region method, if there was one.
     pub method: Option<String>,
     /// What the method did.
-    pub effort: Effort,
+    pub effort: WorkDone,
     /// The doors of the scene, by object, and the portals that they close; none for cells without portals.
     pub doors: Vec<DoorPortals>,
     /// Unordered pairs of different cells that may see each other.

@@ -22,7 +22,7 @@ use std::io::Write;
 /// Bakes an input as a request says: cuts it into cells where it has none, decides what they see, and makes the table.
 ///
 /// Errs towards visible, and gives the same table, byte for byte, with any number of threads. [`BakeRequest::prepare`] and
-/// [`Prepared::run`](crate::Prepared::run) are its two halves, for those who want to see what was decided, to name the number of threads, to
+/// [`PreparedBake::run`](crate::PreparedBake::run) are its two halves, for those who want to see what was decided, to name the number of threads, to
 /// hear of the progress, or to go on after a stop. The functions for one kind
 /// of input ([`bake_plan`], [`bake_scene`], [`bake_regions`], [`bake_prt`], [`bake_map`]) document what each decides, and take
 /// further arguments: the state of a search to resume, or any from-region method.

@@ -4,7 +4,7 @@ use crate::error::BakeError;
 use sightlines_cells::Plan;
 use sightlines_pvs::BitMatrix;
 use sightlines_stabtree::{SearchOptions, Zones, planar_visibility};
-use sightlines_triangulation::{Summary, TriangulationError, subdivide};
+use sightlines_triangulation::{SubdivisionSummary, TriangulationError, subdivide};
 
 /// Which groups see each other, groups by groups: symmetric, with the diagonal set, for groups below
 /// `n_groups`; and what the subdivision did.
@@ -18,13 +18,17 @@ use sightlines_triangulation::{Summary, TriangulationError, subdivide};
 ///
 /// # Errors
 /// [`BakeError`] for a plan without lines.
-pub fn see_groups(plan: &Plan, n_groups: u32, options: &SearchOptions<'_>) -> Result<(BitMatrix, Summary), BakeError> {
+pub fn see_groups(
+    plan: &Plan,
+    n_groups: u32,
+    options: &SearchOptions<'_>,
+) -> Result<(BitMatrix, SubdivisionSummary), BakeError> {
     let n = n_groups.max(plan.n_groups()) as usize;
     let mut seen = BitMatrix::identity(n);
     let (graph, summary) = match subdivide(plan) {
         Ok(cut) => cut,
         // Without groups, collinear lines enclose no region, so nothing is visible.
-        Err(TriangulationError::Flat) => return Ok((seen, Summary::default())),
+        Err(TriangulationError::Flat) => return Ok((seen, SubdivisionSummary::default())),
         Err(error) => return Err(error.into()),
     };
     let (zones, groups) = Zones::by_groups(&graph);

@@ -5,7 +5,7 @@ use crate::info::below;
 use crate::query::put_ids;
 use crate::status::{Failure, SlStatus, guard};
 use crate::viewer::{SlViewer, viewer};
-use sightlines_eye_to_cell::Image;
+use sightlines_eye_to_cell::MirrorImage;
 use sightlines_walkthrough::Viewer;
 use std::sync::MutexGuard;
 
@@ -46,7 +46,7 @@ pub unsafe extern "C" fn sl_viewer_follow_mirrors(
     })
 }
 
-fn image_of<'a>(viewer: &'a MutexGuard<'_, Viewer>, image: u32) -> Result<&'a Image, Failure> {
+fn image_of<'a>(viewer: &'a MutexGuard<'_, Viewer>, image: u32) -> Result<&'a MirrorImage, Failure> {
     Ok(&viewer.images()[below(image, viewer.images().len(), "image")?])
 }
 

@@ -8,7 +8,7 @@ use crate::query::put_ids;
 use crate::status::{Failure, Outcome, SlStatus, guard};
 use crate::table::SlTable;
 use crate::view::{SlView, view_of};
-use sightlines_eye_to_cell::{Budget, Method};
+use sightlines_eye_to_cell::{Method, StepBudget};
 use sightlines_pvs::PortalId;
 use sightlines_walkthrough::Viewer;
 use std::sync::{Arc, Mutex, MutexGuard};
@@ -75,7 +75,7 @@ pub unsafe extern "C" fn sl_viewer_set_method(viewer: *mut SlViewer, method: u32
         let mut viewer = unsafe { self::viewer(viewer)? };
         let method = Method::ALL[below(method, Method::ALL.len(), "method")?];
         viewer.set_method(method);
-        viewer.set_budget(Budget::steps(max_steps));
+        viewer.set_budget(StepBudget::steps(max_steps));
         Ok(())
     })
 }

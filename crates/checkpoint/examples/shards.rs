@@ -1,6 +1,6 @@
 //! A job whose shards three processes could do at once: here they follow each other.
 
-use sightlines_checkpoint::{Job, JobStore, KeyHasher, Manifest, Outcome, Role};
+use sightlines_checkpoint::{Job, JobProgress, JobRole, JobStore, KeyHasher, Manifest};
 use sightlines_progress::{Halt, Phase, Units};
 use std::time::Duration;
 
@@ -27,16 +27,16 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let job = Job::create(&folder, manifest)?;
 
     // The first call finds out which phase there is, and cuts it.
-    let planner = JobStore::new(job, Role::Merge, Duration::ZERO)?;
+    let planner = JobStore::new(job, JobRole::Merge, Duration::ZERO)?;
     assert_eq!(sum(Units(Some(&planner))), Err(Halt::Shared));
     let job = planner.job();
     for shard in 0..job.manifest().n_shards() {
         println!("shard {shard}: {:?}", job.shard(shard)?.1);
-        let store = JobStore::new(job.clone(), Role::shard(shard), Duration::ZERO)?;
+        let store = JobStore::new(job.clone(), JobRole::shard(shard), Duration::ZERO)?;
         assert_eq!(sum(Units(Some(&store))), Err(Halt::Shared));
-        assert_eq!(store.outcome(), Some(Outcome::Done));
+        assert_eq!(store.outcome(), Some(JobProgress::Done));
     }
-    let merger = JobStore::new(job, Role::Merge, Duration::ZERO)?;
+    let merger = JobStore::new(job, JobRole::Merge, Duration::ZERO)?;
     println!("the sum is {}", sum(Units(Some(&merger)))?);
     std::fs::remove_dir_all(folder)?;
     Ok(())

@@ -1,7 +1,7 @@
 //! Results in a file, found by their phase and unit.
 
 use crate::error::StateError;
-use crate::records::{self, DIVISION, Owner, Place, Scan, scan};
+use crate::records::{self, DIVISION, Owner, RecordSpan, Scan, scan};
 use std::collections::HashMap;
 use std::fs::File;
 use std::io;
@@ -13,9 +13,9 @@ pub(crate) struct Results {
     path: PathBuf,
     /// None while it is closed.
     file: Option<File>,
-    places: HashMap<String, HashMap<u64, Place>>,
+    places: HashMap<String, HashMap<u64, RecordSpan>>,
     /// How phases are divided, by their names.
-    divisions: HashMap<String, Place>,
+    divisions: HashMap<String, RecordSpan>,
     pub(crate) mark: [u8; 16],
     /// Where the next record goes.
     pub(crate) end: u64,
@@ -72,7 +72,7 @@ impl Results {
         }
     }
 
-    pub(crate) fn add(&mut self, phase: &str, unit: u64, place: Place) {
+    pub(crate) fn add(&mut self, phase: &str, unit: u64, place: RecordSpan) {
         if unit == DIVISION {
             self.divisions.insert(phase.to_owned(), place);
             return;

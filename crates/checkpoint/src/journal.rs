@@ -5,7 +5,7 @@ use crate::error::StateError;
 use crate::index::Results;
 use crate::key::Key;
 use crate::lock::{lock, new_mark};
-use crate::records::{self, DIVISION, Owner, Place, record};
+use crate::records::{self, DIVISION, Owner, RecordSpan, record};
 use sightlines_progress::{Halt, Pass, Phase, UnitStore};
 use std::collections::BTreeMap;
 use std::fs::{self, File, OpenOptions};
@@ -16,7 +16,7 @@ use std::time::{Duration, Instant};
 
 /// What to do with the results that a file has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Opening {
+pub enum OpenMode {
     /// Nothing: once there are other results, a file of results is renamed to [`Journal::before_path`].
     Anew,
     /// Go on from them; a file of another bake is refused.
@@ -70,9 +70,9 @@ impl Journal {
     /// Results of the bake `key` of a version of a program, in the file at `path`, which is made after `after`.
     ///
     /// # Errors
-    /// [`StateError`] for a file that cannot be read, for one that another process uses, for one that holds no results, and with [`Opening::Resume`] for
+    /// [`StateError`] for a file that cannot be read, for one that another process uses, for one that holds no results, and with [`OpenMode::Resume`] for
     /// one of another bake.
-    pub fn open(path: &Path, key: Key, program: &str, opening: Opening, after: Duration) -> Result<Self, StateError> {
+    pub fn open(path: &Path, key: Key, program: &str, opening: OpenMode, after: Duration) -> Result<Self, StateError> {
         let owner = Owner { key, program: program.to_owned() };
         let mut state = State::default();
         let (mut n_before, mut n_damaged) = (0, 0);
@@ -83,14 +83,14 @@ impl Journal {
                 lock(path, &file)?;
                 let again = || file.try_clone().map_err(|source| StateError::read(path, source));
                 match (Results::of(path, again()?, &owner), opening) {
-                    (Ok(results), Opening::Resume) => state.results = results,
-                    (Ok(results), Opening::Anew) => {
+                    (Ok(results), OpenMode::Resume) => state.results = results,
+                    (Ok(results), OpenMode::Anew) => {
                         n_before = results.as_ref().map_or(0, Results::n_results);
                         state.before = Some(Before { file, mark: results.map(|results| results.mark) });
                     }
                     (
                         Err(StateError::OtherKey(_) | StateError::OtherProgram { .. } | StateError::OtherForm(_)),
-                        Opening::Anew,
+                        OpenMode::Anew,
                     ) => state.before = Some(Before { file, mark: None }),
                     (Err(error), _) => return Err(error),
                 }
@@ -129,7 +129,7 @@ impl Journal {
         self.n_damaged
     }
 
-    /// With [`Opening::Anew`], how many results of the same bake a file has that this bake begins without.
+    /// With [`OpenMode::Anew`], how many results of the same bake a file has that this bake begins without.
     pub fn n_before(&self) -> usize {
         self.n_before
     }
@@ -272,7 +272,7 @@ fn append(results: &mut Results, phase: &str, unit: u64, result: &[u8]) -> io::R
         let _ = file.set_len(offset);
         return Err(error);
     }
-    results.add(phase, unit, Place { offset, n_bytes: record.len() as u64 });
+    results.add(phase, unit, RecordSpan { offset, n_bytes: record.len() as u64 });
     results.end = offset + record.len() as u64;
     Ok(())
 }

@@ -22,8 +22,8 @@ mod records;
 pub use error::StateError;
 pub use inputs::{Identity, InputFile, Inputs};
 pub use job::{
-    Job, JobError, JobSlot, JobStore, Manifest, Outcome, ParseShardRunError, PhasePlan, PhaseStatus, Role, ShardPlan,
-    ShardRun, ShardState, batch, cut, in_words,
+    Job, JobError, JobProgress, JobRole, JobSlot, JobStore, Manifest, ParseShardRunError, PhasePlan, PhaseStatus,
+    ShardPlan, ShardRun, ShardState, batch, cut, in_words,
 };
-pub use journal::{Journal, Opening};
+pub use journal::{Journal, OpenMode};
 pub use key::{Key, KeyHasher, ParseKeyError};

@@ -68,7 +68,7 @@ pub(crate) fn record(phase: &str, unit: u64, result: &[u8]) -> Vec<u8> {
 
 /// Where a record is in its file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Place {
+pub(crate) struct RecordSpan {
     pub(crate) offset: u64,
     pub(crate) n_bytes: u64,
 }
@@ -78,7 +78,7 @@ pub(crate) struct Place {
 pub(crate) struct Scan {
     pub(crate) header: Header,
     /// Phase, unit and place of each sound record, as they come.
-    pub(crate) records: Vec<(String, u64, Place)>,
+    pub(crate) records: Vec<(String, u64, RecordSpan)>,
     /// Where the last whole record ends.
     pub(crate) end: u64,
     /// Whether the file ends with the record of a finished one, and there are as many others as that states.
@@ -118,7 +118,7 @@ pub(crate) fn scan(path: &Path, file: &File) -> Result<Option<Scan>, StateError>
                 break;
             }
             Found::Record { phase, unit, n } => {
-                records.push((phase, unit, Place { offset: at, n_bytes: n }));
+                records.push((phase, unit, RecordSpan { offset: at, n_bytes: n }));
                 n
             }
             Found::Damaged { n } => {
@@ -280,7 +280,7 @@ fn parse_head(head: &[u8; RECORD_HEAD]) -> Option<Head> {
 }
 
 /// The result in the record at a place, if it still is the record of that unit.
-pub(crate) fn load(file: &mut File, place: Place, phase: &str, unit: u64) -> io::Result<Option<Vec<u8>>> {
+pub(crate) fn load(file: &mut File, place: RecordSpan, phase: &str, unit: u64) -> io::Result<Option<Vec<u8>>> {
     file.seek(SeekFrom::Start(place.offset))?;
     let mut bytes = vec![0; usize::try_from(place.n_bytes).map_err(|_| io::ErrorKind::OutOfMemory)?];
     if !fill(file, &mut bytes)? {

@@ -10,7 +10,7 @@ use sightlines::bake::{Bakeable, BakeableError};
 use sightlines::formats::doom::{DoomMap, MapChoiceError, choose_map, list_maps};
 use sightlines::formats::input::HEAD;
 use sightlines::formats::quake::Prt;
-use sightlines::formats::scene::{SceneReadOptions, Simplified, read_scene_with};
+use sightlines::formats::scene::{SceneReadOptions, Simplification, read_scene_with};
 use sightlines::formats::{Input, InputKind, PlanReadOptions, ReadError, SceneFile, Source, Wad, detect_file};
 use sightlines::pvs::Table;
 use std::fs::File;
@@ -132,7 +132,7 @@ pub(crate) fn scene(path: &Path, options: &SceneReadOptions) -> Result<SceneFile
 /// Refuses a scene whose triangles were moved by simplification.
 pub(crate) fn check_occluder(path: &Path, file: &SceneFile) -> Result<()> {
     match file.info.simplified {
-        Some(Simplified { occluder: false }) => Err(no_occluder(path)),
+        Some(Simplification { occluder: false }) => Err(no_occluder(path)),
         _ => Ok(()),
     }
 }

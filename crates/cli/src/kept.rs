@@ -4,7 +4,7 @@ use crate::error::{Result, anyhow};
 use crate::interrupt;
 use crate::output::{self, count};
 use crate::plain::plain;
-use sightlines::checkpoint::{Identity, Inputs, JobStore, Journal, Key, Opening, StateError};
+use sightlines::checkpoint::{Identity, Inputs, JobStore, Journal, Key, OpenMode, StateError};
 use sightlines::progress::{Halt, UnitStore, Units};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -61,7 +61,7 @@ impl ResumeArgs {
         if inputs.paths().chain(outputs.iter().copied()).any(|other| output::is_one_place(other, &path)) {
             return Err(output::two_outputs(&path));
         }
-        let opening = if self.resume { Opening::Resume } else { Opening::Anew };
+        let opening = if self.resume { OpenMode::Resume } else { OpenMode::Anew };
         let after = Duration::from_secs(self.save_after);
         let journal = Journal::open(&path, key, PROGRAM, opening, after);
         let journal = journal.map_err(|error| anyhow!("{error}{}", advice(&error)))?.or_in_memory();
@@ -87,10 +87,10 @@ impl ResumeArgs {
     fn open_if_it_fits(&self, outputs: &[&Path], key: Key) -> Option<Journal> {
         let path = self.path(outputs.first().copied().unwrap_or(Path::new("out")));
         let after = Duration::from_secs(self.save_after);
-        let opened = match Journal::open(&path, key, PROGRAM, Opening::Resume, after) {
+        let opened = match Journal::open(&path, key, PROGRAM, OpenMode::Resume, after) {
             Err(error @ (StateError::OtherKey(_) | StateError::OtherProgram { .. } | StateError::OtherForm(_))) => {
                 tracing::warn!("{}; beginning anew", plain(&error.to_string()));
-                Journal::open(&path, key, PROGRAM, Opening::Anew, after)
+                Journal::open(&path, key, PROGRAM, OpenMode::Anew, after)
             }
             opened => opened,
         };

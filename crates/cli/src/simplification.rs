@@ -235,7 +235,7 @@ pub(crate) fn written(
     format: OutFormat,
 ) -> Result<Written> {
     let occluder = simplified.is_occluder(is_framed);
-    let said = scene::Simplified { occluder };
+    let said = scene::Simplification { occluder };
     let exact = |bytes| Written { bytes, rounding: Rounding::default(), occluder };
     if let Some(source) = source {
         let change = |(k, list): (usize, &Vec<[u32; 3]>)| simplified.changes(scene, k).then(|| list.clone());

@@ -10,7 +10,7 @@
 //! ```
 
 use sightlines_eye_to_cell::{
-    Budget, Doors, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph, follow_reflections,
+    Doors, Method, Scratch, StepBudget, TableCells, View, VisibleSet, VisibleSubgraph, follow_reflections,
 };
 use sightlines_pvs::{
     BitMatrix, CellId, CellRecord, DoorRecord, Locator, MirrorId, MirrorRecord, PortalId, PortalRecord, Table,
@@ -47,7 +47,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let subgraphs = (0..3).map(|cell| VisibleSubgraph::prepare(&cells, CellId(cell))).collect::<Result<Vec<_>, _>>()?;
     let (mut seen, mut scratch, mut doors) = (VisibleSet::new(), Scratch::new(), Doors::all_open());
     // What a frame may spend: without it, the exact method takes as long as it needs.
-    scratch.allow(Budget::FRAME);
+    scratch.allow(StepBudget::FRAME);
     let eye = [4.5, 0.5];
     for degrees in [0, 60, 90, 180] {
         let (sin, cos) = f64::from(degrees).to_radians().sin_cos();

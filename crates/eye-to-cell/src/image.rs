@@ -18,7 +18,7 @@ const MOST_VIEWS: usize = 1024;
 
 /// What is seen by way of one mirror after another.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Image {
+pub struct MirrorImage {
     /// The mirrors, in the order in which a line from the eye meets them.
     pub mirrors: Vec<MirrorId>,
     /// The cells, ascending.
@@ -44,7 +44,7 @@ pub fn follow_reflections<O: Borrow<VisibleSubgraph>>(
     scratch: &mut Scratch,
     [n_cells, n_objects]: [usize; 2],
     mut subgraph: impl FnMut(CellId) -> Option<O>,
-) -> Vec<Image> {
+) -> Vec<MirrorImage> {
     let mut images: BTreeMap<Vec<MirrorId>, Sets> = BTreeMap::new();
     let step = |mirrors: &[MirrorId], next: &Reflection| ([mirrors, &[next.mirror]].concat(), next.clone());
     let mut pending: Vec<(Vec<MirrorId>, Reflection)> = match bounces {
@@ -69,7 +69,7 @@ pub fn follow_reflections<O: Borrow<VisibleSubgraph>>(
             pending.extend(seen.reflections.iter().map(|r| step(&mirrors, r)));
         }
     }
-    let image = |(mirrors, Sets { cells, objects, misses, fell_back }): (Vec<MirrorId>, Sets)| Image {
+    let image = |(mirrors, Sets { cells, objects, misses, fell_back }): (Vec<MirrorId>, Sets)| MirrorImage {
         mirrors,
         cells: cells.into_iter().collect(),
         objects: objects.into_iter().collect(),

@@ -27,8 +27,8 @@ mod view;
 mod visible_set;
 
 pub use doors::Doors;
-pub use image::{Image, follow_reflections};
-pub use method::{Budget, Method, Scratch, UnknownMethod};
+pub use image::{MirrorImage, follow_reflections};
+pub use method::{Method, Scratch, StepBudget, UnknownMethod};
 pub use named::CloseError;
 pub use source::{CellSource, MirrorPiece, PortalEdge, StabStep};
 pub use subgraph::VisibleSubgraph;

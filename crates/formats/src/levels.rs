@@ -14,7 +14,7 @@
 //! its maker (the file has textures as well). `cells` has for each cell of the table the number of its level, or null where the whole
 //! scene is to be drawn. In `budget` and `bound` is the share of the sphere of directions in which an eye in the cells may meet another face
 //! first than in the whole scene: what was allowed, and what is promised. `occluder` states whether the level lies inside the scene, as in
-//! [`Simplified`](crate::scene::Simplified). `file` is beside the index. Members that are not shown here mean nothing.
+//! [`Simplification`](crate::scene::Simplification). `file` is beside the index. Members that are not shown here mean nothing.
 
 use crate::ReadError;
 use crate::bytes::without_mark;

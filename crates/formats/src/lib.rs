@@ -45,6 +45,6 @@ pub use levels::{LevelFile, LevelsIndex};
 pub use plan::{DroppedLines, PlanFile, PlanReadOptions};
 pub use quake::{Bsp, Prt};
 pub use reject::RejectTable;
-pub use scene::{GltfSource, SceneFile, SceneInfo, Simplified};
+pub use scene::{GltfSource, SceneFile, SceneInfo, Simplification};
 pub use view_cells::{ViewCell, ViewCells};
 pub use wad::{LumpName, Wad, WadBuilder, WadError};

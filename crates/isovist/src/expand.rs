@@ -7,7 +7,7 @@
 
 use crate::WallMesh;
 use crate::edge::{NONE, next, previous};
-use crate::locate::Place;
+use crate::locate::MeshPlace;
 use sightlines_geometry::Point2;
 use std::collections::HashSet;
 
@@ -43,18 +43,18 @@ impl WallMesh {
     pub(crate) fn expand(
         &self,
         eye: Point2,
-        place: Place,
+        place: MeshPlace,
         rays: Rays,
         stack: &mut Vec<Window>,
         visitor: &mut impl Visitor,
     ) {
         stack.clear();
         match place {
-            Place::Inside(t) => {
+            MeshPlace::Inside(t) => {
                 visitor.start(t);
                 self.first(rays, &[3 * t, 3 * t + 1, 3 * t + 2], eye, stack, visitor);
             }
-            Place::OnEdge(edge) => {
+            MeshPlace::OnEdge(edge) => {
                 let twin = self.edges[edge as usize].twin;
                 visitor.start(edge / 3);
                 self.first(rays, &[next(edge), previous(edge)], eye, stack, visitor);
@@ -63,7 +63,7 @@ impl WallMesh {
                     self.first(rays, &[next(twin), previous(twin)], eye, stack, visitor);
                 }
             }
-            Place::OnCorner(edge) => {
+            MeshPlace::OnCorner(edge) => {
                 // Counter-clockwise; on the frame the first triangles come last, and the order begins with them.
                 let mut out: Vec<u32> = self.leaving(edge).collect();
                 if let Some(gap) =

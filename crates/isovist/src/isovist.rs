@@ -76,7 +76,7 @@ impl Isovist {
 
 /// Computes isovists one after the other with the same memory.
 #[derive(Debug, Clone)]
-pub struct Viewer<'a> {
+pub struct IsovistFinder<'a> {
     mesh: &'a WallMesh,
     stack: Vec<Window>,
     ends: Ends,
@@ -98,7 +98,7 @@ impl Visitor for Ends {
 }
 
 impl WallMesh {
-    /// The isovist of a point. For many points, a [`Viewer`] saves memory.
+    /// The isovist of a point. For many points, a [`IsovistFinder`] saves memory.
     ///
     /// Exact: see [`Isovist`]. Cost: about 10 ns for each triangle that is seen, and 50 ns for each vertex.
     ///
@@ -109,7 +109,7 @@ impl WallMesh {
     /// Benedikt, "To take hold of space: isovists and isovist fields", Environment and Planning B 6, 1979.
     pub fn isovist(&self, eye: Point2) -> Result<Isovist, EyeError> {
         let mut isovist = Isovist::default();
-        Viewer::new(self).look(eye, &mut isovist)?;
+        IsovistFinder::new(self).look(eye, &mut isovist)?;
         Ok(isovist)
     }
 
@@ -132,7 +132,7 @@ impl WallMesh {
     }
 }
 
-impl<'a> Viewer<'a> {
+impl<'a> IsovistFinder<'a> {
     /// A viewer in this mesh.
     pub fn new(mesh: &'a WallMesh) -> Self {
         Self { mesh, stack: Vec::new(), ends: Ends::default() }

@@ -25,14 +25,14 @@ mod region;
 mod sees;
 mod space;
 
-pub use isovist::{Boundary, Isovist, Viewer};
+pub use isovist::{Boundary, Isovist, IsovistFinder};
 
 pub use limit::{LimitError, Limits, Sector};
 pub use locate::EyeError;
 pub use measures::Measures;
 pub use mesh::WallMesh;
 pub use points::PointIndex;
-pub use region::{Region, cells_of_region, seen_from_any};
+pub use region::{ViewerRegion, cells_of_region, seen_from_any};
 pub use sees::Touch;
 pub use space::{Estimate, Surroundings};
 

@@ -6,7 +6,7 @@ use sightlines_geometry::Point2;
 
 /// Where a point lies in the mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Place {
+pub(crate) enum MeshPlace {
     /// Inside a triangle.
     Inside(u32),
     /// Inside an edge.
@@ -45,7 +45,7 @@ impl WallMesh {
     ///
     /// A walk towards the point from a triangle near it, O(1) on average: a triangle is left through an edge that has the point on
     /// its other side. A walk that takes too many steps ends in a search of all triangles.
-    pub(crate) fn locate(&self, p: Point2) -> Result<(Point2, Place), EyeError> {
+    pub(crate) fn locate(&self, p: Point2) -> Result<(Point2, MeshPlace), EyeError> {
         let check = |x: f64| sightlines_geometry::check_coordinate(x);
         let wrong = |kind| EyeError::Coordinate { x: p.x, y: p.y, kind };
         let p = Point2::new(check(p.x).map_err(wrong)?, check(p.y).map_err(wrong)?);
@@ -86,13 +86,13 @@ impl WallMesh {
                 continue;
             }
             let place = match n_on {
-                0 => Place::Inside(triangle),
-                1 => Place::OnEdge(on[0]),
+                0 => MeshPlace::Inside(triangle),
+                1 => MeshPlace::OnEdge(on[0]),
                 // The corner that two edges share starts one of them.
-                _ if next(on[0]) == on[1] => Place::OnCorner(on[1]),
+                _ if next(on[0]) == on[1] => MeshPlace::OnCorner(on[1]),
                 _ => {
                     debug_assert_eq!(previous(on[0]), on[1]);
-                    Place::OnCorner(on[0])
+                    MeshPlace::OnCorner(on[0])
                 }
             };
             return Ok((p, place));

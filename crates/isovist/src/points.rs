@@ -2,7 +2,7 @@
 
 use crate::edge::NONE;
 use crate::expand::{Rays, Visitor, Window};
-use crate::locate::Place;
+use crate::locate::MeshPlace;
 use crate::{EyeError, Touch, WallMesh};
 use sightlines_geometry::{Point2, orient2d};
 
@@ -10,7 +10,7 @@ use sightlines_geometry::{Point2, orient2d};
 #[derive(Debug, Clone)]
 pub struct PointIndex {
     points: Vec<Point2>,
-    places: Vec<Place>,
+    places: Vec<MeshPlace>,
     first: Vec<u32>,
     items: Vec<(Point2, u32)>,
 }
@@ -31,7 +31,7 @@ struct Seen<'a> {
     mesh: &'a WallMesh,
     index: &'a PointIndex,
     eye: Point2,
-    place: Place,
+    place: MeshPlace,
     touch: Touch,
     seen: &'a mut Vec<u32>,
 }
@@ -41,7 +41,7 @@ impl Visitor for Seen<'_> {
         // Nothing is between the eye and a point of a triangle around it, unless both are on the line of one of its walls.
         for &(p, i) in self.index.in_triangle(triangle) {
             let clear = match self.place {
-                Place::Inside(_) => true,
+                MeshPlace::Inside(_) => true,
                 _ => p == self.eye || !self.is_along_wall(triangle, p) || self.sees(p),
             };
             if clear {
@@ -108,15 +108,15 @@ impl WallMesh {
             checked.push(p);
             places.push(place);
             match place {
-                Place::Inside(triangle) => entries.push((triangle, i)),
-                Place::OnEdge(edge) => {
+                MeshPlace::Inside(triangle) => entries.push((triangle, i)),
+                MeshPlace::OnEdge(edge) => {
                     let twin = self.edges[edge as usize].twin;
                     entries.push((edge / 3, i));
                     if twin != NONE {
                         entries.push((twin / 3, i));
                     }
                 }
-                Place::OnCorner(edge) => entries.extend(self.leaving(edge).map(|out| (out / 3, i))),
+                MeshPlace::OnCorner(edge) => entries.extend(self.leaving(edge).map(|out| (out / 3, i))),
             }
         }
         entries.sort_unstable();
@@ -159,7 +159,7 @@ impl WallMesh {
         Ok(())
     }
 
-    fn points_seen_at(&self, eye: Point2, place: Place, index: &PointIndex, touch: Touch, seen: &mut Vec<u32>) {
+    fn points_seen_at(&self, eye: Point2, place: MeshPlace, index: &PointIndex, touch: Touch, seen: &mut Vec<u32>) {
         seen.clear();
         let rays = match touch {
             Touch::Blocks => Rays::Open,

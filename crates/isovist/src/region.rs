@@ -2,21 +2,21 @@
 
 use crate::edge::{NONE, next, previous};
 use crate::expand::{Rays, Visitor, Window};
-use crate::locate::Place;
+use crate::locate::MeshPlace;
 use crate::{EyeError, Touch, WallMesh};
 use sightlines_geometry::{Point2, Segment2, orient2d, polygon_contains};
 use sightlines_pvs::{CellId, CellRecord, Table, bits};
 
 /// A part of the plane that viewers can be in: a polygon with its inside, or a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Region<'a> {
+pub enum ViewerRegion<'a> {
     /// A polygon with its inside, in either direction, without its first point repeated.
     Polygon(&'a [Point2]),
     /// The straight pieces between points, one after the other.
     Path(&'a [Point2]),
 }
 
-impl<'a> Region<'a> {
+impl<'a> ViewerRegion<'a> {
     /// The points.
     pub const fn points(self) -> &'a [Point2] {
         match self {
@@ -42,7 +42,7 @@ impl<'a> Region<'a> {
 }
 
 /// Whether a point that is on no side of a polygon is inside of it: by the number of sides that a ray crosses.
-fn winds_around(region: Region<'_>, p: Point2) -> bool {
+fn winds_around(region: ViewerRegion<'_>, p: Point2) -> bool {
     let crossed = region.pieces().filter(|side| {
         let (above_a, above_b) = (side.a.y > p.y, side.b.y > p.y);
         above_a != above_b && (orient2d(side.a, side.b, p) > 0.0) == above_b
@@ -60,7 +60,7 @@ fn polygon_of(cell: &CellRecord) -> Vec<Point2> {
 }
 
 /// The cells of a table that a region has points in. Exact; O(cells × points).
-pub fn cells_of_region(table: &Table, region: Region<'_>) -> Vec<CellId> {
+pub fn cells_of_region(table: &Table, region: ViewerRegion<'_>) -> Vec<CellId> {
     let touches = |cell: &CellId| region.touches(&polygon_of(&table.cells()[cell.0 as usize]));
     (0u32..).take(table.n_cells()).map(CellId).filter(touches).collect()
 }
@@ -72,7 +72,7 @@ pub fn cells_of_region(table: &Table, region: Region<'_>) -> Vec<CellId> {
 ///
 /// # Source
 /// Teller and Séquin, "Visibility preprocessing for interactive walkthroughs", SIGGRAPH 1991, for the table.
-pub fn seen_from_any(table: &Table, region: Region<'_>) -> Vec<CellId> {
+pub fn seen_from_any(table: &Table, region: ViewerRegion<'_>) -> Vec<CellId> {
     let mut seen = vec![0; table.n_cells().div_ceil(64)];
     for cell in cells_of_region(table, region) {
         bits::or_words(&mut seen, table.row(cell));
@@ -110,7 +110,7 @@ impl WallMesh {
     ///
     /// # Errors
     /// [`EyeError`] for the eye or a point of the region that is outside of the frame or has coordinates that are none.
-    pub fn sees_all(&self, eye: Point2, region: Region<'_>, touch: Touch) -> Result<bool, EyeError> {
+    pub fn sees_all(&self, eye: Point2, region: ViewerRegion<'_>, touch: Touch) -> Result<bool, EyeError> {
         let (eye, place) = self.locate(eye)?;
         for &p in region.points() {
             let (p, _) = self.locate(p)?;
@@ -137,16 +137,16 @@ impl WallMesh {
     }
 
     /// Whether a wall leaves the eye strictly between the two sides of a triangle.
-    fn has_wall_between(&self, triangle: &Triangle, place: Place) -> bool {
+    fn has_wall_between(&self, triangle: &Triangle, place: MeshPlace) -> bool {
         let is_between =
             |corner: u32| triangle.is_right_of_left(self, corner) && triangle.is_left_of_right(self, corner);
         let is_wall = |edge: u32| self.edges[edge as usize].wall != NONE;
         match place {
-            Place::Inside(_) => false,
-            Place::OnEdge(edge) => {
+            MeshPlace::Inside(_) => false,
+            MeshPlace::OnEdge(edge) => {
                 is_wall(edge) && [edge, next(edge)].into_iter().any(|e| is_between(self.edges[e as usize].from))
             }
-            Place::OnCorner(edge) => self.leaving(edge).any(|out| {
+            MeshPlace::OnCorner(edge) => self.leaving(edge).any(|out| {
                 let ends = [(out, next(out)), (previous(out), previous(out))];
                 ends.into_iter().any(|(edge, to)| is_wall(edge) && is_between(self.edges[to as usize].from))
             }),

@@ -1,7 +1,7 @@
 //! Whether two points see each other.
 
 use crate::edge::{NONE, next, previous};
-use crate::locate::Place;
+use crate::locate::MeshPlace;
 use crate::{EyeError, WallMesh};
 use sightlines_geometry::{Point2, along};
 
@@ -62,17 +62,17 @@ impl WallMesh {
     }
 
     /// The same for points that have been checked.
-    pub(crate) fn sees_from(&self, a: Point2, from: Place, b: Point2, touch: Touch) -> bool {
+    pub(crate) fn sees_from(&self, a: Point2, from: MeshPlace, b: Point2, touch: Touch) -> bool {
         if a == b {
             return true;
         }
         let mut contact = Contact::default();
         let mut step = match from {
-            Place::Inside(t) => match self.leave(a, b, [3 * t, 3 * t + 1, 3 * t + 2]) {
+            MeshPlace::Inside(t) => match self.leave(a, b, [3 * t, 3 * t + 1, 3 * t + 2]) {
                 None => return true,
                 Some(step) => step,
             },
-            Place::OnEdge(edge) => {
+            MeshPlace::OnEdge(edge) => {
                 let (u, v) = self.ends(edge);
                 let side = self.orient(b, u, v);
                 if side == 0.0 {
@@ -93,7 +93,7 @@ impl WallMesh {
                     }
                 }
             }
-            Place::OnCorner(edge) => match self.go_on(a, b, edge) {
+            MeshPlace::OnCorner(edge) => match self.go_on(a, b, edge) {
                 Next::Across(edge) => match self.through(b, edge) {
                     None => return true,
                     Some(step) => step,

@@ -2,7 +2,7 @@
 
 use sightlines_cells::{Plan, PlanError};
 use sightlines_geometry::Point2;
-use sightlines_kdtree::{KdError, Options, PlanSubdivision, subdivide_plan};
+use sightlines_kdtree::{KdError, KdOptions, PlanSubdivision, subdivide_plan};
 
 /// Six rooms on each side of a corridor, each with a door of width 1 and a desk.
 fn office() -> Result<Plan, PlanError> {
@@ -33,9 +33,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let plan = office()?;
     println!("{} walls\nthreshold  cells  portals  detail", plan.lines().len());
     for tau in [0.0, 0.2, 0.4, 0.6, 0.8, 1.0] {
-        print_row(tau, &subdivide_plan(&plan, &Options { tau, ..Options::default() })?);
+        print_row(tau, &subdivide_plan(&plan, &KdOptions { tau, ..KdOptions::default() })?);
     }
-    let rooms: Result<PlanSubdivision, KdError> = subdivide_plan(&plan, &Options::default());
+    let rooms: Result<PlanSubdivision, KdError> = subdivide_plan(&plan, &KdOptions::default());
     let PlanSubdivision { tree, graph, .. } = rooms?;
     let viewer = [20.0, 9.0];
     let cell = tree.locate(viewer).ok_or("the viewer is outside")?;

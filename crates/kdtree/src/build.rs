@@ -13,7 +13,7 @@ use sightlines_pvs::CellId;
 
 /// How to subdivide.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Options {
+pub struct KdOptions {
     /// Obscuration threshold, from 0 to 1: a plane divides a cell only if its faces cover at least
     /// this share of the cell's cross-section. Faces on planes that divide nothing are detail: they do not hide, so a
     /// larger threshold shows more. It usually gives fewer cells too, but not at every step: without one plane, a worse
@@ -28,7 +28,7 @@ pub struct Options {
     pub max_cells: u32,
 }
 
-impl Default for Options {
+impl Default for KdOptions {
     fn default() -> Self {
         Self { tau: 0.0, max_cells: 1 << 24 }
     }
@@ -47,7 +47,7 @@ pub fn bounds_of<const D: usize>(faces: &[AxialFace<D>]) -> Aabb<D> {
 ///   that needs no cutting. It is convex, so no line leaves it between two points inside, and what is
 ///   outside cannot matter to what is seen inside. Outside there are no cells.
 ///
-/// Errs towards "visible", see [`Options::tau`]; with `tau` 0 it is exact.
+/// Errs towards "visible", see [`KdOptions::tau`]; with `tau` 0 it is exact.
 ///
 /// Cost: O(n log n) to compress coordinates, then O(n) for each level of the tree: O(n log n) where the
 /// tree is balanced, O(n * depth) at worst, for n pieces of faces.
@@ -61,7 +61,7 @@ pub fn bounds_of<const D: usize>(faces: &[AxialFace<D>]) -> Aabb<D> {
 pub fn subdivide<const D: usize>(
     faces: &[AxialFace<D>],
     bounds: Aabb<D>,
-    options: &Options,
+    options: &KdOptions,
 ) -> Result<AxialTree<D>, KdError> {
     subdivide_with(faces, &[], bounds, options)
 }
@@ -72,7 +72,7 @@ pub(crate) fn subdivide_with<const D: usize>(
     faces: &[AxialFace<D>],
     dividers: &[AxialFace<D>],
     bounds: Aabb<D>,
-    options: &Options,
+    options: &KdOptions,
 ) -> Result<AxialTree<D>, KdError> {
     const { assert!(D == 2 || D == 3, "axial subdivisions have two or three dimensions") };
     let (mut faces, bounds) = (checked_faces(faces)?, checked_bounds(bounds)?);
@@ -143,7 +143,7 @@ struct Builder<'a, const D: usize> {
     ranks: &'a Ranks<D>,
     /// What divides without hiding, disjoint in each plane, planes ascending.
     dividers: &'a [Piece<D>],
-    options: &'a Options,
+    options: &'a KdOptions,
     n_cells: u32,
     skeleton: Skeleton<D>,
 }
@@ -232,7 +232,7 @@ fn cut<const D: usize>(mut pieces: Vec<Piece<D>>, axis: usize, rank: u32) -> ([V
 mod tests {
     use super::*;
 
-    fn message(faces: &[AxialFace<2>], bounds: Aabb<2>, options: Options) -> String {
+    fn message(faces: &[AxialFace<2>], bounds: Aabb<2>, options: KdOptions) -> String {
         subdivide(faces, bounds, &options).unwrap_err().to_string()
     }
 
@@ -241,16 +241,16 @@ mod tests {
         let unit = Aabb { min: [0.0; 2], max: [1.0; 2] };
         let good = AxialFace::new(0, [0.5, 0.0], [0.5, 1.0]);
         let bad = AxialFace { at: 0.25, ..good };
-        let plain = Options::default();
+        let plain = KdOptions::default();
         assert_eq!(message(&[good, bad], unit, plain), "face 1: extends from 0.5 to 0.5 across its plane at 0.25");
         assert_eq!(message(&[], bounds_of::<2>(&[]), plain), "the scene is empty");
         assert_eq!(message(&[good], bounds_of(&[good]), plain), "the scene has no extent along axis 0");
         let infinite = Aabb { min: [0.0; 2], max: [1.0, f64::INFINITY] };
         assert_eq!(message(&[], infinite, plain), "bounds: coordinate inf is not a finite number");
-        let tau = |tau| message(&[good], unit, Options { tau, ..plain });
+        let tau = |tau| message(&[good], unit, KdOptions { tau, ..plain });
         assert_eq!(tau(-0.5), "obscuration threshold -0.5 is not a number from 0 to 1");
         assert_eq!(tau(f64::NAN), "obscuration threshold NaN is not a number from 0 to 1");
-        let limited = Options { max_cells: 1, ..plain };
+        let limited = KdOptions { max_cells: 1, ..plain };
         assert_eq!(
             message(&[good], unit, limited),
             "the scene falls into more than 1 cells; raise the limit, the threshold tau, or the size of detail"

@@ -71,7 +71,7 @@ pub enum KdError {
     /// More faces than can be counted.
     #[error("{0} faces are more than a tree can hold")]
     TooManyFaces(usize),
-    /// The subdivision has more cells than [`Options::max_cells`](crate::Options::max_cells).
+    /// The subdivision has more cells than [`KdOptions::max_cells`](crate::KdOptions::max_cells).
     #[error("the scene falls into more than {limit} cells; raise the limit, the threshold tau, or the size of detail")]
     TooManyCells {
         /// The limit.

@@ -3,7 +3,7 @@
 //! # Scope
 //!
 //! - **Owns**: [`AxialFace`] and its classes against a cell ([`classify`], [`cleaves`]), the choice of
-//!   splitting planes ([`Options`]), the tree with its cells, portals and point location ([`AxialTree`]),
+//!   splitting planes ([`KdOptions`]), the tree with its cells, portals and point location ([`AxialTree`]),
 //!   the way from a [`Plan`](sightlines_cells::Plan) to a graph ([`subdivide_plan`]), and that from a
 //!   [`Scene`](sightlines_cells::Scene): which of its triangles act as walls ([`scene_faces`]), which cells are
 //!   inside solids ([`subdivide_scene`], [`SceneCutter`] for scenes that change), which boxes are inside solids of any shape ([`Matter`]),
@@ -15,7 +15,7 @@
 //!
 //! # On which side it errs
 //! A face blocks sight only where it lies on the border of cells. Faces that the tree does not follow (the
-//! threshold [`Options::tau`], lines that are not axial) block nothing, so everything visible through the
+//! threshold [`KdOptions::tau`], lines that are not axial) block nothing, so everything visible through the
 //! cells and portals without them is reported visible. With `tau` 0 every face is followed and the subdivision is
 //! exact: an open set of lines meets no face if and only if it passes portals wherever it leaves a cell.
 //!
@@ -54,7 +54,7 @@ mod touch;
 mod tree;
 mod union_find;
 
-pub use build::{Options, bounds_of, subdivide};
+pub use build::{KdOptions, bounds_of, subdivide};
 pub use doors::{ShutDoor, shut_doors};
 pub use error::{FaceError, KdError};
 pub use face::{AxialFace, AxialPlane, FaceClass, classify, cleaves};

@@ -1,6 +1,6 @@
 //! From a plan to a graph of cells and portals in the plane.
 
-use crate::build::{Options, subdivide};
+use crate::build::{KdOptions, subdivide};
 use crate::error::KdError;
 use crate::face::AxialFace;
 use crate::tree::{AxialCell, AxialPortal, AxialTree};
@@ -58,7 +58,7 @@ fn axial_face(line: &PlanLine) -> Option<AxialFace<2>> {
 /// # Errors
 /// [`KdError::Empty`] and [`KdError::Flat`] for plans without lines or without extent along an axis, [`KdError::Tau`],
 /// [`KdError::TooManyCells`].
-pub fn subdivide_plan(plan: &Plan, options: &Options) -> Result<PlanSubdivision, KdError> {
+pub fn subdivide_plan(plan: &Plan, options: &KdOptions) -> Result<PlanSubdivision, KdError> {
     let PlanFaces { faces, left_over } = plan_faces(plan);
     let tree = subdivide(&faces, plan.bounds(), options)?;
     let graph = planar_graph(&tree);
@@ -118,7 +118,7 @@ mod tests {
             line(0., 3., 0., 0.),
         ];
         let plan = Plan::new(walls, vec![]).unwrap();
-        let PlanSubdivision { graph, tree, .. } = subdivide_plan(&plan, &Options::default()).unwrap();
+        let PlanSubdivision { graph, tree, .. } = subdivide_plan(&plan, &KdOptions::default()).unwrap();
         graph.assert_well_formed();
         assert_eq!(graph.n_cells(), 3);
         let [portal] = graph.portals() else { panic!("one door, {:?}", graph.portals()) };
@@ -132,7 +132,7 @@ mod tests {
 
     #[test]
     fn plans_without_room() {
-        let cut = |lines| subdivide_plan(&Plan::new(lines, vec![]).unwrap(), &Options::default());
+        let cut = |lines| subdivide_plan(&Plan::new(lines, vec![]).unwrap(), &KdOptions::default());
         assert_eq!(cut(vec![]).unwrap_err(), KdError::Empty);
         assert_eq!(cut(vec![line(1., 1., 1., 4.)]).unwrap_err(), KdError::Flat { axis: 0 });
         let slanted = cut(vec![line(0., 0., 1., 4.)]).unwrap();

@@ -1,6 +1,6 @@
 //! From a scene in space to a graph of boxes and rectangular portals.
 
-use crate::build::{Options, subdivide_with};
+use crate::build::{KdOptions, subdivide_with};
 use crate::cache::FaceCache;
 use crate::doors::shut_doors;
 use crate::error::KdError;
@@ -113,7 +113,7 @@ impl SceneCutter {
         let bounds = root_box(survey.bounds(), options.view_region)?;
         let found = survey.faces(&mut self.cache);
         let doors: Vec<_> = shut_doors(scene).into_iter().flat_map(|door| door.faces).collect();
-        let how = Options { tau: options.tau, max_cells: options.max_cells };
+        let how = KdOptions { tau: options.tau, max_cells: options.max_cells };
         let tree = subdivide_with(&found.faces, &doors, bounds, &how)?;
         let out = match options.keep_solid {
             true => vec![None; tree.cells().len()],

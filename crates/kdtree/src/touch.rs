@@ -60,13 +60,13 @@ pub(crate) fn visit_cells<const D: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::build::{Options, subdivide};
+    use crate::build::{KdOptions, subdivide};
     use crate::face::AxialFace;
 
     fn cells(extent: [[f64; 2]; 2], meets: [Meets; 2]) -> Vec<u32> {
         // Three columns: x from 0 to 1, 1 to 3, 3 to 4.
         let walls = [1.0, 3.0].map(|x| AxialFace::new(0, [x, 0.0], [x, 2.0]));
-        let tree = subdivide(&walls, Aabb { min: [0.0; 2], max: [4.0, 2.0] }, &Options::default()).unwrap();
+        let tree = subdivide(&walls, Aabb { min: [0.0; 2], max: [4.0, 2.0] }, &KdOptions::default()).unwrap();
         let mut found = Vec::new();
         visit_cells(&tree, &Aabb { min: extent[0], max: extent[1] }, meets, |cell| {
             found.push(cell.0);

@@ -1,7 +1,7 @@
 //! The umbra of two walls on three planes, with what is known on a plane carried to the next one and without.
 
 use sightlines_geometry::Aabb;
-use sightlines_multifocal::{Buffer, Job, Measure, MultifocalBackend, Occluder, Plane, Volume};
+use sightlines_multifocal::{Buffer, BufferJob, BufferPlane, Measure, MultifocalBackend, Occluder, Volume};
 use sightlines_multifocal_cpu::Reference;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -12,10 +12,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let walls = [wall(-2.5, 0.3125, 4.0)?, wall(-0.0625, 2.5, 4.25)?];
     let volume = Volume::new(Aabb { min: [-0.5, -0.5, -0.5], max: [0.5, 0.5, 0.5] })?;
-    let plane = |z: f64| Plane::new(2, true, z, [-6.0, -4.0], [6.0, 4.0], [48, 16]);
+    let plane = |z: f64| BufferPlane::new(2, true, z, [-6.0, -4.0], [6.0, 4.0], [48, 16]);
     for carry in [false, true] {
         let planes = vec![plane(4.5)?, plane(6.0)?, plane(8.0)?];
-        let job = Job::new(volume, planes, &walls, Measure::SectionHeight, carry)?;
+        let job = BufferJob::new(volume, planes, &walls, Measure::SectionHeight, carry)?;
         let mut buffers = Vec::new();
         Reference.render(&job, &mut buffers)?;
         println!("the farthest of three planes, {}", if carry { "carried over" } else { "each by itself" });

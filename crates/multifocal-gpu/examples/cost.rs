@@ -3,7 +3,9 @@
 //! on a busy machine that is the number to compare.
 
 use sightlines_geometry::{Aabb, Point3};
-use sightlines_multifocal::{BackendError, Buffer, Job, Measure, MultifocalBackend, Occluder, Plane, Volume};
+use sightlines_multifocal::{
+    BackendError, Buffer, BufferJob, BufferPlane, Measure, MultifocalBackend, Occluder, Volume,
+};
 use sightlines_multifocal_cpu::Fast;
 use sightlines_multifocal_gpu::{Gpu, GpuBackend, GpuPath, PlaneForms};
 use std::error::Error;
@@ -18,8 +20,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let occluders = rectangles(n)?;
     let volume = Volume::new(Aabb { min: [-half; 3], max: [half; 3] })?;
     for measure in [Measure::VertexHeight, Measure::SectionHeight] {
-        let plane = Plane::new(2, true, 20.0, [-20.0; 2], [20.0; 2], [texels; 2])?;
-        let job = Job::new(volume, vec![plane], &occluders, measure, false)?;
+        let plane = BufferPlane::new(2, true, 20.0, [-20.0; 2], [20.0; 2], [texels; 2])?;
+        let job = BufferJob::new(volume, vec![plane], &occluders, measure, false)?;
         let integers = fastest(|| drop(PlaneForms::of(&job)));
         let show = |backend: &mut dyn MultifocalBackend| -> Result<(), BackendError> {
             let mut out: Vec<Buffer> = Vec::new();

@@ -3,7 +3,7 @@
 use crate::context::Gpu;
 use crate::draw::{self, Input};
 use crate::{GpuPath, OpenError, PlaneForms, Ticket, Values};
-use sightlines_multifocal::{BackendError, Buffer, Job, Measure, MultifocalBackend};
+use sightlines_multifocal::{BackendError, Buffer, BufferJob, Measure, MultifocalBackend};
 
 /// A backend on a GPU. Clones share the device; each may be used from another thread.
 #[derive(Debug, Clone)]
@@ -51,7 +51,7 @@ impl GpuBackend {
     ///
     /// # Errors
     /// [`BackendError`], for errors that are known at once
-    pub fn submit(&self, job: &Job<'_>) -> Result<Ticket, BackendError> {
+    pub fn submit(&self, job: &BufferJob<'_>) -> Result<Ticket, BackendError> {
         let values = self.keep(job)?;
         self.gpu.fetch(self.path.name(), &values)
     }
@@ -70,7 +70,7 @@ impl GpuBackend {
     ///
     /// # Errors
     /// [`BackendError`], for errors that are known at once
-    pub fn keep(&self, job: &Job<'_>) -> Result<Values, BackendError> {
+    pub fn keep(&self, job: &BufferJob<'_>) -> Result<Values, BackendError> {
         if !self.supports(job.measure()) {
             return Err(BackendError::Unsupported { backend: self.path.name(), measure: job.measure() });
         }
@@ -117,7 +117,7 @@ impl MultifocalBackend for GpuBackend {
         }
     }
 
-    fn render(&mut self, job: &Job<'_>, out: &mut Vec<Buffer>) -> Result<(), BackendError> {
+    fn render(&mut self, job: &BufferJob<'_>, out: &mut Vec<Buffer>) -> Result<(), BackendError> {
         let ticket = self.submit(job)?;
         *out = self.wait(&ticket)?;
         Ok(())

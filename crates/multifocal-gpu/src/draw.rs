@@ -5,14 +5,14 @@ use crate::pack::{Packed, PlaneForms};
 use crate::path::GpuPath;
 use crate::recording::{Recording, Sizes, Uploaded, Values};
 use crate::{float, outline};
-use sightlines_multifocal::{BackendError, Carry, Job};
+use sightlines_multifocal::{BackendError, BufferJob, Carry};
 
 /// What is to be drawn.
 pub(crate) enum Input<'a, 'b> {
     /// Integers.
     Forms(&'a [PlaneForms]),
     /// Occluders as they are, in floats.
-    Floats(&'a Job<'b>),
+    Floats(&'a BufferJob<'b>),
 }
 
 /// Records all planes of a job and submits them; the values stay on the device.

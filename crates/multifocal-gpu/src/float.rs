@@ -2,7 +2,7 @@
 
 use crate::context::Gpu;
 use crate::recording::{Recording, whole};
-use sightlines_multifocal::{Job, Occluder, Plane};
+use sightlines_multifocal::{BufferJob, BufferPlane, Occluder};
 use sightlines_shaders::Record;
 use sightlines_shaders::multifocal::{FLOAT_TILE, FloatOccluder, FloatScene};
 use wgpu::BufferUsages;
@@ -23,7 +23,7 @@ struct Frame {
 }
 
 impl Frame {
-    fn new(job: &Job<'_>) -> Self {
+    fn new(job: &BufferJob<'_>) -> Self {
         let b = job.volume().bounds();
         let origin = std::array::from_fn(|k| b.min[k] + (b.max[k] - b.min[k]) / 2.0);
         let mut largest = 0.0_f64;
@@ -53,7 +53,7 @@ impl Frame {
 }
 
 impl Packed {
-    pub(crate) fn new(job: &Job<'_>) -> Self {
+    pub(crate) fn new(job: &BufferJob<'_>) -> Self {
         let frame = Frame::new(job);
         let corners = job.volume().corners();
         let (mut occluders, mut points) = (Vec::new(), Vec::new());
@@ -84,7 +84,7 @@ fn put_occluder(frame: &Frame, occluder: &Occluder, sign: f32, records: &mut Vec
     record.put(records);
 }
 
-fn pack_plane(job: &Job<'_>, frame: &Frame, plane: &Plane, n_occluders: u32) -> (FloatScene, Vec<u8>) {
+fn pack_plane(job: &BufferJob<'_>, frame: &Frame, plane: &BufferPlane, n_occluders: u32) -> (FloatScene, Vec<u8>) {
     let b = job.volume().bounds();
     let half = |k: usize| {
         let half = (b.max[k] - frame.origin[k]).max(frame.origin[k] - b.min[k]);

@@ -1,6 +1,6 @@
 //! A job as bytes for the device.
 
-use sightlines_multifocal::{Carry, Form, Forms, Job, Outlines, Plane};
+use sightlines_multifocal::{BufferJob, BufferPlane, Carry, Form, Forms, Outlines};
 use sightlines_shaders::Record;
 use sightlines_shaders::multifocal as records;
 
@@ -17,9 +17,9 @@ pub struct PlaneForms {
 
 impl PlaneForms {
     /// All planes of a job. O(planes · occluders · corners), on the caller's thread.
-    pub fn of(job: &Job<'_>) -> Vec<Self> {
+    pub fn of(job: &BufferJob<'_>) -> Vec<Self> {
         let outlines = Outlines::of(job);
-        let one = |(i, plane): (usize, &Plane)| {
+        let one = |(i, plane): (usize, &BufferPlane)| {
             let mut forms = Forms::default();
             forms.extend(job, &outlines, i);
             let carry = (job.carry() && i > 0).then(|| Carry::of(job, i));

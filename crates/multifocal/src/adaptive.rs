@@ -25,14 +25,14 @@ impl Default for Split {
 
 /// The work done for a volume.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Effort {
+pub struct WorkDone {
     /// Volumes that the method was run for.
     pub n_volumes: u64,
     /// Queries about boxes and triangles.
     pub queries: QueryCounts,
 }
 
-impl std::ops::Add for Effort {
+impl std::ops::Add for WorkDone {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
@@ -58,7 +58,7 @@ pub fn see(
     split: &Split,
     visible: &mut [bool],
     also: &mut dyn FnMut(&mut dyn Umbra),
-) -> Result<Effort, BackendError> {
+) -> Result<WorkDone, BackendError> {
     let mut seen = vec![false; occludees.len()];
     see_and_note(method, occludees, sampler, volume, split, visible, &mut seen, also)
 }
@@ -81,8 +81,8 @@ pub fn see_and_note(
     visible: &mut [bool],
     seen: &mut [bool],
     also: &mut dyn FnMut(&mut dyn Umbra),
-) -> Result<Effort, BackendError> {
-    let mut effort = Effort { n_volumes: 1, ..Effort::default() };
+) -> Result<WorkDone, BackendError> {
+    let mut effort = WorkDone { n_volumes: 1, ..WorkDone::default() };
     sampler.see(volume, split.n_rays, visible, seen);
     let mut umbra = method.umbra(volume)?;
     also(&mut *umbra);
@@ -97,7 +97,7 @@ struct Search<'a> {
     occludees: &'a Occludees,
     sampler: &'a RaySampler,
     split: &'a Split,
-    effort: &'a mut Effort,
+    effort: &'a mut WorkDone,
 }
 
 impl Search<'_> {

@@ -1,6 +1,6 @@
 //! The contract of backends, which fill buffers.
 
-use crate::{Buffer, Job, Measure};
+use crate::{Buffer, BufferJob, Measure};
 use std::fmt;
 
 /// Why a backend did not do a job.
@@ -63,7 +63,7 @@ pub trait MultifocalBackend: fmt::Debug + Send {
     ///
     /// # Errors
     /// [`BackendError`]
-    fn render(&mut self, job: &Job<'_>, out: &mut Vec<Buffer>) -> Result<(), BackendError>;
+    fn render(&mut self, job: &BufferJob<'_>, out: &mut Vec<Buffer>) -> Result<(), BackendError>;
 }
 
 impl<B: MultifocalBackend + ?Sized> MultifocalBackend for Box<B> {
@@ -75,7 +75,7 @@ impl<B: MultifocalBackend + ?Sized> MultifocalBackend for Box<B> {
         (**self).supports(measure)
     }
 
-    fn render(&mut self, job: &Job<'_>, out: &mut Vec<Buffer>) -> Result<(), BackendError> {
+    fn render(&mut self, job: &BufferJob<'_>, out: &mut Vec<Buffer>) -> Result<(), BackendError> {
         (**self).render(job, out)
     }
 }

@@ -1,6 +1,6 @@
 //! Multifocal buffers.
 
-use crate::Plane;
+use crate::BufferPlane;
 
 /// One value for each texel of a plane, row by row (`y * width + x`): 0 where nothing is known to block, otherwise 1
 /// more than the [`Measure`](crate::Measure) from which on everything is certainly blocked, in units of the job,
@@ -15,7 +15,7 @@ pub struct Buffer {
 
 impl Buffer {
     /// A buffer for `plane`, in which nothing blocks.
-    pub fn new(plane: &Plane) -> Self {
+    pub fn new(plane: &BufferPlane) -> Self {
         let mut buffer = Self::default();
         buffer.reset(plane.texels());
         buffer

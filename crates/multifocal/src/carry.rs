@@ -7,7 +7,7 @@
 //! Source: Durand, Drettakis, Thollot and Puech, SIGGRAPH 2000 (re-projection of extended projections), with
 //! heights kept.
 
-use crate::{Job, Plane, Volume};
+use crate::{BufferJob, BufferPlane, Volume};
 
 /// How to carry values from one plane of a job to the next, in integers.
 ///
@@ -32,7 +32,7 @@ impl Carry {
     ///
     /// # Panics
     /// If `to` is 0 or no plane of the job.
-    pub fn of(job: &Job<'_>, to: usize) -> Self {
+    pub fn of(job: &BufferJob<'_>, to: usize) -> Self {
         let (before, after) = (&job.planes()[to - 1], &job.planes()[to]);
         let apart = (after.at() - before.at()).abs();
         let rise = (apart.next_down() / job.unit()).floor() as u32;
@@ -46,8 +46,8 @@ impl Carry {
 
 /// The lines from the texels of one plane to a volume, along one of the axes across.
 struct Lines<'a> {
-    before: &'a Plane,
-    after: &'a Plane,
+    before: &'a BufferPlane,
+    after: &'a BufferPlane,
     k: usize,
     /// The range of the eyes.
     eyes: [f64; 2],
@@ -56,7 +56,7 @@ struct Lines<'a> {
 }
 
 impl<'a> Lines<'a> {
-    fn new(volume: &Volume, before: &'a Plane, after: &'a Plane, k: usize) -> Self {
+    fn new(volume: &Volume, before: &'a BufferPlane, after: &'a BufferPlane, k: usize) -> Self {
         let (b, across) = (volume.bounds(), after.across()[k]);
         let heights = [after.height(b.min), after.height(b.max)];
         let apart = (after.at() - before.at()).abs();

@@ -1,6 +1,6 @@
 //! A backend with another one that takes over its jobs.
 
-use crate::{BackendError, Buffer, Job, Measure, MultifocalBackend};
+use crate::{BackendError, Buffer, BufferJob, Measure, MultifocalBackend};
 
 /// Two backends: the second does the jobs that the first refuses, for example one on a device and one on the processor.
 ///
@@ -33,7 +33,7 @@ impl<A: MultifocalBackend, B: MultifocalBackend> MultifocalBackend for WithFallb
         self.first.supports(measure) || self.second.supports(measure)
     }
 
-    fn render(&mut self, job: &Job<'_>, out: &mut Vec<Buffer>) -> Result<(), BackendError> {
+    fn render(&mut self, job: &BufferJob<'_>, out: &mut Vec<Buffer>) -> Result<(), BackendError> {
         if !matches!(self.took_over, Some(BackendError::Lost { .. })) {
             self.took_over = self.first.render(job, out).err();
         }
@@ -52,7 +52,7 @@ impl<A: MultifocalBackend, B: MultifocalBackend> MultifocalBackend for WithFallb
 /// If there is none.
 pub fn render_by_first(
     backends: Vec<Box<dyn MultifocalBackend>>,
-    job: &Job<'_>,
+    job: &BufferJob<'_>,
     out: &mut Vec<Buffer>,
     mut refused: impl FnMut(BackendError),
 ) -> Result<&'static str, BackendError> {

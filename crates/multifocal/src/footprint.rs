@@ -4,7 +4,7 @@
 //! where the line from `v` through `e` meets the plane is a quotient of affine functions of either, with a positive
 //! denominator, so it stays in the hull of the corners' places.
 
-use crate::{Buffer, Plane, Volume};
+use crate::{Buffer, BufferPlane, Volume};
 use sightlines_geometry::{Aabb, Point3};
 
 /// Where lines from a volume through an occludee meet a plane, in whole texels, and the value that blocks it.
@@ -27,10 +27,10 @@ impl Footprint {
     /// The footprint of the convex hull of `points`, for values that are heights. `None` if some line from an eye
     /// through the hull does not go towards the plane, or is parallel to it.
     ///
-    /// * `unit`: scene units in one unit of the values, a power of two; see [`Job::unit`](crate::Job::unit)
+    /// * `unit`: scene units in one unit of the values, a power of two; see [`BufferJob::unit`](crate::BufferJob::unit)
     ///
     /// Errs by being too large. O(n log n).
-    pub fn of_points(volume: &Volume, plane: &Plane, unit: f64, points: &[Point3]) -> Option<Self> {
+    pub fn of_points(volume: &Volume, plane: &BufferPlane, unit: f64, points: &[Point3]) -> Option<Self> {
         let mut lines = Lines::new(volume, plane);
         for &p in points {
             let heights = plane.height(p);
@@ -40,7 +40,7 @@ impl Footprint {
     }
 
     /// The footprint of a box, as [`Self::of_points`].
-    pub fn of_box(volume: &Volume, plane: &Plane, unit: f64, target: &Aabb<3>) -> Option<Self> {
+    pub fn of_box(volume: &Volume, plane: &BufferPlane, unit: f64, target: &Aabb<3>) -> Option<Self> {
         let mut lines = Lines::new(volume, plane);
         let heights = [plane.height(target.min), plane.height(target.max)];
         for height in heights {
@@ -98,7 +98,7 @@ pub(crate) fn limit(height: f64, unit: f64) -> u32 {
 
 /// Lines from a volume through points, on their way to a plane.
 struct Lines<'a> {
-    plane: &'a Plane,
+    plane: &'a BufferPlane,
     /// Heights of the eyes, least and largest, widened.
     eyes: [f64; 2],
     /// Eyes along the axes across.
@@ -109,7 +109,7 @@ struct Lines<'a> {
 }
 
 impl<'a> Lines<'a> {
-    fn new(volume: &Volume, plane: &'a Plane) -> Self {
+    fn new(volume: &Volume, plane: &'a BufferPlane) -> Self {
         let b = volume.bounds();
         let heights = [plane.height(b.min), plane.height(b.max)];
         let eyes = [heights[0].min(heights[1]).next_down(), heights[0].max(heights[1]).next_up()];
@@ -244,7 +244,7 @@ fn hull(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
 /// Distance is convex in both ends, so the largest is between corners.
 pub fn is_blocked_by_distance(
     footprint: &Footprint,
-    plane: &Plane,
+    plane: &BufferPlane,
     unit: f64,
     points: &[Point3],
     buffer: &Buffer,

@@ -1,12 +1,12 @@
 //! The input of a backend.
 
 use crate::plane::power_of_two_at_most;
-use crate::{Measure, Occluder, Plane, PlaneError, Volume};
+use crate::{BufferPlane, BufferPlaneError, Measure, Occluder, Volume};
 
 /// Why a job is invalid.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum JobError {
+pub enum BufferJobError {
     /// A list without planes.
     #[error("a job needs at least one plane")]
     NoPlane,
@@ -16,7 +16,7 @@ pub enum JobError {
         /// Its index.
         idx: usize,
         /// The defect.
-        error: PlaneError,
+        error: BufferPlaneError,
     },
     /// Planes of one job look the same way, each farther away than the one before.
     #[error("plane {0} does not look the same way as the one before, or is no farther away")]
@@ -28,9 +28,9 @@ pub enum JobError {
 
 /// One whole job: the buffers of one or several planes in one direction, for one volume.
 #[derive(Debug, Clone)]
-pub struct Job<'a> {
+pub struct BufferJob<'a> {
     volume: Volume,
-    planes: Vec<Plane>,
+    planes: Vec<BufferPlane>,
     occluders: Vec<&'a Occluder>,
     measure: Measure,
     carry: bool,
@@ -40,7 +40,7 @@ pub struct Job<'a> {
 /// Values stay below 2 to the power of this.
 pub const VALUE_BITS: u32 = 28;
 
-impl<'a> Job<'a> {
+impl<'a> BufferJob<'a> {
     /// Checks a job.
     ///
     /// * `planes`: looking the same way, from the nearest to the farthest
@@ -48,29 +48,29 @@ impl<'a> Job<'a> {
     ///   all lines from it to the volume cross blocked texels of the previous plane
     ///
     /// # Errors
-    /// [`JobError`]
+    /// [`BufferJobError`]
     pub fn new(
         volume: Volume,
-        planes: Vec<Plane>,
+        planes: Vec<BufferPlane>,
         occluders: impl IntoIterator<Item = &'a Occluder>,
         measure: Measure,
         carry: bool,
-    ) -> Result<Self, JobError> {
+    ) -> Result<Self, BufferJobError> {
         if planes.is_empty() {
-            return Err(JobError::NoPlane);
+            return Err(BufferJobError::NoPlane);
         }
         if carry && planes.len() > 1 && !measure.is_height() {
-            return Err(JobError::Carry(measure));
+            return Err(BufferJobError::Carry(measure));
         }
         for (idx, plane) in planes.iter().enumerate() {
-            plane.check_in_front_of(&volume).map_err(|error| JobError::Plane { idx, error })?;
+            plane.check_in_front_of(&volume).map_err(|error| BufferJobError::Plane { idx, error })?;
         }
-        let farther = |(a, b): (&Plane, &Plane)| {
+        let farther = |(a, b): (&BufferPlane, &BufferPlane)| {
             let same = a.axis() == b.axis() && a.positive() == b.positive();
             same && if a.positive() { a.at() < b.at() } else { a.at() > b.at() }
         };
         if let Some(i) = planes.iter().zip(&planes[1..]).position(|pair| !farther(pair)) {
-            return Err(JobError::Order(i + 1));
+            return Err(BufferJobError::Order(i + 1));
         }
         let unit = unit(&volume, &planes, measure);
         let occluders = occluders.into_iter().collect();
@@ -83,7 +83,7 @@ impl<'a> Job<'a> {
     }
 
     /// The planes, nearest first.
-    pub fn planes(&self) -> &[Plane] {
+    pub fn planes(&self) -> &[BufferPlane] {
         &self.planes
     }
 
@@ -109,13 +109,13 @@ impl<'a> Job<'a> {
 }
 
 /// A power of two of which all values of a job are less than 2^[`VALUE_BITS`] - 2.
-fn unit(volume: &Volume, planes: &[Plane], measure: Measure) -> f64 {
+fn unit(volume: &Volume, planes: &[BufferPlane], measure: Measure) -> f64 {
     let largest = planes.iter().map(|plane| reach(volume, plane, measure)).fold(0.0, f64::max);
     power_of_two_at_most(largest) * 4.0 / f64::from(1u32 << VALUE_BITS)
 }
 
 /// More than any value that an occluder between the volume and the plane can have.
-fn reach(volume: &Volume, plane: &Plane, measure: Measure) -> f64 {
+fn reach(volume: &Volume, plane: &BufferPlane, measure: Measure) -> f64 {
     let (b, axis) = (volume.bounds(), plane.axis());
     let height = plane.height(b.min).max(plane.height(b.max));
     debug_assert!(axis < 3, "planes are checked");

@@ -2,8 +2,8 @@
 //!
 //! # Scope
 //!
-//! - **Owns**: the view volume ([`Volume`]), the planes with their texels ([`Plane`]), occluders ([`Occluder`]), what is
-//!   compared ([`Measure`]), buffers ([`Buffer`]) and the jobs that fill them ([`Job`]), the contract of backends
+//! - **Owns**: the view volume ([`Volume`]), the planes with their texels ([`BufferPlane`]), occluders ([`Occluder`]), what is
+//!   compared ([`Measure`]), buffers ([`Buffer`]) and the jobs that fill them ([`BufferJob`]), the contract of backends
 //!   ([`MultifocalBackend`]) and of from-region methods ([`FromRegion`], [`Umbra`]).
 //! - **Out of scope**: how buffers are filled, threads, devices, cells, files.
 //! - **Invariants**: everything errs towards visible; conditions are decided by exact predicates, or by integers that were
@@ -34,19 +34,19 @@ pub mod surround;
 pub mod union_method;
 pub mod volume;
 
-pub use adaptive::{Effort, Split};
+pub use adaptive::{Split, WorkDone};
 pub use backend::{BackendError, MultifocalBackend};
 pub use buffer::Buffer;
 pub use carry::Carry;
 pub use fallback::{WithFallback, render_by_first};
 pub use footprint::Footprint;
 pub use form::{Form, Forms, Outlines};
-pub use job::{Job, JobError, VALUE_BITS};
+pub use job::{BufferJob, BufferJobError, VALUE_BITS};
 pub use measure::Measure;
 pub use method::{Multifocal, OccluderSelection};
 pub use occludees::{Occludees, QueryCounts};
 pub use occluder::{Occluder, OccluderError};
-pub use plane::{MAX_TEXELS, Plane, PlaneError};
+pub use plane::{BufferPlane, BufferPlaneError, MAX_TEXELS};
 pub use plane_choice::{PlaneChoice, PlaneChoiceError, Texels};
 pub use ray_sampler::RaySampler;
 pub use region::{FromRegion, Guarantee, Umbra};

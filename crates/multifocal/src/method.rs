@@ -2,8 +2,8 @@
 
 use crate::mesh::Chooser;
 use crate::{
-    BackendError, Buffer, FromRegion, Guarantee, Layout, MultifocalBackend, Occluder, Plane, Surround, Surrounded,
-    Umbra, Volume,
+    BackendError, Buffer, BufferPlane, FromRegion, Guarantee, Layout, MultifocalBackend, Occluder, Surround,
+    Surrounded, Umbra, Volume,
 };
 use sightlines_geometry::{Aabb, Point3};
 use std::sync::Arc;
@@ -88,7 +88,7 @@ impl OccluderSelection {
     }
 
     /// For each of the planes around a volume.
-    fn choose(&self, volume: &Volume, planes: [&Plane; 6]) -> [Vec<u32>; 6] {
+    fn choose(&self, volume: &Volume, planes: [&BufferPlane; 6]) -> [Vec<u32>; 6] {
         self.chooser.select_for(volume, planes, self.most)
     }
 }

@@ -9,7 +9,7 @@ pub const MAX_TEXELS: u32 = 1 << 13;
 /// Why a plane with texels is invalid.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum PlaneError {
+pub enum BufferPlaneError {
     /// Not 0, 1 or 2.
     #[error("axis {0} is none of 0, 1 and 2")]
     Axis(usize),
@@ -44,7 +44,7 @@ pub enum PlaneError {
 /// The corners of all texels are doubles without rounding, so that predicates accept them: the requested window is
 /// widened to a grid that has this property, by less than one part in 2^20 of a texel on each side.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Plane {
+pub struct BufferPlane {
     axis: usize,
     positive: bool,
     at: f64,
@@ -53,7 +53,7 @@ pub struct Plane {
     texels: [u32; 2],
 }
 
-impl Plane {
+impl BufferPlane {
     /// A plane with a window.
     ///
     /// * `axis`: 0 to 2, the axis that the plane is perpendicular to
@@ -63,7 +63,7 @@ impl Plane {
     /// * `texels`: their numbers along these two
     ///
     /// # Errors
-    /// [`PlaneError`]
+    /// [`BufferPlaneError`]
     pub fn new(
         axis: usize,
         positive: bool,
@@ -71,18 +71,18 @@ impl Plane {
         min: [f64; 2],
         max: [f64; 2],
         texels: [u32; 2],
-    ) -> Result<Self, PlaneError> {
+    ) -> Result<Self, BufferPlaneError> {
         if axis > 2 {
-            return Err(PlaneError::Axis(axis));
+            return Err(BufferPlaneError::Axis(axis));
         }
         if texels.iter().any(|n| !(1..=MAX_TEXELS).contains(n)) {
-            return Err(PlaneError::Texels(texels[0], texels[1]));
+            return Err(BufferPlaneError::Texels(texels[0], texels[1]));
         }
         let at = check_coordinate(at)?;
         let (mut origin, mut step) = ([0.0; 2], [0.0; 2]);
         for k in 0..2 {
             let (low, high) = (check_coordinate(min[k])?, check_coordinate(max[k])?);
-            let grid = grid(low, high, texels[k]).ok_or(PlaneError::Window { min, max })?;
+            let grid = grid(low, high, texels[k]).ok_or(BufferPlaneError::Window { min, max })?;
             (origin[k], step[k]) = grid;
         }
         Ok(Self { axis, positive, at, origin, step, texels })
@@ -146,12 +146,12 @@ impl Plane {
     /// Checks that all of `volume` is strictly on the viewers' side.
     ///
     /// # Errors
-    /// [`PlaneError::Through`]
-    pub fn check_in_front_of(&self, volume: &Volume) -> Result<(), PlaneError> {
+    /// [`BufferPlaneError::Through`]
+    pub fn check_in_front_of(&self, volume: &Volume) -> Result<(), BufferPlaneError> {
         let b = volume.bounds();
         let reach = if self.positive { b.max[self.axis] } else { b.min[self.axis] };
         let in_front = if self.positive { reach < self.at } else { reach > self.at };
-        if in_front { Ok(()) } else { Err(PlaneError::Through { axis: self.axis, at: self.at, reach }) }
+        if in_front { Ok(()) } else { Err(BufferPlaneError::Through { axis: self.axis, at: self.at, reach }) }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Planes, their windows and their texels as texts.
 
-use crate::{MAX_TEXELS, Plane, PlaneError, Volume};
+use crate::{BufferPlane, BufferPlaneError, MAX_TEXELS, Volume};
 use sightlines_geometry::{Aabb, CoordinateError, check_coordinate};
 use std::fmt;
 use std::str::FromStr;
@@ -47,7 +47,7 @@ pub enum PlaneChoiceError {
     },
     /// The window or the texels are none.
     #[error(transparent)]
-    Plane(#[from] PlaneError),
+    Plane(#[from] BufferPlaneError),
 }
 
 impl FromStr for PlaneChoice {
@@ -83,14 +83,14 @@ impl PlaneChoice {
     ///
     /// # Errors
     /// [`PlaneChoiceError::Through`] and [`PlaneChoiceError::Plane`].
-    pub fn plane(&self, volume: &Volume, scene: &Aabb<3>, texels: Texels) -> Result<Plane, PlaneChoiceError> {
+    pub fn plane(&self, volume: &Volume, scene: &Aabb<3>, texels: Texels) -> Result<BufferPlane, PlaneChoiceError> {
         let (low, high) = (volume.bounds().min[self.axis], volume.bounds().max[self.axis]);
         if low <= self.at && self.at <= high {
             return Err(PlaneChoiceError::Through { axis: AXES[self.axis], low, high });
         }
         let [min, max] = self.window.unwrap_or_else(|| self.shadow(volume.bounds(), scene));
         let texels = texels.of([0, 1].map(|k| max[k] - min[k]));
-        Ok(Plane::new(self.axis, self.at > high, self.at, min, max, texels)?)
+        Ok(BufferPlane::new(self.axis, self.at > high, self.at, min, max, texels)?)
     }
 
     /// The window around the shadow of a box: where lines from eyes through the part of it that is in front of the

@@ -7,7 +7,7 @@
 mod lines;
 
 use crate::footprint::{is_blocked_by_distance, limit};
-use crate::{Buffer, Footprint, Job, JobError, Measure, Occluder, Plane, PlaneError, Volume};
+use crate::{Buffer, BufferJob, BufferJobError, BufferPlane, BufferPlaneError, Footprint, Measure, Occluder, Volume};
 use sightlines_geometry::{Aabb, Point3};
 
 /// The number, positions and resolution of planes.
@@ -38,7 +38,7 @@ impl Default for Layout {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Direction {
     /// Nearest first.
-    pub planes: Vec<Plane>,
+    pub planes: Vec<BufferPlane>,
     /// For each box the plane on this side; `None` if it rounds to that of the box before, or is out of order.
     pub plane_of_box: Vec<Option<usize>>,
     /// For each box its side, along the plane's axes across.
@@ -59,8 +59,8 @@ impl Surround {
     /// Lays planes around `volume`, out to the ends of `scene`.
     ///
     /// # Errors
-    /// [`PlaneError`] for texels out of range, and for volumes and scenes around which no planes fit.
-    pub fn new(volume: &Volume, scene: &Aabb<3>, layout: &Layout) -> Result<Self, PlaneError> {
+    /// [`BufferPlaneError`] for texels out of range, and for volumes and scenes around which no planes fit.
+    pub fn new(volume: &Volume, scene: &Aabb<3>, layout: &Layout) -> Result<Self, BufferPlaneError> {
         let boxes = boxes(volume, scene, layout);
         let mut directions = Vec::with_capacity(6);
         for axis in 0..3 {
@@ -85,9 +85,13 @@ impl Surround {
     /// The job that fills the buffers of one side.
     ///
     /// # Errors
-    /// [`JobError`], if the measure cannot be carried over.
-    pub fn job<'a>(&self, side: usize, occluders: impl IntoIterator<Item = &'a Occluder>) -> Result<Job<'a>, JobError> {
-        Job::new(self.volume, self.directions[side].planes.clone(), occluders, self.measure, self.carry)
+    /// [`BufferJobError`], if the measure cannot be carried over.
+    pub fn job<'a>(
+        &self,
+        side: usize,
+        occluders: impl IntoIterator<Item = &'a Occluder>,
+    ) -> Result<BufferJob<'a>, BufferJobError> {
+        BufferJob::new(self.volume, self.directions[side].planes.clone(), occluders, self.measure, self.carry)
     }
 }
 
@@ -112,8 +116,8 @@ fn direction(
     axis: usize,
     positive: bool,
     layout: &Layout,
-) -> Result<Direction, PlaneError> {
-    let (mut planes, mut plane_of_box, mut faces) = (Vec::<Plane>::new(), Vec::new(), Vec::new());
+) -> Result<Direction, BufferPlaneError> {
+    let (mut planes, mut plane_of_box, mut faces) = (Vec::<BufferPlane>::new(), Vec::new(), Vec::new());
     let v = volume.bounds();
     for b in boxes {
         let at = if positive { b.max[axis] } else { b.min[axis] };
@@ -127,9 +131,9 @@ fn direction(
         let size = [max[0] - min[0], max[1] - min[1]];
         let longer = size[0].max(size[1]);
         let share = |k: usize| ((f64::from(layout.texels) * (size[k] / longer)).ceil() as u32).max(1);
-        let plane = Plane::new(axis, positive, at, min, max, [share(0), share(1)])?;
+        let plane = BufferPlane::new(axis, positive, at, min, max, [share(0), share(1)])?;
         plane.check_in_front_of(volume)?;
-        let farther = |last: &Plane| if positive { last.at() < at } else { last.at() > at };
+        let farther = |last: &BufferPlane| if positive { last.at() < at } else { last.at() > at };
         let is_farther = planes.last().is_none_or(farther);
         if is_farther {
             planes.push(plane);
@@ -154,13 +158,13 @@ pub struct Surrounded<'a> {
 
 impl<'a> Surrounded<'a> {
     /// * `buffers`: for each side what a backend made of [`Surround::job`]
-    /// * `units`: [`Job::unit`] of each
+    /// * `units`: [`BufferJob::unit`] of each
     ///
     /// # Panics
     /// If buffers and planes do not match.
     pub fn new(surround: &'a Surround, buffers: &'a [Vec<Buffer>; 6], units: [f64; 6]) -> Self {
         for (side, buffers) in surround.directions.iter().zip(buffers) {
-            let sizes = side.planes.iter().map(Plane::texels);
+            let sizes = side.planes.iter().map(BufferPlane::texels);
             assert!(sizes.eq(buffers.iter().map(Buffer::texels)), "a buffer for each plane");
         }
         let b = surround.volume.bounds();
@@ -265,7 +269,7 @@ enum Exits {
 /// difference of the heights of `v` and `e`, if that is positive. The expression is affine in each of the three, so the ends
 /// of its range are at ends of theirs. Where heights overlap, `r` has no largest value; then the limit counts, which is not
 /// finite, but may lie on the far side of the face. Rounded outwards, by more than the roundings of each step.
-fn exits(volume: &Volume, plane: &Plane, face: &[[f64; 2]; 2], target: &Aabb<3>) -> Exits {
+fn exits(volume: &Volume, plane: &BufferPlane, face: &[[f64; 2]; 2], target: &Aabb<3>) -> Exits {
     let b = volume.bounds();
     let sorted = |a: f64, b: f64| [a.min(b).next_down(), a.max(b).next_up()];
     let eyes = sorted(plane.height(b.min), plane.height(b.max));

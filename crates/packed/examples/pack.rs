@@ -2,7 +2,7 @@
 //!
 //! `pack IN.pvs OUT.pvz [MAX_BYTES]`; without arguments it packs a row of rooms and keeps it in memory.
 
-use sightlines_packed::{PackOptions, Packed, Source, pack_report};
+use sightlines_packed::{ByteSource, PackOptions, Packed, pack_report};
 use sightlines_pvs::{BitMatrix, CellId, CellRecord, Locator, Place, PlaceBuffer, Table, TableKind, TableParts};
 use std::error::Error;
 
@@ -23,7 +23,7 @@ fn rooms(n: usize, reach: usize) -> Result<Table, Box<dyn Error>> {
 }
 
 /// Walks from cell to cell and looks up what each sees.
-fn walk<S: Source>(packed: &Packed<S>) -> Result<(), Box<dyn Error>> {
+fn walk<S: ByteSource>(packed: &Packed<S>) -> Result<(), Box<dyn Error>> {
     let (mut buffer, mut seen, mut at_once) = (PlaceBuffer::new(), Vec::new(), Vec::new());
     let n = packed.n_cells();
     for cell in (0..n).step_by(1 + n / 8) {

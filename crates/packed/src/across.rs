@@ -17,7 +17,7 @@
 //!
 //! Columns are numbered through: the cells of the first near tile, its objects, those of the second, and so on, then far tiles, one each.
 
-use crate::source::Source;
+use crate::source::ByteSource;
 use sightlines_pvs::CellId;
 use sightlines_pvs::runs::{read_runs, write_runs};
 use std::io::{self, Write};
@@ -36,7 +36,7 @@ const ROWS: usize = 64;
 
 /// A tile whose cells and objects are told apart.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct NearTile {
+pub struct NearColumns {
     /// Its name in the world.
     pub name: String,
     /// How many cells it has.
@@ -51,7 +51,7 @@ pub struct AcrossColumns {
     /// The key of the tile that the rows are of: what tells this bake of it from others.
     pub key: [u8; 16],
     /// Tiles nearby.
-    pub near: Vec<NearTile>,
+    pub near: Vec<NearColumns>,
     /// The names of tiles farther away, of which is only known whether anything of them may be seen.
     pub far: Vec<String>,
 }
@@ -132,7 +132,7 @@ pub fn write_across<W: Write>(
     for n in [rows.len(), columns.near.len(), columns.far.len(), ends.len()] {
         put(&mut header, n, "sizes")?;
     }
-    for NearTile { name, n_cells, n_objects } in &columns.near {
+    for NearColumns { name, n_cells, n_objects } in &columns.near {
         put(&mut header, name.len(), "a name")?;
         header.extend(name.as_bytes());
         [n_cells, n_objects].into_iter().for_each(|n| header.extend(n.to_le_bytes()));
@@ -184,7 +184,7 @@ impl Reader<'_> {
     }
 }
 
-impl<S: Source> Across<S> {
+impl<S: ByteSource> Across<S> {
     /// Reads the header. Memory in proportion to it.
     ///
     /// # Errors
@@ -217,7 +217,7 @@ impl<S: Source> Across<S> {
         let (n_rows, n_blocks) = (n_rows? as usize, n_blocks? as usize);
         for _ in 0..n_near? {
             let (name, n_cells, n_objects) = (reader.name()?, reader.number()?, reader.number()?);
-            columns.near.push(NearTile { name, n_cells, n_objects });
+            columns.near.push(NearColumns { name, n_cells, n_objects });
         }
         for _ in 0..n_far? {
             columns.far.push(reader.name()?);
@@ -246,7 +246,7 @@ impl<S: Source> Across<S> {
 
     /// Bytes in memory, about.
     pub fn resident_bytes(&self) -> usize {
-        let names = self.columns.near.iter().map(|near| near.name.len() + size_of::<NearTile>());
+        let names = self.columns.near.iter().map(|near| near.name.len() + size_of::<NearColumns>());
         let far = self.columns.far.iter().map(|name| name.len() + size_of::<String>());
         8 * self.ends.len() + names.chain(far).sum::<usize>()
     }
@@ -333,7 +333,7 @@ mod tests {
     }
 
     fn columns(sizes: &[(u32, u32)], n_far: usize) -> AcrossColumns {
-        let near = sizes.iter().enumerate().map(|(k, &(n_cells, n_objects))| NearTile {
+        let near = sizes.iter().enumerate().map(|(k, &(n_cells, n_objects))| NearColumns {
             name: format!("near {k}"),
             n_cells,
             n_objects,

@@ -47,12 +47,12 @@ impl Writer {
 
 /// The origin of bytes, for errors.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Place {
+pub(crate) struct Origin {
     pub(crate) section: SectionId,
     pub(crate) offset: u64,
 }
 
-impl Place {
+impl Origin {
     pub(crate) fn fail(self, kind: Kind) -> PackedError {
         PackedError::new(Some(self.section), self.offset, kind)
     }
@@ -61,11 +61,11 @@ impl Place {
 /// Reads the output of [`Writer`].
 pub(crate) struct Reader<'a> {
     bytes: &'a [u8],
-    place: Place,
+    place: Origin,
 }
 
 impl<'a> Reader<'a> {
-    pub(crate) fn new(bytes: &'a [u8], place: Place) -> Self {
+    pub(crate) fn new(bytes: &'a [u8], place: Origin) -> Self {
         Self { bytes, place }
     }
 
@@ -194,7 +194,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    const PLACE: Place = Place { section: SectionId(*b"TEST"), offset: 7 };
+    const PLACE: Origin = Origin { section: SectionId(*b"TEST"), offset: 7 };
 
     proptest! {
         #[test]

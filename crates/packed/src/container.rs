@@ -1,9 +1,9 @@
 //! Header, section table, sections: the resident part of a file, and the check that it is intact.
 
-use crate::bytes::{Place, u32_at, u64_at};
+use crate::bytes::{Origin, u32_at, u64_at};
 use crate::error::{PackedError, PackedErrorKind as Kind};
 use crate::format::{END, ENTRY, FIXED, MAGIC, MAJOR, MAJOR_LARGE, OPTIONAL, SECTIONS, SizeClass, TAIL};
-use crate::source::Source;
+use crate::source::ByteSource;
 use sightlines_pvs::SectionId;
 use std::ops::Range;
 
@@ -22,7 +22,7 @@ pub(crate) struct ResidentPart {
 #[derive(Clone, Copy)]
 pub(crate) struct Section<'a> {
     pub(crate) bytes: &'a [u8],
-    pub(crate) place: Place,
+    pub(crate) place: Origin,
 }
 
 impl Section<'_> {
@@ -37,7 +37,7 @@ impl ResidentPart {
     /// Reads and checks header, section table and sections; also returns the length of the file.
     ///
     /// Takes no more memory than the length of the file.
-    pub(crate) fn read(source: &impl Source) -> Result<(Self, u64), PackedError> {
+    pub(crate) fn read(source: &impl ByteSource) -> Result<(Self, u64), PackedError> {
         let fail = |offset: u64, kind| PackedError::new(None, offset, kind);
         let io = |offset: u64| move |error: std::io::Error| fail(offset, Kind::Io(error));
         let len = source.len().map_err(io(0))?;
@@ -66,7 +66,7 @@ impl ResidentPart {
         source.read_at(base, &mut bytes).map_err(io(base))?;
         let mut found = [const { None }; SECTIONS.len()];
         for (id, range, crc) in sections {
-            let place = Place { section: id, offset: base + range.start as u64 };
+            let place = Origin { section: id, offset: base + range.start as u64 };
             check_crc(crc, crc32fast::hash(&bytes[range.clone()]), |kind| place.fail(kind))?;
             if let Some(known) = SECTIONS.iter().position(|(known, _)| *known == id) {
                 found[known] = Some(range);
@@ -89,7 +89,7 @@ impl ResidentPart {
     /// A section that may be missing.
     pub(crate) fn find(&self, id: SectionId) -> Option<Section<'_>> {
         let range = self.range(id)?;
-        let place = Place { section: id, offset: self.base + range.start as u64 };
+        let place = Origin { section: id, offset: self.base + range.start as u64 };
         Some(Section { bytes: &self.bytes[range], place })
     }
 
@@ -129,7 +129,7 @@ impl ResidentPart {
 type Layout = Vec<(SectionId, Range<usize>, u32)>;
 
 /// The sections of a small file, and where they begin: header, section table, sections, blocks.
-fn small_layout(source: &impl Source, fixed: &[u8; FIXED], len: u64) -> Result<(u64, Layout), PackedError> {
+fn small_layout(source: &impl ByteSource, fixed: &[u8; FIXED], len: u64) -> Result<(u64, Layout), PackedError> {
     let fail = |offset: u64, kind| PackedError::new(None, offset, kind);
     let n_table = ENTRY as u64 * u64::from(u32_at(fixed, 12));
     let base = FIXED as u64 + n_table + 4;
@@ -151,7 +151,7 @@ fn small_layout(source: &impl Source, fixed: &[u8; FIXED], len: u64) -> Result<(
 }
 
 /// The sections of a large file, where they begin, and their length: header, blocks, sections, section table, tail.
-fn large_layout(source: &impl Source, fixed: &[u8; FIXED], len: u64) -> Result<(u64, usize, Layout), PackedError> {
+fn large_layout(source: &impl ByteSource, fixed: &[u8; FIXED], len: u64) -> Result<(u64, usize, Layout), PackedError> {
     let fail = |offset: u64, kind| PackedError::new(None, offset, kind);
     if len < (FIXED + TAIL) as u64 {
         return Err(fail(len, Kind::Cut));

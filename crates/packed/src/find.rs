@@ -2,10 +2,10 @@
 
 use crate::error::{PackedError, PackedErrorKind as Kind};
 use crate::packed::Packed;
-use crate::source::Source;
+use crate::source::ByteSource;
 use sightlines_pvs::{DoorId, DoorRecord, ObjectId, ObjectSource, PortalId, box_covers, doors_named};
 
-impl<S: Source> Packed<S> {
+impl<S: ByteSource> Packed<S> {
     /// The doors, as [`sightlines_pvs::Table::doors`]; always in memory.
     pub fn doors(&self) -> &[DoorRecord] {
         &self.doors

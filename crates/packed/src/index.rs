@@ -1,10 +1,10 @@
 //! The index of blocks: which records are in which blocks, and where those are in a file.
 
-use crate::bytes::{Place, Reader};
+use crate::bytes::{Origin, Reader};
 use crate::container::{ResidentPart, check_crc};
 use crate::error::{PackedError, PackedErrorKind as Kind};
 use crate::format::{self, FIXED, MAX_UNPACKED_BLOCK, SizeClass};
-use crate::source::Source;
+use crate::source::ByteSource;
 use sightlines_pvs::SectionId;
 use std::sync::{Mutex, PoisonError};
 use zstd::bulk::Decompressor;
@@ -229,9 +229,14 @@ impl Index {
     }
 
     /// Reads and unpacks a block. Takes at most twice [`MAX_UNPACKED_BLOCK`] bytes, whatever the file claims.
-    pub(crate) fn unpack(&self, source: &impl Source, id: SectionId, number: usize) -> Result<Vec<u8>, PackedError> {
+    pub(crate) fn unpack(
+        &self,
+        source: &impl ByteSource,
+        id: SectionId,
+        number: usize,
+    ) -> Result<Vec<u8>, PackedError> {
         let Entry { offset, len, raw, crc } = self.entries[number];
-        let place = Place { section: id, offset };
+        let place = Origin { section: id, offset };
         let mut packed = vec![0; len as usize];
         source.read_at(offset, &mut packed).map_err(|error| place.fail(Kind::Io(error)))?;
         check_crc(crc, crc32fast::hash(&packed), |kind| place.fail(kind))?;

@@ -15,7 +15,7 @@
 //! process cuts ends the program with SIGBUS in the middle of a frame, where a read gives an error. And a
 //! map bounds nothing that counts: rows have to be unpacked anyway, and a budget on unpacked blocks is
 //! exact, while the pages of a map come and go as the system likes. A host that maps its files itself
-//! passes the map: every `&'static [u8]` is a [`Source`].
+//! passes the map: every `&'static [u8]` is a [`ByteSource`].
 
 #![forbid(unsafe_code)]
 
@@ -58,5 +58,5 @@ pub use pack::{PackOptions, pack, pack_report};
 pub use packed::Packed;
 pub use query::{ExitVisitor, PackedQuery, StabNode};
 pub use sizes::PartSize;
-pub use source::Source;
+pub use source::ByteSource;
 pub use stream::{PackReport, PackWriter, StreamOptions};

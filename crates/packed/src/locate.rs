@@ -1,6 +1,6 @@
 //! Point location in the bytes of the resident part.
 
-use crate::bytes::{Place, Reader, f64_at, u32_at, u64_at};
+use crate::bytes::{Origin, Reader, f64_at, u32_at, u64_at};
 use crate::container::{ResidentPart, Section};
 use crate::error::{PackedError, PackedErrorKind as Kind};
 use crate::format::{self, NONE};
@@ -222,7 +222,7 @@ pub(crate) fn check_tree(
     nodes: &[u8],
     d: usize,
     n_listed: u64,
-    place: Place,
+    place: Origin,
     entries_of: impl Fn(usize, u32, u64) -> Result<u64, PackedError>,
 ) -> Result<(), PackedError> {
     let wrong = |value: u64| place.fail(Kind::Value { value });

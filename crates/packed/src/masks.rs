@@ -66,11 +66,11 @@ pub(crate) fn decode(r: &mut Reader<'_>, limit: u32, mut visit: impl FnMut(u32))
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bytes::Place;
+    use crate::bytes::Origin;
     use proptest::prelude::*;
     use sightlines_pvs::SectionId;
 
-    const PLACE: Place = Place { section: SectionId(*b"TEST"), offset: 7 };
+    const PLACE: Origin = Origin { section: SectionId(*b"TEST"), offset: 7 };
 
     fn decoded(bytes: &[u8], limit: u32) -> Result<Vec<u32>, PackedError> {
         let mut out = Vec::new();

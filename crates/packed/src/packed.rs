@@ -1,6 +1,6 @@
 //! An opened file and its queries.
 
-use crate::bytes::{Place, Reader, u32_at, u64_at};
+use crate::bytes::{Origin, Reader, u32_at, u64_at};
 use crate::cache::{Block, Cache, PackedStats};
 use crate::container::ResidentPart;
 use crate::doors::{self, Sources};
@@ -12,7 +12,7 @@ use crate::locate::{PointLocation, planes};
 use crate::masks;
 use crate::pages::Pages;
 use crate::rows::{DenseRows, Rows};
-use crate::source::Source;
+use crate::source::ByteSource;
 use sightlines_pvs::{Axis, CellId, DoorRecord, Frame, GeometryDigest, MirrorRecord, PlaneTree, SectionId, TableKind};
 use std::ops::Range;
 use std::sync::Arc;
@@ -23,7 +23,7 @@ use std::sync::Arc;
 /// kept until others need their space. Of a large file boxes and locator are read on demand too: see
 /// [`SizeClass`]. Any number of threads may query it at once.
 #[derive(Debug)]
-pub struct Packed<S: Source> {
+pub struct Packed<S: ByteSource> {
     pub(crate) source: S,
     pub(crate) resident: ResidentPart,
     pub(crate) index: Index,
@@ -99,7 +99,7 @@ impl Head {
     }
 }
 
-impl<S: Source> Packed<S> {
+impl<S: ByteSource> Packed<S> {
     /// Opens a file: reads and checks the resident part. At most `cache_bytes` of unpacked blocks will be kept; with 0
     /// every query reads its blocks anew.
     ///
@@ -307,7 +307,7 @@ impl<S: Source> Packed<S> {
     ) -> Result<T, PackedError> {
         let Spot { number, k, n } = store.find(record);
         let kept = self.block(id, number, |bytes| Ok(Block::Bytes(bytes)))?;
-        let place = Place { section: id, offset: self.index.entries[number].offset };
+        let place = Origin { section: id, offset: self.index.entries[number].offset };
         let Block::Bytes(bytes) = &*kept else { unreachable!("blocks of records are kept as bytes") };
         visit(Reader::new(record_of(bytes, k, n, place)?, place))
     }
@@ -317,11 +317,11 @@ impl<S: Source> Packed<S> {
         &self,
         (id, store): (SectionId, &StoreIndex),
         record: u32,
-        check: impl Fn(&[u8], Place) -> Result<(), PackedError>,
+        check: impl Fn(&[u8], Origin) -> Result<(), PackedError>,
         visit: impl FnOnce(&[u8]) -> T,
     ) -> Result<T, PackedError> {
         let Spot { number, k, n } = store.find(record);
-        let place = Place { section: id, offset: self.index.entries[number].offset };
+        let place = Origin { section: id, offset: self.index.entries[number].offset };
         let decode = |bytes: Vec<u8>| {
             (0..n).try_for_each(|k| check(record_of(&bytes, k, n, place)?, place))?;
             Ok(Block::Bytes(bytes))
@@ -341,7 +341,7 @@ impl<S: Source> Packed<S> {
         let mut record = records.start;
         while record < records.end {
             let Spot { number, k, n } = store.find(record);
-            let place = Place { section: id, offset: self.index.entries[number].offset };
+            let place = Origin { section: id, offset: self.index.entries[number].offset };
             let bytes = self.index.unpack(&self.source, id, number)?;
             for k in k..n {
                 if record == records.end || !visit(record, Reader::new(record_of(&bytes, k, n, place)?, place))? {
@@ -382,7 +382,7 @@ impl<S: Source> Packed<S> {
 }
 
 /// Record `k` of the `n` in a block.
-fn record_of(bytes: &[u8], k: usize, n: usize, place: Place) -> Result<&[u8], PackedError> {
+fn record_of(bytes: &[u8], k: usize, n: usize, place: Origin) -> Result<&[u8], PackedError> {
     let content = 4 * n;
     let ends = bytes.get(..content).ok_or_else(|| place.fail(Kind::Cut))?;
     let begin = if k == 0 { 0 } else { u32_at(ends, 4 * (k - 1)) as usize };

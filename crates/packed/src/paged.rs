@@ -1,15 +1,15 @@
 //! Point location in blocks.
 
-use crate::bytes::{Place, u32_at, u64_at};
+use crate::bytes::{Origin, u32_at, u64_at};
 use crate::error::{PackedError, PackedErrorKind as Kind};
 use crate::format::{self, NONE};
 use crate::locate::{NODE, for_each_leaf};
 use crate::packed::Packed;
 use crate::pages::{Page, Pages, box_at, corners};
-use crate::source::Source;
+use crate::source::ByteSource;
 use sightlines_pvs::{CellId, LocatorNode, polygon_may_contain};
 
-impl<S: Source> Packed<S> {
+impl<S: ByteSource> Packed<S> {
     /// Puts the cells that a box with finite corners touches into `out`, in any order, perhaps repeated. If `is_point`, the
     /// polygons of cells decide too, else they are taken for their boxes, which finds more. `pending` is scratch space.
     ///
@@ -45,7 +45,7 @@ impl<S: Source> Packed<S> {
 
     fn with_page<T>(&self, pages: &Pages, page: usize, visit: impl FnOnce(Page<'_>) -> T) -> Result<T, PackedError> {
         let (d, n_cells) = (pages.d, pages.n_cells);
-        let check = |bytes: &[u8], place: Place| Page::check(bytes, place, d, n_cells);
+        let check = |bytes: &[u8], place: Origin| Page::check(bytes, place, d, n_cells);
         self.with_checked_record((format::PLACES, &pages.pages), page as u32, check, |bytes| {
             visit(Page::new(bytes, d).expect("the page was checked when it was read"))
         })

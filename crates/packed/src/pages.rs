@@ -1,6 +1,6 @@
 //! Pages of the locator: the top of its tree is resident, and each page holds a subtree with its cells.
 
-use crate::bytes::{Place, f64_at, u32_at};
+use crate::bytes::{Origin, f64_at, u32_at};
 use crate::container::{ResidentPart, Section};
 use crate::error::{PackedError, PackedErrorKind as Kind};
 use crate::format;
@@ -72,7 +72,7 @@ impl<'a> Page<'a> {
     }
 
     /// Checks that all positions in the page lie in it. O(bytes).
-    pub(crate) fn check(bytes: &'a [u8], place: Place, d: usize, n_cells: u32) -> Result<(), PackedError> {
+    pub(crate) fn check(bytes: &'a [u8], place: Origin, d: usize, n_cells: u32) -> Result<(), PackedError> {
         let page = Self::new(bytes, d).ok_or_else(|| place.fail(Kind::Cut))?;
         let wrong = |value: u32| place.fail(Kind::Value { value: u64::from(value) });
         check_tree(page.nodes, d, page.entries.len() as u64 / 4, place, |_, second, _| Ok(u64::from(second)))?;

@@ -4,7 +4,7 @@ use crate::bytes::Reader;
 use crate::error::{PackedError, PackedErrorKind as Kind};
 use crate::format::{self, POLYGONS_KNOWN};
 use crate::packed::{Packed, Places};
-use crate::source::Source;
+use crate::source::ByteSource;
 use sightlines_pvs::{
     CellId, DimensionError, ObjectId, ObjectRecord, Place, PlaceBuffer, PlaneTree, PortalId, PortalRecord,
 };
@@ -26,11 +26,11 @@ pub struct StabNode {
 
 /// A packed table in `D` dimensions, 2 or 3: [`Packed::in_dimension`].
 #[derive(Debug, Clone, Copy)]
-pub struct PackedQuery<'a, S: Source, const D: usize> {
+pub struct PackedQuery<'a, S: ByteSource, const D: usize> {
     packed: &'a Packed<S>,
 }
 
-impl<S: Source, const D: usize> PackedQuery<'_, S, D> {
+impl<S: ByteSource, const D: usize> PackedQuery<'_, S, D> {
     /// The cells that may contain a point (scene units), ascending: the same as [`sightlines_pvs::Query::at`]. Allocates nothing
     /// once `buffer` is warm. Of a small file, reads nothing from the source; of a large one one block, or a few for a point on
     /// the border between pages of the locator.
@@ -42,7 +42,7 @@ impl<S: Source, const D: usize> PackedQuery<'_, S, D> {
     }
 }
 
-impl<S: Source> Packed<S> {
+impl<S: ByteSource> Packed<S> {
     /// The box around a cell, in scene units, along the [frame](Self::frame) if there is one; z is 0 in a plane.
     ///
     /// # Errors

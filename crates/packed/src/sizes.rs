@@ -1,7 +1,7 @@
 //! The size of each part of a file.
 
 use crate::packed::Packed;
-use crate::source::Source;
+use crate::source::ByteSource;
 use sightlines_pvs::SectionId;
 
 /// A part of a packed file.
@@ -52,7 +52,7 @@ impl PartSize {
     }
 }
 
-impl<S: Source> Packed<S> {
+impl<S: ByteSource> Packed<S> {
     /// The known sections and then stores that exist, in the order of the file. Together with the header and the
     /// section table these are all bytes of a file of this version. O(blocks).
     pub fn part_sizes(&self) -> Vec<PartSize> {

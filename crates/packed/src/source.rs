@@ -6,7 +6,7 @@ use std::sync::Arc;
 /// Bytes that can be read at any position, by several threads at once.
 ///
 /// A host that maps a file itself passes the map as `&'static [u8]`, or implements this for its map.
-pub trait Source: Send + Sync {
+pub trait ByteSource: Send + Sync {
     /// Number of bytes.
     ///
     /// # Errors
@@ -16,7 +16,7 @@ pub trait Source: Send + Sync {
     /// Whether there are no bytes.
     ///
     /// # Errors
-    /// As [`Source::len`].
+    /// As [`ByteSource::len`].
     fn is_empty(&self) -> io::Result<bool> {
         Ok(self.len()? == 0)
     }
@@ -34,7 +34,7 @@ fn read_slice(bytes: &[u8], offset: u64, buf: &mut [u8]) -> io::Result<()> {
     Ok(())
 }
 
-impl Source for Vec<u8> {
+impl ByteSource for Vec<u8> {
     fn len(&self) -> io::Result<u64> {
         Ok(self.as_slice().len() as u64)
     }
@@ -44,7 +44,7 @@ impl Source for Vec<u8> {
     }
 }
 
-impl Source for Arc<[u8]> {
+impl ByteSource for Arc<[u8]> {
     fn len(&self) -> io::Result<u64> {
         Ok(self.as_ref().len() as u64)
     }
@@ -54,7 +54,7 @@ impl Source for Arc<[u8]> {
     }
 }
 
-impl Source for &'static [u8] {
+impl ByteSource for &'static [u8] {
     fn len(&self) -> io::Result<u64> {
         Ok((**self).len() as u64)
     }
@@ -66,7 +66,7 @@ impl Source for &'static [u8] {
 
 /// A file that the host has opened. Its own position does not matter; on Windows it is moved.
 #[cfg(any(unix, windows))]
-impl Source for std::fs::File {
+impl ByteSource for std::fs::File {
     fn len(&self) -> io::Result<u64> {
         Ok(self.metadata()?.len())
     }
@@ -99,7 +99,7 @@ mod tests {
 
     #[test]
     fn sources_give_the_bytes_that_are_asked_for_or_an_error() {
-        let sources: [&dyn Source; 3] =
+        let sources: [&dyn ByteSource; 3] =
             [&vec![1u8, 2, 3, 4], &Arc::<[u8]>::from([1u8, 2, 3, 4]), &(&[1u8, 2, 3, 4] as &'static [u8])];
         for source in sources {
             let mut two = [0; 2];

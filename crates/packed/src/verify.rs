@@ -6,14 +6,14 @@ use crate::index::StoreIndex;
 use crate::masks;
 use crate::packed::{Packed, Places};
 use crate::rows::Rows;
-use crate::source::Source;
+use crate::source::ByteSource;
 use sightlines_pvs::{BitMatrix, CellId, PortalId, SectionId, TableError, TableParts};
 use std::ops::Range;
 
 /// Bytes of rows of a large file that [`Packed::verify`] has in memory at once.
 const BAND_BYTES: usize = 64 << 20;
 
-impl<S: Source> Packed<S> {
+impl<S: ByteSource> Packed<S> {
     /// Checks the entire content: every block, that it is a valid table, that the exits of cells are its portals, that pages
     /// of the locator agree with the cells, and that the coarse table agrees with the rows. O(size of the table).
     ///

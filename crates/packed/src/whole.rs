@@ -3,13 +3,13 @@
 use crate::error::{PackedError, PackedErrorKind as Kind};
 use crate::format::{self, MAX_TABLE, POLYGONS_KNOWN};
 use crate::packed::{Packed, Places};
-use crate::source::Source;
+use crate::source::ByteSource;
 use sightlines_pvs::{
     BitMatrix, CellId, CellRecord, Locator, ObjectId, PortalId, SectionId, StabParts, StabTrees, Table, TableError,
     TableParts,
 };
 
-impl<S: Source> Packed<S> {
+impl<S: ByteSource> Packed<S> {
     /// The whole table, checked as every table is; equal to the packed one if nothing was merged.
     /// O(size of the table), if kept blocks have room for a few blocks of each kind.
     ///

@@ -3,7 +3,7 @@
 //! Run as `cargo run -p sightlines-report --example picture > picture.svg`.
 
 use sightlines_pvs::{BitMatrix, CellId, CellRecord, Locator, PortalRecord, Table, TableKind, TableParts};
-use sightlines_report::{DrawOptions, View, plan_svg};
+use sightlines_report::{DrawOptions, PictureSubject, plan_svg};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let room = |x: f64| CellRecord { min: [x, 0.0, 0.0], max: [x + 4.0, 3.0, 0.0], group: None, polygon: vec![] };
@@ -28,6 +28,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         cell_objects: vec![vec![]; 3],
         ..TableParts::empty(2, TableKind::Unspecified)
     })?;
-    print!("{}", plan_svg(&table, &DrawOptions { view: View::Cell(CellId(1)), ..DrawOptions::default() })?);
+    print!("{}", plan_svg(&table, &DrawOptions { view: PictureSubject::Cell(CellId(1)), ..DrawOptions::default() })?);
     Ok(())
 }

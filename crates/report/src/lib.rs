@@ -43,8 +43,8 @@ pub mod words;
 pub use areas::{Area, AreaEdge, SeenInSpace, areas_csv, areas_geojson, areas_png, areas_svg, seen_csv};
 pub use buffer_chart::{BufferChart, buffer_chart_svg};
 pub use draw::{
-    DrawError, DrawOptions, Drawing, IsometricOptions, MAX_SIZE, MIN_SIZE, Sight, SliceOptions, Surfaces, Up, View,
-    isometric_drawing, isometric_svg, plan_drawing, plan_svg, slice_drawing, slice_svg,
+    DrawError, DrawOptions, Drawing, IsometricOptions, MAX_SIZE, MIN_SIZE, PictureSubject, SeenFromEye, SliceOptions,
+    Surfaces, Up, isometric_drawing, isometric_svg, plan_drawing, plan_svg, slice_drawing, slice_svg,
 };
 pub use export::{export_json, write_json};
 pub use faces::{MARK, NO_FACE, NOWHERE, face_colour, faces_png};

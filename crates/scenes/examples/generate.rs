@@ -2,12 +2,12 @@
 
 use sightlines_cells::Plan;
 use sightlines_scenes::{
-    BspWorldOptions, DepthPairsOptions, OfficeOptions, QuakeLikeOptions, SceneError, SurfaceOptions, TowerOptions,
+    BspWorldOptions, DepthPairsOptions, GenerateError, OfficeOptions, QuakeLikeOptions, SurfaceOptions, TowerOptions,
     World, bsp_world, coplanar, cycles, degenerate, depth_pairs, doom_like, interleaved, lattice, maze, office,
     pillared_hall, quake_like, slivers, soup, split_worst, tower, turned_pillared_hall, world,
 };
 
-fn main() -> Result<(), SceneError> {
+fn main() -> Result<(), GenerateError> {
     let show = |name: &str, plan: &Plan| {
         let kind = if plan.is_axial() { "axial" } else { "not axial" };
         let (lines, groups, objects) = (plan.lines().len(), plan.n_groups(), plan.objects().len());

@@ -3,7 +3,7 @@
 //! The setting of from-region visibility: nearly all of a city is hidden from a box in a street, mostly by the next few
 //! houses. Every wall is a grid of bays and storeys, so there are many triangles in few planes.
 
-use crate::error::{SceneError, check_range};
+use crate::error::{GenerateError, check_range};
 use crate::rng::Rng;
 use sightlines_cells::{Scene, SceneObject};
 use sightlines_geometry::Aabb;
@@ -45,8 +45,8 @@ const EYES: [f64; 2] = [1.25, 2.25];
 /// that do not, touch. Coordinates are multiples of 1/2 if `detail` is 1, 2, 4 or 8, else they are rounded.
 ///
 /// # Errors
-/// [`SceneError::OutOfRange`]
-pub fn city(options: CityOptions) -> Result<Scene, SceneError> {
+/// [`GenerateError::OutOfRange`]
+pub fn city(options: CityOptions) -> Result<Scene, GenerateError> {
     let [n_x, n_z, detail] = checked(&options)?;
     let mut rng = Rng::new(options.seed, 12);
     let wide = |n: i32| n * PITCH + 3;
@@ -73,7 +73,7 @@ pub fn city(options: CityOptions) -> Result<Scene, SceneError> {
 ///
 /// # Errors
 /// As [`city`].
-pub fn city_crossings(options: CityOptions) -> Result<Vec<Aabb<3>>, SceneError> {
+pub fn city_crossings(options: CityOptions) -> Result<Vec<Aabb<3>>, GenerateError> {
     let [n_x, n_z, _] = checked(&options)?;
     // The middle of the street before a block.
     let street = |i: i32| f64::from((2 * i * PITCH - 3) * BAY) / 2.0;
@@ -99,8 +99,8 @@ pub struct CityTile {
 /// no margin.
 ///
 /// # Errors
-/// As [`city`]; [`SceneError::OutOfRange`] for no blocks in a tile.
-pub fn city_tiles(options: CityOptions, per_tile: u32) -> Result<Vec<CityTile>, SceneError> {
+/// As [`city`]; [`GenerateError::OutOfRange`] for no blocks in a tile.
+pub fn city_tiles(options: CityOptions, per_tile: u32) -> Result<Vec<CityTile>, GenerateError> {
     let [n_x, n_z, _] = checked(&options)?;
     let per_tile = i32::try_from(check_range("per_tile", per_tile, 1, 64)?).expect("a small number");
     let whole = city(options)?;
@@ -138,7 +138,7 @@ pub fn city_tiles(options: CityOptions, per_tile: u32) -> Result<Vec<CityTile>, 
     Ok(tiles)
 }
 
-fn checked(options: &CityOptions) -> Result<[i32; 3], SceneError> {
+fn checked(options: &CityOptions) -> Result<[i32; 3], GenerateError> {
     let x = check_range("blocks_x", options.blocks_x, 1, 64)?;
     let z = check_range("blocks_z", options.blocks_z, 1, 64)?;
     let detail = check_range("detail", options.detail, 1, 8)?;

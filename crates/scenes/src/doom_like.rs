@@ -4,7 +4,7 @@
 //! Rooms lie in square slots of side 512 with wide margins, passages only in the margins between two slots, pillars and
 //! platforms only in the middle of a room: therefore nothing ever crosses.
 
-use crate::error::{SceneError, check_range};
+use crate::error::{GenerateError, check_range};
 use crate::rng::Rng;
 use crate::spanning::Passages;
 use sightlines_cells::{Plan, PlanLine};
@@ -39,8 +39,8 @@ impl DoomLike {
     /// A map of `size` times `size` rooms, centred on the origin.
     ///
     /// # Errors
-    /// [`SceneError::OutOfRange`] unless `size` is from 1 to 40, so that all indices fit a Doom map.
-    pub fn generate(seed: u64, size: u32) -> Result<Self, SceneError> {
+    /// [`GenerateError::OutOfRange`] unless `size` is from 1 to 40, so that all indices fit a Doom map.
+    pub fn generate(seed: u64, size: u32) -> Result<Self, GenerateError> {
         check_range("size", size, 1, 40)?;
         let mut builder = Builder::new(seed, size as usize);
         builder.build();
@@ -68,7 +68,7 @@ impl DoomLike {
 ///
 /// # Errors
 /// As [`DoomLike::generate`].
-pub fn doom_like(seed: u64, size: u32) -> Result<Plan, SceneError> {
+pub fn doom_like(seed: u64, size: u32) -> Result<Plan, GenerateError> {
     DoomLike::generate(seed, size).map(|map| map.plan())
 }
 

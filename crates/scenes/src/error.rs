@@ -3,7 +3,7 @@
 /// Why a scene cannot be generated.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum SceneError {
+pub enum GenerateError {
     /// A count is outside the range of the generator.
     #[error("{option} is {value}, but must be from {min} to {max}")]
     OutOfRange {
@@ -22,6 +22,6 @@ pub enum SceneError {
 }
 
 /// Accepts `value` from `min` to `max`.
-pub(crate) fn check_range(option: &'static str, value: u32, min: u32, max: u32) -> Result<u32, SceneError> {
-    if (min..=max).contains(&value) { Ok(value) } else { Err(SceneError::OutOfRange { option, value, min, max }) }
+pub(crate) fn check_range(option: &'static str, value: u32, min: u32, max: u32) -> Result<u32, GenerateError> {
+    if (min..=max).contains(&value) { Ok(value) } else { Err(GenerateError::OutOfRange { option, value, min, max }) }
 }

@@ -1,6 +1,6 @@
 //! Halls full of pillars: free-standing occluders, almost everything partly visible.
 
-use crate::error::{SceneError, check_range};
+use crate::error::{GenerateError, check_range};
 use crate::rng::Rng;
 use crate::stroke::{Rect, Stroke};
 use sightlines_cells::{Plan, PlanLine};
@@ -12,8 +12,8 @@ const SPACING: i32 = 16;
 /// A closed hall with `nx` times `ny` square pillars, sides parallel to the axes, integer coordinates.
 ///
 /// # Errors
-/// [`SceneError::OutOfRange`] unless both counts are from 1 to 500.
-pub fn pillared_hall(seed: u64, nx: u32, ny: u32) -> Result<Plan, SceneError> {
+/// [`GenerateError::OutOfRange`] unless both counts are from 1 to 500.
+pub fn pillared_hall(seed: u64, nx: u32, ny: u32) -> Result<Plan, GenerateError> {
     hall(seed, nx, ny, |rng| (rng.between(2, 4), None))
 }
 
@@ -22,7 +22,7 @@ pub fn pillared_hall(seed: u64, nx: u32, ny: u32) -> Result<Plan, SceneError> {
 ///
 /// # Errors
 /// As [`pillared_hall`].
-pub fn turned_pillared_hall(seed: u64, nx: u32, ny: u32) -> Result<Plan, SceneError> {
+pub fn turned_pillared_hall(seed: u64, nx: u32, ny: u32) -> Result<Plan, GenerateError> {
     hall(seed, nx, ny, |rng| (rng.between(1, 5), Some(rng.between(0, 3))))
 }
 
@@ -32,7 +32,7 @@ fn hall(
     nx: u32,
     ny: u32,
     mut pillar: impl FnMut(&mut Rng) -> (i32, Option<i32>),
-) -> Result<Plan, SceneError> {
+) -> Result<Plan, GenerateError> {
     let nx = check_range("nx", nx, 1, 500)?.cast_signed();
     let ny = check_range("ny", ny, 1, 500)?.cast_signed();
     let mut rng = Rng::new(seed, 2);

@@ -28,7 +28,7 @@ pub mod world;
 
 pub use city::{CityOptions, CityTile, city, city_crossings, city_tiles};
 pub use doom_like::{DoomLike, DoomLikeLine, doom_like};
-pub use error::SceneError;
+pub use error::GenerateError;
 pub use hall::{pillared_hall, turned_pillared_hall};
 pub use maze::maze;
 pub use occlusion::{Occlusion, OcclusionOptions, occlusion};

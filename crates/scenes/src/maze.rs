@@ -1,6 +1,6 @@
 //! Mazes: narrow passages, many portals in a row, small visible sets.
 
-use crate::error::{SceneError, check_range};
+use crate::error::{GenerateError, check_range};
 use crate::rng::Rng;
 use crate::spanning::Passages;
 use crate::stroke::{Rect, Stroke, merge};
@@ -10,8 +10,8 @@ use sightlines_cells::Plan;
 /// sixteen of those of a tree is missing. Axial, thin walls, closed boundary.
 ///
 /// # Errors
-/// [`SceneError::OutOfRange`] unless both counts are from 1 to 1000.
-pub fn maze(seed: u64, w: u32, h: u32) -> Result<Plan, SceneError> {
+/// [`GenerateError::OutOfRange`] unless both counts are from 1 to 1000.
+pub fn maze(seed: u64, w: u32, h: u32) -> Result<Plan, GenerateError> {
     check_range("w", w, 1, 1000)?;
     check_range("h", h, 1, 1000)?;
     let mut rng = Rng::new(seed, 1);

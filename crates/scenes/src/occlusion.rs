@@ -4,7 +4,7 @@
 //! are hidden, most of them by several rectangles together or by one with a small margin. So methods with bounds of
 //! different tightness find different numbers of them.
 
-use crate::error::{SceneError, check_range};
+use crate::error::{GenerateError, check_range};
 use crate::rng::Rng;
 use sightlines_cells::{Point3, Scene, SceneObject};
 use sightlines_geometry::Aabb;
@@ -67,8 +67,8 @@ const FINE: i32 = 256;
 /// the boxes are hidden from the volume of half size 0.25, by sampling.
 ///
 /// # Errors
-/// [`SceneError::OutOfRange`]
-pub fn occlusion(options: OcclusionOptions) -> Result<Occlusion, SceneError> {
+/// [`GenerateError::OutOfRange`]
+pub fn occlusion(options: OcclusionOptions) -> Result<Occlusion, GenerateError> {
     let n_occluders = check_range("occluders", options.occluders, 1, 1 << 16)?;
     let n_occludees = check_range("occludees", options.occludees, 1, 1 << 16)?;
     let tilt = check_range("tilt", options.tilt, 0, 100)?;

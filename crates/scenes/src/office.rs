@@ -3,7 +3,7 @@
 //! Everything is laid out on a grid of eighths of a unit (a unit is a metre). The layout is shared with
 //! the floors of towers.
 
-use crate::error::{SceneError, check_range};
+use crate::error::{GenerateError, check_range};
 use crate::layout::{Layout, Piece, PieceKind, STEPS};
 use crate::rng::Rng;
 use crate::stroke::{Stroke, merge, outline};
@@ -38,8 +38,8 @@ impl Default for OfficeOptions {
 /// coordinates are multiples of 1/8, the outer wall is closed, every room has a door to a corridor.
 ///
 /// # Errors
-/// [`SceneError`] for a count out of its range or an unknown thickness.
-pub fn office(options: OfficeOptions) -> Result<Plan, SceneError> {
+/// [`GenerateError`] for a count out of its range or an unknown thickness.
+pub fn office(options: OfficeOptions) -> Result<Plan, GenerateError> {
     let half = half_thickness(options.wall_thickness)?;
     let floor = build(&options)?;
     let strokes = if half == 0 {
@@ -53,7 +53,7 @@ pub fn office(options: OfficeOptions) -> Result<Plan, SceneError> {
 }
 
 /// The layout of the floor.
-fn build(options: &OfficeOptions) -> Result<Layout, SceneError> {
+fn build(options: &OfficeOptions) -> Result<Layout, GenerateError> {
     check_range("rooms_x", options.rooms_x, 1, 128)?;
     check_range("rooms_y", options.rooms_y, 1, 128)?;
     check_range("block", options.block, 1, 128)?;
@@ -68,12 +68,12 @@ fn all_strokes(floor: &Layout) -> Vec<Stroke> {
 }
 
 /// Half the wall thickness in grid steps.
-pub(crate) fn half_thickness(wall_thickness: f64) -> Result<i32, SceneError> {
+pub(crate) fn half_thickness(wall_thickness: f64) -> Result<i32, GenerateError> {
     [0.0, 0.25, 0.5]
         .iter()
         .zip(0..)
         .find_map(|(&t, half)| (t == wall_thickness).then_some(half))
-        .ok_or(SceneError::WallThickness(wall_thickness))
+        .ok_or(GenerateError::WallThickness(wall_thickness))
 }
 
 /// Desks and tables as objects of a plan.

@@ -22,15 +22,15 @@ mod verdict;
 mod wide;
 
 pub use axial::shaft::{
-    BlockedProof, Blockers, Branch, BranchRow, Bypass, Contradiction, FineLine, FreeLine, FreeSpan, ProofSize, Shaft,
-    ShaftCounters, ShaftLine, ShaftVerdict, Target,
+    BlockedProof, Blockers, BoxTarget, Branch, BranchRow, Bypass, Contradiction, FineLine, FreeLine, FreeSpan,
+    ProofSize, Shaft, ShaftCounters, ShaftLine, ShaftVerdict,
 };
 pub use axial::{
     AxialCertificate, AxialCounters, AxialRow, AxialStabber, AxialUndo, AxialVerdict, AxialWitness, OctantProof,
     stabbing_line_axial,
 };
 pub use convex::{
-    Block, BoxProof, ConvexCertificate, ConvexCounters, ConvexNode, ConvexSequence, ConvexStabber, ConvexTerm,
+    Block, BoxProof, ConvexCertificate, ConvexNode, ConvexSequence, ConvexStabber, ConvexStabberCounters, ConvexTerm,
     ConvexUndo, ConvexVerdict, FineLine3, HullProof, KnownPortal, Line3, PlaneProof, StabLimits,
 };
 pub use planar::{End, Funnel, FunnelUndo, PlanarCertificate, PlanarVerdict, PlanarWitness, stabbing_line};

@@ -118,14 +118,14 @@ impl<'a> Asker<'a> {
     }
 }
 
-type Method = Box<dyn FromRegion + Send>;
+type RegionMethod = Box<dyn FromRegion + Send>;
 
 /// A search about some boxes of eyes. Faces are numbered by their places in the tree, boxes in the order of theirs.
 struct Search<'a> {
     asker: &'a Asker<'a>,
     make: MakeMethod<'a>,
     /// Those that no thread uses.
-    methods: Mutex<Vec<Method>>,
+    methods: Mutex<Vec<RegionMethod>>,
     volumes: &'a [Volume],
     boxes: BoxTree<3>,
 }

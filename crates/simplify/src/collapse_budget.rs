@@ -5,7 +5,7 @@ use crate::intercepts::Intercepts;
 use crate::mesh::{Change, Mesh, Policy, State};
 use crate::options::SimplifyOptions;
 use crate::select::{Account, kept_faces, least_visible};
-use crate::views::{View, Views};
+use crate::views::{ViewBox, Views};
 use sightlines_geometry::{Aabb, Point3};
 use sightlines_visible_surface::Faces;
 use std::collections::BTreeMap;
@@ -65,7 +65,7 @@ impl<'a> CollapseBudget<'a> {
         let changed = change.lost.iter().chain(change.moved.iter().map(|(f, _)| f));
         let corners = changed.flat_map(|&f| mesh.corners(f)).chain([mesh.place(change.to)]);
         let around = Aabb::<3>::around(corners);
-        let to = |view: &View| bound::distance(&around, view.volume.bounds());
+        let to = |view: &ViewBox| bound::distance(&around, view.volume.bounds());
         self.views.parts().iter().map(to).fold(f64::INFINITY, f64::min)
     }
 

@@ -12,7 +12,7 @@ const PER_TASK: u64 = 1 << 12;
 
 /// How often each face was hit first, by rays from all of the views.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Estimate {
+pub struct HitEstimate {
     hits: Vec<u64>,
     n_rays: u64,
 }
@@ -26,7 +26,7 @@ pub struct Interval {
     pub ends: [f64; 2],
 }
 
-impl Estimate {
+impl HitEstimate {
     /// Sends rays. Eyes are spread over the parts of the views, in proportion to their volumes (all parts count equally
     /// if all are flat); directions are spread over the sphere: ray `i` of `n` has a random direction in strip `i` of
     /// `n` equal strips of latitude, which are taken in a scattered order. So the rays are independent, and fewer are
@@ -93,7 +93,7 @@ impl Estimate {
     }
 }
 
-/// The interval for `k` hits of `n` rays: see [`Estimate::interval`].
+/// The interval for `k` hits of `n` rays: see [`HitEstimate::interval`].
 pub fn interval(k: u64, n: u64, confidence: f64) -> Interval {
     if n == 0 {
         return Interval { share: 0.0, ends: [0.0, 1.0] };
@@ -153,7 +153,7 @@ pub(crate) struct EyeSampler<'a> {
 
 impl<'a> EyeSampler<'a> {
     pub(crate) fn new(views: &'a Views) -> Self {
-        let volume = |v: &crate::View| {
+        let volume = |v: &crate::ViewBox| {
             let b = v.volume.bounds();
             (0..3).map(|k| b.max[k] - b.min[k]).product::<f64>()
         };
@@ -203,7 +203,7 @@ mod tests {
         let faces = cube();
         let eye = Volume::new(Aabb { min: [0.0; 3], max: [0.0; 3] }).unwrap();
         let n = 48_000;
-        let estimate = Estimate::new(&faces, &Views::new([eye]).unwrap(), n);
+        let estimate = HitEstimate::new(&faces, &Views::new([eye]).unwrap(), n);
         assert_eq!(faces.ids().map(|f| estimate.hits(f)).sum::<u64>(), n);
         for face in faces.ids() {
             let interval = estimate.interval(face, 0.999_9);

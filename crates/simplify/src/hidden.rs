@@ -1,7 +1,7 @@
 //! Which faces are proven hidden.
 
 use crate::ask::{Asker, MakeMethod};
-use crate::views::{View, Views};
+use crate::views::{ViewBox, Views};
 use rayon::prelude::*;
 use sightlines_geometry::{Aabb, BoxTree};
 use sightlines_multifocal::{BackendError, Volume};
@@ -61,7 +61,7 @@ impl<'a> Hider<'a> {
 
     /// What the table alone says.
     fn by_table(&self, views: &Views) -> Vec<Vec<bool>> {
-        let start = |view: &View| -> Vec<bool> {
+        let start = |view: &ViewBox| -> Vec<bool> {
             let mut visible: Vec<bool> = self.faces.ids().map(|face| self.faces.has_area(face)).collect();
             if let Some(table) = &self.table {
                 table.hide(view, self.faces, &mut visible);
@@ -117,7 +117,7 @@ impl<'a> TableFaces<'a> {
     /// Hides faces of objects that the view's cell does not see, and faces that touch no cell that it sees: a ray that
     /// reaches a face comes through a cell whose closed box the face touches. A face that touches no cell of a k-d tree
     /// is inside something solid, but is left visible: this costs little, and makes no assumption about the outside.
-    fn hide(&self, view: &View, faces: &Faces, visible: &mut [bool]) {
+    fn hide(&self, view: &ViewBox, faces: &Faces, visible: &mut [bool]) {
         let Some(cell) = view.cell else { return };
         let mut objects = vec![false; self.table.objects().len()];
         self.table.visible_objects(cell).into_iter().for_each(|o| objects[o.idx()] = true);

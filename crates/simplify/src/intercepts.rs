@@ -2,7 +2,7 @@
 
 use crate::bound;
 use crate::hidden::{HiddenBy, Hider};
-use crate::views::{View, Views};
+use crate::views::{ViewBox, Views};
 use rayon::prelude::*;
 use sightlines_multifocal::BackendError;
 use sightlines_visible_surface::Faces;
@@ -39,7 +39,7 @@ impl Intercepts {
 
     /// From the faces that may be visible in each part.
     pub(crate) fn of_visible(faces: &Faces, views: &Views, visible: &[Vec<bool>], depth: u32) -> Self {
-        let of = |(view, visible): (&View, &Vec<bool>)| {
+        let of = |(view, visible): (&ViewBox, &Vec<bool>)| {
             let share = |face: u32| {
                 if visible[face as usize] { bound::share(faces.of(face), view.volume.bounds(), depth) } else { 0.0 }
             };

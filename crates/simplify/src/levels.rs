@@ -63,7 +63,7 @@ pub struct Levels {
 
 /// Who is told how far the work is, and where results of its units are kept. Neither changes a result.
 #[derive(Clone, Copy, Default)]
-pub struct Effort<'a> {
+pub struct WorkOptions<'a> {
     /// Is told how far the work is, and may cancel it.
     pub observer: Option<&'a dyn Observer>,
     /// Where results are kept, to go on after a stop: what cells see (the phase `visible-faces`) and levels (`levels`). How many levels are tried is not known
@@ -71,9 +71,9 @@ pub struct Effort<'a> {
     pub units: Units<'a>,
 }
 
-impl std::fmt::Debug for Effort<'_> {
+impl std::fmt::Debug for WorkOptions<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let mut out = f.debug_struct("Effort");
+        let mut out = f.debug_struct("WorkOptions");
         out.field("observer", &self.observer.is_some()).field("units", &self.units).finish()
     }
 }
@@ -102,7 +102,7 @@ pub fn levels(
     by: &HiddenBy<'_>,
     options: &LevelOptions,
 ) -> Result<Levels, SimplifyError> {
-    levels_with(scene, table, by, options, &Effort::default())
+    levels_with(scene, table, by, options, &WorkOptions::default())
 }
 
 /// As [`levels()`], with an observer and a store of units.
@@ -114,7 +114,7 @@ pub fn levels_with(
     table: &Table,
     by: &HiddenBy<'_>,
     options: &LevelOptions,
-    effort: &Effort<'_>,
+    effort: &WorkOptions<'_>,
 ) -> Result<Levels, SimplifyError> {
     options.simplify.check()?;
     check_mirrors(scene, &options.simplify)?;
@@ -195,8 +195,8 @@ struct LevelBuilder<'a> {
 
 impl LevelBuilder<'_> {
     /// For each cell the faces that may be visible, and those of them that remain.
-    fn seen(&self, effort: &Effort<'_>) -> Result<Vec<(Vec<bool>, Bits)>, SimplifyError> {
-        let Effort { observer, units } = *effort;
+    fn seen(&self, effort: &WorkOptions<'_>) -> Result<Vec<(Vec<bool>, Bits)>, SimplifyError> {
+        let WorkOptions { observer, units } = *effort;
         let all: Vec<CellId> = (0..self.table.n_cells() as u32).map(CellId).collect();
         let parts: Vec<&[CellId]> = all.chunks(N_TOGETHER).collect();
         let costs: Vec<f64> = parts.iter().map(|cells| cells.len() as f64).collect();

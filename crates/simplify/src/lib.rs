@@ -3,7 +3,7 @@
 //! # Scope
 //!
 //! - **Owns**: the share of the view that a triangle can cover, as a proven upper bound ([`Intercepts`]) and as an
-//!   estimate by rays ([`Estimate`]); simplification within a budget ([`simplify`]); levels for the cells of a table
+//!   estimate by rays ([`HitEstimate`]); simplification within a budget ([`simplify`]); levels for the cells of a table
 //!   ([`levels()`]); the measurement of the change ([`measure`]); the ordinary geometric metric, for comparison
 //!   ([`geometric`]).
 //! - **Out of scope**: how hidden things are proven (this is left to a
@@ -46,13 +46,13 @@ mod weigh;
 
 pub use aimed::{Aimed, measure_aimed};
 pub use ask::MakeMethod;
-pub use estimate::{Estimate, Interval};
+pub use estimate::{HitEstimate, Interval};
 pub use geometric::geometric;
 pub use hidden::HiddenBy;
 pub use intercepts::Intercepts;
-pub use levels::{Effort, Level, LevelOptions, Levels, levels, levels_with};
+pub use levels::{Level, LevelOptions, Levels, WorkOptions, levels, levels_with};
 pub use measure::{MeasureOptions, Measured, measure};
 pub use options::{OptionsError, SimplifyOptions};
 pub use simplified::{Counts, Simplified};
-pub use simplify::{Prepared, SimplifyError, simplify};
-pub use views::{View, Views, ViewsError};
+pub use simplify::{PreparedScene, SimplifyError, simplify};
+pub use views::{ViewBox, Views, ViewsError};

@@ -106,7 +106,7 @@ pub fn measure(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::estimate::Estimate;
+    use crate::estimate::HitEstimate;
     use crate::simplified::Counts;
     use sightlines_cells::SceneObject;
     use sightlines_geometry::Aabb;
@@ -149,7 +149,7 @@ mod tests {
         let (seen, aimed) = changed(&opaque);
         assert!(seen < 0.02 && aimed < 0.02, "{seen} {aimed}");
         let hits = |scene: &Scene| {
-            let estimate = Estimate::through(scene, &Faces::of_scene(scene).unwrap(), &views, 4000);
+            let estimate = HitEstimate::through(scene, &Faces::of_scene(scene).unwrap(), &views, 4000);
             [0..2, 2..4].map(|faces| faces.map(|face| estimate.hits(face)).sum::<u64>())
         };
         let ([pane, wall], [before, behind]) = (hits(&glass), hits(&opaque));

@@ -1,7 +1,7 @@
 //! From a scene to one with fewer triangles.
 
 use crate::collapse_budget::CollapseBudget;
-use crate::estimate::Estimate;
+use crate::estimate::HitEstimate;
 use crate::hidden::{HiddenBy, Hider};
 use crate::intercepts::Intercepts;
 use crate::mesh::{Collapser, Left, Mesh, State, Weights, merge};
@@ -105,12 +105,12 @@ pub fn simplify(
     by: &HiddenBy<'_>,
     options: &SimplifyOptions,
 ) -> Result<Simplified, SimplifyError> {
-    Prepared::of(scene, views, by, options, options.budget > 0.0)?.simplify(options)
+    PreparedScene::of(scene, views, by, options, options.budget > 0.0)?.simplify(options)
 }
 
 /// A scene with bounds on what its faces can intercept for some views: to be simplified with several budgets.
 #[derive(Debug)]
-pub struct Prepared<'a> {
+pub struct PreparedScene<'a> {
     whole: &'a Scene,
     /// What does not move.
     scene: Cow<'a, Scene>,
@@ -119,7 +119,7 @@ pub struct Prepared<'a> {
     intercepts: Intercepts,
 }
 
-impl<'a> Prepared<'a> {
+impl<'a> PreparedScene<'a> {
     /// Determines what is hidden, and bounds the rest. Of the options, only the number of parts, the depth and the
     /// threads matter.
     ///
@@ -283,7 +283,7 @@ pub(crate) fn within_budget(
     if kept > 0.0 {
         // One half of the reserved budget covers removed faces, the other new ones.
         let mut paying = CollapseBudget::choose(faces, views, intercepts, &mesh, options, account);
-        let estimate = Estimate::through(scene, faces, views, options.n_rays);
+        let estimate = HitEstimate::through(scene, faces, views, options.n_rays);
         let fronts = Fronts::new(faces, views);
         let area = Areas::new(faces);
         let weights = Weights {

@@ -8,7 +8,7 @@ use std::collections::BinaryHeap;
 
 /// A box of eyes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct View {
+pub struct ViewBox {
     /// Where the eye can be, a closed box.
     pub volume: Volume,
     /// The table's cell that it is in, if it comes from one.
@@ -19,7 +19,7 @@ pub struct View {
 ///
 /// Bounds are computed for each box and hold in it, so many small boxes give better bounds than one large one.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Views(Vec<View>);
+pub struct Views(Vec<ViewBox>);
 
 /// Why views are invalid.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -67,7 +67,7 @@ impl Views {
     /// # Errors
     /// [`ViewsError::None`] for an empty list.
     pub fn new(volumes: impl IntoIterator<Item = Volume>) -> Result<Self, ViewsError> {
-        let views: Vec<View> = volumes.into_iter().map(|volume| View { volume, cell: None }).collect();
+        let views: Vec<ViewBox> = volumes.into_iter().map(|volume| ViewBox { volume, cell: None }).collect();
         if views.is_empty() { Err(ViewsError::None) } else { Ok(Self(views)) }
     }
 
@@ -89,9 +89,9 @@ impl Views {
             if bounds.is_empty() || !has_boxes(table) {
                 return Err(ViewsError::NoBox { cell: cell.0 });
             }
-            Ok(View { volume: Volume::new(bounds)?, cell: Some(cell) })
+            Ok(ViewBox { volume: Volume::new(bounds)?, cell: Some(cell) })
         };
-        let views: Vec<View> = cells.iter().map(view).collect::<Result<_, _>>()?;
+        let views: Vec<ViewBox> = cells.iter().map(view).collect::<Result<_, _>>()?;
         if views.is_empty() { Err(ViewsError::None) } else { Ok(Self(views)) }
     }
 
@@ -100,7 +100,7 @@ impl Views {
     #[must_use]
     pub fn cut(mut self, n: usize) -> Self {
         // Non-negative lengths have the order of their bits.
-        let longest = |v: &View| {
+        let longest = |v: &ViewBox| {
             let b = v.volume.bounds();
             (0..3).map(|k| b.max[k] - b.min[k]).fold(0.0, f64::max).to_bits()
         };
@@ -111,14 +111,14 @@ impl Views {
             let Some((_, Reverse(at))) = heap.pop() else { break };
             let Some([low, high]) = self.0[at].volume.halves() else { break };
             self.0[at].volume = low;
-            self.0.push(View { volume: high, ..self.0[at] });
+            self.0.push(ViewBox { volume: high, ..self.0[at] });
             heap.extend([at, self.0.len() - 1].map(|at| (longest(&self.0[at]), Reverse(at))));
         }
         self
     }
 
     /// The boxes.
-    pub fn parts(&self) -> &[View] {
+    pub fn parts(&self) -> &[ViewBox] {
         &self.0
     }
 }

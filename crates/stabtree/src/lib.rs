@@ -35,8 +35,8 @@ pub use certify::{
 };
 pub use chords::{shoot_axial_chords, shoot_chords};
 pub use convex::{
-    BlockedConvex, Blocking, ConvexCounters, ConvexDoubt, ConvexExplainer, ConvexExplanation, ConvexGate,
-    ConvexOptions, ConvexPath, ConvexProof, ConvexSearch, ConvexState, ConvexVisibility, MOST_EXPLAINED, WorkChain,
+    BlockedConvex, Blocking, ConvexDoubt, ConvexExplainer, ConvexExplanation, ConvexGate, ConvexOptions, ConvexPath,
+    ConvexProof, ConvexSearch, ConvexSearchCounters, ConvexState, ConvexVisibility, MOST_EXPLAINED, WorkChain,
     certify_convex, check_convex, convex_network, explain_convex,
 };
 pub use explain::{BlockedSequence, PlanarExplanation, PlanarPath, PlanarProof, explain};
@@ -44,7 +44,7 @@ pub use explanation::{Barrier, Explanation, SearchLimit, Sight};
 pub use network::Network;
 pub use search::{SearchOptions, SearchSummary, ZoneVisibility, visible_zones};
 pub use tree::{
-    ByPolygons, ByStabber, Follower, StabNode, StabTree, StabTreesOptions, StabTreesSummary, TooLarge, gate_of,
+    ByPolygons, ByStabber, Follower, StabNode, StabTree, StabTreesOptions, StabTreesSummary, TreeTooLarge, gate_of,
     portal_of, stab_trees, stab_trees_axial, stab_trees_convex, stab_trees_planar,
 };
 pub use zones::Zones;

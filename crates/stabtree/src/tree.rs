@@ -37,7 +37,7 @@ pub struct StabTree {
 /// A stab tree has more nodes than allowed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("the stab tree of cell {cell} has more than {max_nodes} nodes")]
-pub struct TooLarge {
+pub struct TreeTooLarge {
     /// The cell at the root.
     pub cell: CellId,
     /// The limit.
@@ -62,14 +62,14 @@ impl StabTree {
     /// `max_nodes`.
     ///
     /// # Errors
-    /// [`TooLarge`].
+    /// [`TreeTooLarge`].
     pub fn build<C: Space, S: Stabber>(
         graph: &CellGraph<C>,
         root: CellId,
         stabber: &mut S,
         crossing: impl Fn(&Exit) -> S::Portal,
         max_nodes: usize,
-    ) -> Result<Self, TooLarge> {
+    ) -> Result<Self, TreeTooLarge> {
         let mut nodes = vec![StabNode { cell: root, portal: None, parent: None }];
         let mut stack = vec![Open::<S::Undo> { node: 0, entry_side: None, next: 0, undo: None }];
         while let Some(open) = stack.last_mut() {
@@ -94,7 +94,7 @@ impl StabTree {
                 }
             };
             if nodes.len() >= max_nodes {
-                return Err(TooLarge { cell: root, max_nodes });
+                return Err(TreeTooLarge { cell: root, max_nodes });
             }
             let parent = Some(open.node);
             let child = nodes.len() as u32;

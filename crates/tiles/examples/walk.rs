@@ -6,7 +6,7 @@ use sightlines_bake::{BakeRequest, CellsFrom, SceneMethod};
 use sightlines_formats::scene::{SceneReadOptions, write_glb};
 use sightlines_geometry::Aabb;
 use sightlines_scenes::{CityOptions, city_tiles};
-use sightlines_tiles::{TilePlan, TileWalk, TileWalkOptions, World, WorldPlan};
+use sightlines_tiles::{TilePlan, TileWalk, TileWalkOptions, TiledWorld, WorldPlan};
 use std::sync::Arc;
 
 /// Blocks along each side, each a tile.
@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let bake = WorldBake::read((&path, &world_files(&path)?), (&request, &reading), ("1.0", 1), &run.runtime)?;
     bake.run(folder.path(), &run)?;
 
-    let world = Arc::new(World::open(folder.path())?);
+    let world = Arc::new(TiledWorld::open(folder.path())?);
     let options = TileWalkOptions { has_thread: false, ..TileWalkOptions::default() };
     let mut walk = TileWalk::new(Arc::clone(&world), options);
     for step in 0..4 {

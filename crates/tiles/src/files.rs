@@ -1,7 +1,7 @@
 //! The bytes of the files of a tile.
 
-use crate::world::World;
-use sightlines_packed::across::{AcrossColumns, AcrossError, NearTile, write_across};
+use crate::world::TiledWorld;
+use sightlines_packed::across::{AcrossColumns, AcrossError, NearColumns, write_across};
 use sightlines_packed::{PackError, PackOptions, pack};
 use sightlines_pvs::{Table, TableError};
 use std::ops::Range;
@@ -27,7 +27,7 @@ pub enum TileFileError {
 /// [`TileFileError`]
 pub fn table_bytes(table: Table, key: [u8; 16]) -> Result<Vec<u8>, TileFileError> {
     let mut parts = table.into_parts();
-    parts.info.push(World::stated(key));
+    parts.info.push(TiledWorld::stated(key));
     parts.info.sort();
     Ok(pack(&Table::new(parts)?, &PackOptions::default())?)
 }
@@ -44,7 +44,7 @@ pub fn near_bytes(
     near: impl IntoIterator<Item = (String, [u32; 2])>,
     rows: &[Vec<Range<u32>>],
 ) -> Result<Vec<u8>, TileFileError> {
-    let near = near.into_iter().map(|(name, [n_cells, n_objects])| NearTile { name, n_cells, n_objects }).collect();
+    let near = near.into_iter().map(|(name, [n_cells, n_objects])| NearColumns { name, n_cells, n_objects }).collect();
     across(&AcrossColumns { key, near, far: Vec::new() }, rows)
 }
 

@@ -3,7 +3,7 @@
 //! # Scope
 //!
 //! - **Owns**: what a world consists of ([`WorldPlan`]), which tiles are near each other ([`near_tiles`]), the folder of baked tiles and its index
-//!   ([`WorldIndex`], [`World`]), what an eye sees across tiles ([`TileTables`], [`Seen`]), and loading ahead of a viewer ([`TileWalk`]).
+//!   ([`WorldIndex`], [`TiledWorld`]), what an eye sees across tiles ([`TileTables`], [`Seen`]), and loading ahead of a viewer ([`TileWalk`]).
 //! - **Out of scope**: how tiles are baked (`bake`), how tables are stored (`packed`), who bakes which (the program).
 //! - **Invariants**: an eye outside of every cell sees everything, and so does one whose tile is not loaded yet; a tile that another does not know
 //!   of is seen as a whole; tables of different bakes are never mixed; no content of a file causes a panic.
@@ -26,4 +26,4 @@ pub use near::{TileBounds, near_tiles};
 pub use plan::{TilePlan, WorldPlan};
 pub use tables::{Seen, TileScratch, TileTables};
 pub use walk::{TileFrame, TileWalk, TileWalkOptions};
-pub use world::{TileId, World};
+pub use world::{TileId, TiledWorld};

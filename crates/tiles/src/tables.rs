@@ -3,7 +3,7 @@
 use crate::error::WorldError;
 use crate::index::TilePart;
 use crate::near::is_within;
-use crate::world::{TileId, World};
+use crate::world::{TileId, TiledWorld};
 use sightlines_packed::Packed;
 use sightlines_packed::across::{Across, SeenAcross};
 use sightlines_pvs::{CellId, ObjectId, Place, PlaceBuffer};
@@ -32,7 +32,7 @@ impl Seen {
     }
 
     /// Everything in a world.
-    pub fn set_everything(&mut self, world: &World) {
+    pub fn set_everything(&mut self, world: &TiledWorld) {
         self.clear();
         self.tiles.extend(world.tiles());
     }
@@ -80,7 +80,7 @@ impl TileTables {
     ///
     /// # Panics
     /// If there is no such tile.
-    pub fn load(world: &World, tile: TileId, cache_bytes: usize) -> Result<Self, WorldError> {
+    pub fn load(world: &TiledWorld, tile: TileId, cache_bytes: usize) -> Result<Self, WorldError> {
         let entry = &world.index().tiles[tile.0 as usize];
         let open = |part: TilePart| {
             let path = world.path(tile, part);
@@ -88,7 +88,8 @@ impl TileTables {
         };
         let (file, path) = open(TilePart::Table)?;
         let table = Packed::open(file, cache_bytes).map_err(|error| WorldError::file(&path, error))?;
-        let is_of = table.info().contains(&World::stated(entry.key)) && table.n_objects() == entry.n_objects as usize;
+        let is_of =
+            table.info().contains(&TiledWorld::stated(entry.key)) && table.n_objects() == entry.n_objects as usize;
         if !is_of || table.n_cells() != entry.n_cells as usize {
             return Err(WorldError::Mixed { path });
         }
@@ -104,7 +105,13 @@ impl TileTables {
     }
 
     /// `None` if tiles nearby are not those of the world.
-    fn new(world: &World, tile: TileId, table: Packed<File>, near: Across<File>, far: Across<File>) -> Option<Self> {
+    fn new(
+        world: &TiledWorld,
+        tile: TileId,
+        table: Packed<File>,
+        near: Across<File>,
+        far: Across<File>,
+    ) -> Option<Self> {
         let near_ids = near.columns().near.iter().map(|near| {
             let id = world.named(&near.name)?;
             let entry = world.tile(id)?;

@@ -2,9 +2,9 @@
 
 use crate::error::WorldError;
 use crate::tables::{Seen, TileScratch, TileTables};
-use crate::world::{TileId, World};
+use crate::world::{TileId, TiledWorld};
 use sightlines_pvs::CellId;
-use sightlines_walkthrough::{Answer, Prefetcher, Prepare};
+use sightlines_walkthrough::{AnswerKind, Prefetcher, Prepare};
 use std::sync::Arc;
 
 /// Parameters of a [`TileWalk`].
@@ -29,7 +29,7 @@ impl Default for TileWalkOptions {
 
 /// Loads tiles.
 struct Loader {
-    world: Arc<World>,
+    world: Arc<TiledWorld>,
     cache_bytes: usize,
 }
 
@@ -51,14 +51,14 @@ impl Prepare for Loader {
 pub struct TileFrame<'a> {
     /// Everything that may be seen.
     pub seen: &'a Seen,
-    /// [`Answer::Late`] and [`Answer::Outside`]: all tiles.
-    pub answer: Answer,
+    /// [`AnswerKind::Late`] and [`AnswerKind::Outside`]: all tiles.
+    pub answer: AnswerKind,
 }
 
 /// Follows an eye through a world. A frame waits for blocks of tables that are loaded, and never for a tile to be loaded: until it has arrived, all of the world
 /// counts as visible.
 pub struct TileWalk {
-    world: Arc<World>,
+    world: Arc<TiledWorld>,
     tiles: Prefetcher<Loader>,
     ahead: f64,
     at: Vec<TileId>,
@@ -81,7 +81,7 @@ fn distance(eye: [f64; 3], b: &sightlines_geometry::Aabb<3>) -> f64 {
 
 impl TileWalk {
     /// Begins a walk. With a thread of its own, if the options say so.
-    pub fn new(world: Arc<World>, options: TileWalkOptions) -> Self {
+    pub fn new(world: Arc<TiledWorld>, options: TileWalkOptions) -> Self {
         let TileWalkOptions { budget, cache_bytes, ahead, has_thread } = options;
         let loader = Loader { world: Arc::clone(&world), cache_bytes };
         let tiles =
@@ -96,7 +96,7 @@ impl TileWalk {
         self.world.tiles_at(eye, &mut self.at);
         self.wish(eye);
         let answer = self.see(eye);
-        if answer == Answer::Full {
+        if answer == AnswerKind::Full {
             self.seen.sort();
         } else {
             self.seen.set_everything(&self.world);
@@ -122,20 +122,20 @@ impl TileWalk {
         }
     }
 
-    fn see(&mut self, eye: [f64; 3]) -> Answer {
+    fn see(&mut self, eye: [f64; 3]) -> AnswerKind {
         self.seen.clear();
         let mut is_inside = false;
         for &tile in &self.at {
-            let Some(tables) = self.tiles.get(CellId(tile.0)) else { return Answer::Late };
+            let Some(tables) = self.tiles.get(CellId(tile.0)) else { return AnswerKind::Late };
             match tables.see(eye, &mut self.seen, &mut self.scratch) {
                 Ok(found) => is_inside |= found,
                 Err(error) => {
                     self.error = Some(error);
-                    return Answer::Late;
+                    return AnswerKind::Late;
                 }
             }
         }
-        if is_inside { Answer::Full } else { Answer::Outside }
+        if is_inside { AnswerKind::Full } else { AnswerKind::Outside }
     }
 
     /// The last error, if there was one since the last call.

@@ -16,7 +16,7 @@ pub(crate) const KEY: &str = "tile";
 
 /// A baked world: its index is in memory, tables are opened tile by tile.
 #[derive(Debug)]
-pub struct World {
+pub struct TiledWorld {
     folder: PathBuf,
     index: WorldIndex,
     by_name: HashMap<String, TileId>,
@@ -24,7 +24,7 @@ pub struct World {
     tree: BoxTree<3>,
 }
 
-impl World {
+impl TiledWorld {
     /// The name, and the value, of what the information of the table of a tile states: from which bake it is.
     pub fn stated(key: [u8; 16]) -> (String, String) {
         (KEY.to_owned(), format!("{:032x}", u128::from_be_bytes(key)))

@@ -4,7 +4,7 @@
 
 use sightlines_cells::{Plan, PlanError, PlanLine, Portal2};
 use sightlines_geometry::Point2;
-use sightlines_triangulation::{Summary, subdivide};
+use sightlines_triangulation::{SubdivisionSummary, subdivide};
 
 fn p(x: f64, y: f64) -> Point2 {
     Point2::new(x, y)
@@ -33,7 +33,7 @@ fn plan() -> Result<Plan, PlanError> {
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let plan = plan()?;
-    let (graph, Summary { n_triangles, n_rounded_crossings, .. }) = subdivide(&plan)?;
+    let (graph, SubdivisionSummary { n_triangles, n_rounded_crossings, .. }) = subdivide(&plan)?;
     println!(
         "{} lines; {n_triangles} triangles merged into {} cells; {n_rounded_crossings} crossings rounded",
         plan.lines().len(),

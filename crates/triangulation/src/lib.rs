@@ -55,7 +55,7 @@ pub enum TriangulationError {
 
 /// Statistics of a subdivision.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Summary {
+pub struct SubdivisionSummary {
     /// Triangles before merging.
     pub n_triangles: usize,
     /// Points where lines cross that are no line's end point and could not be represented exactly.
@@ -84,7 +84,7 @@ pub struct Summary {
 /// Chew, "Constrained Delaunay triangulations", Algorithmica 4, 1989, by way of `spade`; Hertel and
 /// Mehlhorn, "Fast triangulation of simple polygons", FCT 1983, for the merging, which leaves at most
 /// four times the least number of convex pieces.
-pub fn subdivide(plan: &Plan) -> Result<(CellGraph<Planar>, Summary), TriangulationError> {
+pub fn subdivide(plan: &Plan) -> Result<(CellGraph<Planar>, SubdivisionSummary), TriangulationError> {
     if plan.lines().is_empty() {
         return Err(TriangulationError::Empty);
     }
@@ -94,7 +94,7 @@ pub fn subdivide(plan: &Plan) -> Result<(CellGraph<Planar>, Summary), Triangulat
     let regions = regions::label(&mesh, &noded.everywhere);
     let graph = merge::convex_cells(&mesh, &regions, plan.n_groups() > 0);
     let n_disputed_cells = graph.cells().iter().filter(|c| c.groups.len() > 1).count();
-    let summary = Summary {
+    let summary = SubdivisionSummary {
         n_triangles: mesh.n_triangles(),
         n_rounded_crossings: noded.n_rounded_crossings,
         n_dropped_pieces: noded.n_dropped_pieces,

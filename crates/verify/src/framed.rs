@@ -5,9 +5,9 @@
 
 use crate::findings::{Findings, Violation};
 use crate::options::VerifyOptions;
+use crate::oracle::{RayOracle, SolidWorld};
 use crate::rays;
-use crate::real::{RayOracle, SolidWorld};
-use crate::sight::{Sight, Target};
+use crate::sight::{SightSegment, Target};
 use crate::truth::{Truth, VerifyError};
 use num_rational::BigRational;
 use num_traits::Signed;
@@ -76,7 +76,7 @@ pub(crate) fn add_remarks(
         if known.contains(&(from, target)) {
             continue;
         }
-        if world.proves(&Sight { from, target, segment }) {
+        if world.proves(&SightSegment { from, target, segment }) {
             findings.add(violation);
         } else {
             findings.remarks.cracks += 1;

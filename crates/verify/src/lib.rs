@@ -20,10 +20,10 @@ mod findings;
 mod framed;
 mod map;
 mod options;
+mod oracle;
 mod own;
 mod proofs;
 mod rays;
-mod real;
 mod shapes;
 mod sight;
 mod structure;
@@ -38,8 +38,8 @@ pub use own::{LumpKind, OwnError, OwnSummary, OwnViolation, OwnVisibility};
 pub use proofs::{
     ProofError, ProofFindings, ProofViolation, boxes_of, can_be_proven, check_proofs, convex_of, plan_of,
 };
-pub use sight::{Sight, Target};
-pub use truth::{Truth, VerifyError, WorldChild, WorldFace, WorldNode, WorldTree};
+pub use sight::{SightSegment, Target};
+pub use truth::{MapChild, MapFace, MapNode, MapTree, Truth, VerifyError};
 pub use walls::{WallFindings, check_walls_in_space, check_walls_of_plan};
 pub use witness::sight_between;
 

@@ -1,11 +1,11 @@
 //! The tree of a Quake map, as tables are checked against it.
 
-use crate::{WorldChild, WorldFace, WorldNode, WorldTree};
+use crate::{MapChild, MapFace, MapNode, MapTree};
 use sightlines_formats::Malformed;
 use sightlines_formats::quake::bsp::BspChild;
 use sightlines_formats::quake::{Bsp, Prt};
 
-impl WorldTree {
+impl MapTree {
     /// The tree of a map, with the cluster of each leaf, and its faces. The portals are those of the map, as
     /// [`check_portals`](sightlines_formats::quake::visibility::check_portals) finds out.
     ///
@@ -21,16 +21,16 @@ impl WorldTree {
             (false, None) => None,
         };
         let child = |child: BspChild| match child {
-            BspChild::Node(node) => WorldChild::Node(node),
-            BspChild::Leaf(leaf) => cluster(leaf).map_or(WorldChild::Solid, WorldChild::Cluster),
+            BspChild::Node(node) => MapChild::Node(node),
+            BspChild::Leaf(leaf) => cluster(leaf).map_or(MapChild::Solid, MapChild::Cluster),
         };
         let nodes = tree
             .nodes()
             .iter()
-            .map(|n| WorldNode { normal: n.normal, distance: n.distance, children: n.children.map(child) })
+            .map(|n| MapNode { normal: n.normal, distance: n.distance, children: n.children.map(child) })
             .collect();
         let first = faces.range().start;
-        let face = |k: usize| WorldFace {
+        let face = |k: usize| MapFace {
             name: format!("face {}", first as usize + k),
             polygons: faces.polygons(k).map(<[_]>::to_vec).collect(),
         };
@@ -44,6 +44,6 @@ impl WorldTree {
             list.sort_unstable();
             list.dedup();
         });
-        Ok(WorldTree { nodes, faces: (0..faces.n_faces()).map(face).collect(), listed })
+        Ok(MapTree { nodes, faces: (0..faces.n_faces()).map(face).collect(), listed })
     }
 }

@@ -14,7 +14,7 @@ pub enum Target {
 
 /// A segment from inside of a cell to something that is seen, in scene units; z is 0 in a plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sight {
+pub struct SightSegment {
     /// The cell.
     pub from: CellId,
     /// What is seen.

@@ -17,12 +17,12 @@ pub enum Truth<'a> {
     Portals(&'a CellGraph<Convex>),
     /// A Quake map with its portals: also, nothing is seen through what is solid, and from cluster to cluster only where the
     /// portal file joins the two.
-    World(&'a CellGraph<Convex>, &'a WorldTree),
+    World(&'a CellGraph<Convex>, &'a MapTree),
 }
 
 /// What is on a side of a plane of a map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum WorldChild {
+pub enum MapChild {
     /// Another plane, after this one.
     Node(u32),
     /// A leaf of a cluster.
@@ -33,25 +33,25 @@ pub enum WorldChild {
 
 /// A plane of a map.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct WorldNode {
+pub struct MapNode {
     /// Its normal, of unit length but for rounding.
     pub normal: Point3,
     /// The plane is where `normal · p == distance`, in scene units.
     pub distance: f64,
     /// What is above it, where `normal · p` is larger, and below.
-    pub children: [WorldChild; 2],
+    pub children: [MapChild; 2],
 }
 
 /// A face of a map.
 #[derive(Debug, Clone, PartialEq)]
-pub struct WorldFace {
+pub struct MapFace {
     /// What a table calls it.
     pub name: String,
     /// The convex polygons that it is made of, most often one: the corners of each in turn, in scene units.
     pub polygons: Vec<Vec<Point3>>,
 }
 
-impl WorldFace {
+impl MapFace {
     /// The box around all of its corners; empty if it has none.
     pub(crate) fn bounds(&self) -> Aabb<3> {
         Aabb::around(self.polygons.iter().flatten().copied())
@@ -60,11 +60,11 @@ impl WorldFace {
 
 /// The tree of planes that a map was cut along, with its faces.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct WorldTree {
+pub struct MapTree {
     /// Planes, each before those under it; the first is the root. Empty if nothing is cut.
-    pub nodes: Vec<WorldNode>,
+    pub nodes: Vec<MapNode>,
     /// The faces of the world.
-    pub faces: Vec<WorldFace>,
+    pub faces: Vec<MapFace>,
     /// For each cluster the faces that its leafs list, ascending.
     pub listed: Vec<Vec<u32>>,
 }

@@ -1,7 +1,7 @@
 //! A line of sight between two cells of a table of a scene.
 
 use crate::framed::along_frame;
-use crate::real::{RayOracle, SolidWorld};
+use crate::oracle::{RayOracle, SolidWorld};
 use crate::sight::Target;
 use crate::truth::{Truth, VerifyError};
 use sightlines_cells::Scene;

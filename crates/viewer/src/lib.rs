@@ -14,5 +14,5 @@ mod payload;
 mod reasons;
 
 pub use figure::Figure;
-pub use page::{Frame, Page, PageError, Written};
+pub use page::{Page, PageError, WalkerPose, Written};
 pub use reasons::{Line, Obstacle, Reasons};

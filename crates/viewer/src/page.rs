@@ -43,14 +43,14 @@ pub struct Page<'a> {
     /// Why cells see each other, and why they do not.
     pub reasons: Option<&'a Reasons>,
     /// A walk to replay; may be empty.
-    pub walk: Vec<Frame>,
+    pub walk: Vec<WalkerPose>,
     /// The most bytes of the page; the smallest triangles are left out above it.
     pub max_bytes: usize,
 }
 
 /// Where a walker is in a frame, and looks to; z is 0 in a plane.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Frame {
+pub struct WalkerPose {
     /// The eye, in scene units.
     pub eye: [f64; 3],
     /// The direction, of any length.
@@ -116,7 +116,7 @@ struct Head<'a> {
     table: &'a str,
     figure: Option<FigureHead>,
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
-    walk: &'a [Frame],
+    walk: &'a [WalkerPose],
     /// Visible pairs, and how many of them some line joins.
     joined: Option<[usize; 2]>,
 }

@@ -5,7 +5,7 @@
 use sightlines_cells::Plan;
 use sightlines_geometry::Point2;
 use sightlines_isovist::{Touch, WallMesh};
-use sightlines_visibility_graph::{Effort, GlobalMeasures, Grid, VisibilityGraph};
+use sightlines_visibility_graph::{GlobalMeasures, PixelGrid, VisibilityGraph, WorkOptions};
 use std::collections::BTreeMap;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -23,12 +23,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ]
         .map(wall),
     )?;
-    let points = Grid::over(&plan, 0.3)?.enclosed()?;
+    let points = PixelGrid::over(&plan, 0.3)?.enclosed()?;
     let mesh = WallMesh::new(&plan)?;
     let index = mesh.index(points.coordinates())?;
     let seen = |eye: u32, list: &mut Vec<u32>| mesh.points_seen(eye, &index, Touch::Blocks, list);
-    let graph = VisibilityGraph::build(points.len() as u32, seen, &Effort::default())?;
-    let depth = GlobalMeasures::of(&graph, None, &Effort::default())?.mean_depth;
+    let graph = VisibilityGraph::build(points.len() as u32, seen, &WorkOptions::default())?;
+    let depth = GlobalMeasures::of(&graph, None, &WorkOptions::default())?.mean_depth;
 
     println!("{} points in {} runs; mean depth from 1 to 3, as tenths above 1:", points.len(), graph.n_runs());
     let mut rows: BTreeMap<i64, BTreeMap<i64, u32>> = BTreeMap::new();

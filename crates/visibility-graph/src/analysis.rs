@@ -1,6 +1,8 @@
 //! All measures by name.
 
-use crate::{AngularMeasures, Effort, GlobalMeasures, LocalMeasures, MetricMeasures, Points, Turns, VisibilityGraph};
+use crate::{
+    AngularMeasures, GlobalMeasures, LocalMeasures, MetricMeasures, Points, Turns, VisibilityGraph, WorkOptions,
+};
 use sightlines_progress::Halt;
 
 /// Measures that are computed together.
@@ -166,7 +168,7 @@ impl Analysis {
         points: &Points,
         measures: &[Measure],
         options: &AnalysisOptions,
-        effort: &Effort<'_>,
+        effort: &WorkOptions<'_>,
     ) -> Result<Self, Halt> {
         let AnalysisOptions { radius, metric_radius, angular_radius, turns } = *options;
         let is_wanted = |group: Group| measures.iter().any(|measure| measure.group() == group);

@@ -1,11 +1,11 @@
 //! Which pixels of a grid are reached by steps between neighbours.
 
 use crate::GridError;
-use crate::grid::{Grid, Pixel};
+use crate::grid::{Pixel, PixelGrid};
 use crate::points::Points;
 use sightlines_geometry::{Point2, Segment2};
 
-impl Grid {
+impl PixelGrid {
     /// The points that are reached from seeds, by steps to any of the eight neighbours of a pixel along which no wall lies: the segment
     /// between the two centres and no wall have a point in common. Up the columns, from left to right.
     ///
@@ -49,14 +49,14 @@ impl Grid {
 
 /// The points inside a building, found without a seed.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Interior {
+pub struct InteriorPoints {
     /// The points, up the columns, from left to right.
     pub points: Points,
     /// Whether walls enclose them. If not, such as where an outer door stands open, they are those around which walls stand.
     pub is_enclosed: bool,
 }
 
-impl Grid {
+impl PixelGrid {
     /// The points inside, for a plan whose interior nobody points out: all that are [enclosed](Self::enclosed), or, where what the walls
     /// enclose is not the largest part of what they surround, that part.
     ///
@@ -69,16 +69,16 @@ impl Grid {
     ///
     /// # Cost
     /// O(pixels · walls that touch a pixel).
-    pub fn interior(&self) -> Result<Interior, GridError> {
+    pub fn interior(&self) -> Result<InteriorPoints, GridError> {
         let (enclosed, surrounded) = (enclosed(self), surrounded(self));
         let largest = largest_part(self, &surrounded).ok_or(GridError::NothingEnclosed)?;
         let is_enclosed = largest.iter().zip(&enclosed).all(|(is_inside, is_enclosed)| !is_inside || *is_enclosed);
-        Ok(Interior { points: self.points(if is_enclosed { &enclosed } else { &largest }), is_enclosed })
+        Ok(InteriorPoints { points: self.points(if is_enclosed { &enclosed } else { &largest }), is_enclosed })
     }
 }
 
 /// The pixels that have walls in at least seven of eight directions, and their centre on no wall.
-fn surrounded(grid: &Grid) -> Vec<bool> {
+fn surrounded(grid: &PixelGrid) -> Vec<bool> {
     let [n_columns, n_rows] = grid.size();
     let mut n_blocked = vec![0u8; n_columns * n_rows];
     let along = |n: usize, by: i64| (0..n as i64).map(move |k| if by > 0 { n as i64 - 1 - k } else { k });
@@ -110,7 +110,7 @@ fn surrounded(grid: &Grid) -> Vec<bool> {
 }
 
 /// The largest part of some pixels that steps between them join; `None` of none.
-fn largest_part(grid: &Grid, of: &[bool]) -> Option<Vec<bool>> {
+fn largest_part(grid: &PixelGrid, of: &[bool]) -> Option<Vec<bool>> {
     let mut part_of = vec![0u32; of.len()];
     let mut sizes = Vec::new();
     for first in (0..of.len()).filter(|&k| of[k]) {
@@ -136,7 +136,7 @@ fn largest_part(grid: &Grid, of: &[bool]) -> Option<Vec<bool>> {
 }
 
 /// The pixels that are reached from some, as a list for all pixels.
-fn from_seeds(grid: &Grid, seeds: &[Pixel]) -> Vec<bool> {
+fn from_seeds(grid: &PixelGrid, seeds: &[Pixel]) -> Vec<bool> {
     let [n_columns, n_rows] = grid.size();
     let mut filled = vec![false; n_columns * n_rows];
     let mut next = Vec::new();
@@ -158,7 +158,7 @@ fn from_seeds(grid: &Grid, seeds: &[Pixel]) -> Vec<bool> {
 }
 
 /// The pixels that are not reached from outside the grid and have their centre on no wall.
-fn enclosed(grid: &Grid) -> Vec<bool> {
+fn enclosed(grid: &PixelGrid) -> Vec<bool> {
     let [n_columns, n_rows] = grid.size();
     // A ring of pixels around the grid lies outside all walls: its steps are free, and so are steps to it up to the walls of the pixel.
     let is_entered = |pixel: Pixel| {
@@ -185,13 +185,13 @@ fn enclosed(grid: &Grid) -> Vec<bool> {
 }
 
 /// Whether no wall lies on the way between the centres of neighbours.
-fn is_step(grid: &Grid, from: Pixel, to: Pixel) -> bool {
+fn is_step(grid: &PixelGrid, from: Pixel, to: Pixel) -> bool {
     let step = Segment2::new(grid.centre(from), grid.centre(to));
     !grid.walls_of(from).chain(grid.walls_of(to)).any(|wall| wall.meets(&step))
 }
 
 /// The up to eight pixels around one.
-fn neighbours(grid: &Grid, pixel: Pixel) -> impl Iterator<Item = Pixel> {
+fn neighbours(grid: &PixelGrid, pixel: Pixel) -> impl Iterator<Item = Pixel> {
     let around = |at: u32, n: usize| at.saturating_sub(1)..=(at + 1).min(n as u32 - 1);
     let [n_columns, n_rows] = grid.size();
     around(pixel.column, n_columns)

@@ -2,7 +2,7 @@
 
 use crate::functions::log2;
 use crate::search::{WIDTH, depths};
-use crate::{Effort, UNDEFINED, VisibilityGraph};
+use crate::{UNDEFINED, VisibilityGraph, WorkOptions};
 use sightlines_progress::Halt;
 
 /// Global measures of all points, a value for each point in every list. A step leads from a point to one that it sees; depth is the
@@ -47,7 +47,7 @@ impl GlobalMeasures {
     ///
     /// # Cost
     /// O(depth · runs) for every 256 points, on all threads, and 32 · 10 bytes for each point and thread. No libm: the same bits everywhere.
-    pub fn of(graph: &VisibilityGraph, radius: Option<u32>, effort: &Effort<'_>) -> Result<Self, Halt> {
+    pub fn of(graph: &VisibilityGraph, radius: Option<u32>, effort: &WorkOptions<'_>) -> Result<Self, Halt> {
         let n = graph.n_points();
         let of_point = depths(graph, radius, effort)?;
         let mut all = Self::default();

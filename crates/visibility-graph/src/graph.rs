@@ -2,12 +2,12 @@
 
 use crate::bytes::fits_row;
 use crate::work::Stage;
-use crate::{Effort, Run};
+use crate::{Run, WorkOptions};
 use sightlines_progress::{Cancelled, Halt};
 
 /// Which points see which, without the points themselves: a point is not among those that it sees.
 ///
-/// A row is a list of runs, 8 bytes each. Points of a [`Grid`](crate::Grid) are numbered up its columns, so a run is what is seen of a
+/// A row is a list of runs, 8 bytes each. Points of a [`PixelGrid`](crate::PixelGrid) are numbered up its columns, so a run is what is seen of a
 /// column without interruption.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct VisibilityGraph {
@@ -61,7 +61,7 @@ impl VisibilityGraph {
     pub fn build(
         n_points: u32,
         seen: impl Fn(u32, &mut Vec<u32>) + Sync + Send,
-        effort: &Effort<'_>,
+        effort: &WorkOptions<'_>,
     ) -> Result<Self, GraphError> {
         let state = || (Vec::new(), Vec::new());
         let row = |(list, runs): &mut (Vec<u32>, Vec<Run>), point: usize| {
@@ -192,7 +192,7 @@ mod tests {
 
     fn of(lists: &[&[u32]]) -> Result<VisibilityGraph, GraphError> {
         let seen = |point: u32, list: &mut Vec<u32>| list.extend_from_slice(lists[point as usize]);
-        VisibilityGraph::build(lists.len() as u32, seen, &Effort::default())
+        VisibilityGraph::build(lists.len() as u32, seen, &WorkOptions::default())
     }
 
     #[test]
@@ -229,7 +229,7 @@ mod tests {
     #[test]
     fn an_observer_cancels() {
         let stop = |_: sightlines_progress::Progress| std::ops::ControlFlow::Break(());
-        let effort = Effort { threads: 2, observer: Some(&stop), ..Effort::default() };
+        let effort = WorkOptions { threads: 2, observer: Some(&stop), ..WorkOptions::default() };
         let graph = VisibilityGraph::build(9, |_, _| (), &effort);
         assert_eq!(graph, Err(GraphError::Cancelled(Cancelled)));
     }

@@ -9,7 +9,7 @@ pub const MOST_PIXELS: usize = 1 << 26;
 
 /// Square pixels over the bounds of a plan, with centres at multiples of the spacing, as depthmapX places them.
 #[derive(Debug, Clone)]
-pub struct Grid {
+pub struct PixelGrid {
     spacing: f64,
     /// The centre of the lowest pixel on the left.
     origin: Point2,
@@ -87,7 +87,7 @@ pub enum GridError {
     NothingEnclosed,
 }
 
-impl Grid {
+impl PixelGrid {
     /// A grid over the bounds of a plan's lines that block sight. Lines that do not block are left out.
     ///
     /// Centres lie at multiples of the spacing, in each direction from the multiple next to the lower bound to the one next to the upper

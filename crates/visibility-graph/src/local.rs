@@ -2,7 +2,7 @@
 
 use crate::bytes::fits_values;
 use crate::work::Stage;
-use crate::{Effort, Points, Run, UNDEFINED, VisibilityGraph};
+use crate::{Points, Run, UNDEFINED, VisibilityGraph, WorkOptions};
 use sightlines_progress::Halt;
 
 /// Local measures of all points, a value for each point in every list. With N(i) the points that i sees, and k of them:
@@ -45,7 +45,7 @@ impl LocalMeasures {
     ///
     /// # Cost
     /// For each point O(points + runs of the points that it sees and the one before it does not, or the other way round), on all threads.
-    pub fn of(graph: &VisibilityGraph, points: &Points, effort: &Effort<'_>) -> Result<Self, Halt> {
+    pub fn of(graph: &VisibilityGraph, points: &Points, effort: &WorkOptions<'_>) -> Result<Self, Halt> {
         let n = graph.n_points();
         assert_eq!(n, points.len(), "one row for each point");
         let degrees: Vec<u32> = (0..n as u32).map(|p| graph.n_seen(p)).collect();

@@ -3,7 +3,7 @@
 use crate::bytes::fits_values;
 use crate::functions::{quarter_turns, quarter_turns_at_least};
 use crate::work::Stage;
-use crate::{Effort, Points, Run, VisibilityGraph};
+use crate::{Points, Run, VisibilityGraph, WorkOptions};
 use sightlines_progress::Halt;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -88,7 +88,7 @@ impl MetricMeasures {
         points: &Points,
         turns: Turns,
         radius: Option<f64>,
-        effort: &Effort<'_>,
+        effort: &WorkOptions<'_>,
     ) -> Result<Self, Halt> {
         assert_eq!(graph.n_points(), points.len(), "one row for each point");
         let radius = radius.map_or(f64::INFINITY, |radius| radius / points.unit());
@@ -156,7 +156,7 @@ impl AngularMeasures {
         points: &Points,
         turns: Turns,
         radius: Option<f64>,
-        effort: &Effort<'_>,
+        effort: &WorkOptions<'_>,
     ) -> Result<Self, Halt> {
         assert_eq!(graph.n_points(), points.len(), "one row for each point");
         let radius = radius.unwrap_or(f64::INFINITY);

@@ -10,7 +10,7 @@
 //! computed once for each step; and what all its points get is handed to two such groups, and on from these at the end.
 
 use crate::work::Stage;
-use crate::{Effort, Run, VisibilityGraph};
+use crate::{Run, VisibilityGraph, WorkOptions};
 use sightlines_progress::{Halt, Kept};
 
 /// Words of a set.
@@ -72,7 +72,11 @@ struct Room {
 }
 
 /// The depths of all points from all points, in batches of [`WIDTH`].
-pub(crate) fn depths(graph: &VisibilityGraph, radius: Option<u32>, effort: &Effort<'_>) -> Result<Vec<Depths>, Halt> {
+pub(crate) fn depths(
+    graph: &VisibilityGraph,
+    radius: Option<u32>,
+    effort: &WorkOptions<'_>,
+) -> Result<Vec<Depths>, Halt> {
     let n = graph.n_points();
     let components = graph.components();
     let longest = (0..n as u32).flat_map(|p| graph.row(p)).map(|run| run.end - run.start).max().unwrap_or(1);

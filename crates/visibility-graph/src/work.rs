@@ -6,7 +6,7 @@ use std::ops::Range;
 
 /// How long work is done: by how many threads, who is told, and where results are kept. None of them changes a result.
 #[derive(Clone, Copy, Default)]
-pub struct Effort<'a> {
+pub struct WorkOptions<'a> {
     /// Number of threads; 0 for one per core.
     pub threads: usize,
     /// Is told how far the work is, and may cancel it.
@@ -16,9 +16,9 @@ pub struct Effort<'a> {
     pub units: Units<'a>,
 }
 
-impl std::fmt::Debug for Effort<'_> {
+impl std::fmt::Debug for WorkOptions<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let mut out = f.debug_struct("Effort");
+        let mut out = f.debug_struct("WorkOptions");
         out.field("threads", &self.threads).field("observer", &self.observer.is_some()).field("units", &self.units);
         out.finish()
     }
@@ -50,7 +50,7 @@ impl<E> From<Halt> for Stop<E> {
     }
 }
 
-impl Effort<'_> {
+impl WorkOptions<'_> {
     /// Applies `one` to the numbers below `n`, each with a state that `state` makes once for some of them, and returns the results in
     /// order, or the error of the lowest number.
     pub(crate) fn each<S, R: Kept + Send, E: From<Halt> + Send>(

@@ -3,7 +3,7 @@
 //! `cargo run --release -p sightlines-visible-surface --example bsp_order -- [SCENE | N]`: a glTF or OBJ file, or that many random triangles.
 
 use sightlines_formats::scene::read_scene;
-use sightlines_visible_surface::bsp::{Bsp, BspOptions, Heuristic};
+use sightlines_visible_surface::bsp::{BspOptions, FaceBsp, Heuristic};
 use sightlines_visible_surface::schumacker::{Schumacker, SchumackerOptions};
 use sightlines_visible_surface::{Camera, Counters, FaceMask, Faces, RenderInput, VisibleSurface};
 use std::error::Error;
@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     for (name, options) in all {
         let start = Instant::now();
-        let bsp = Bsp::build(&faces, &options);
+        let bsp = FaceBsp::build(&faces, &options);
         let built = start.elapsed();
         println!("  bsp, {name}: {:?}", bsp.stats());
         println!("    built in {built:.1?}; {}", walk(&bsp, &input));

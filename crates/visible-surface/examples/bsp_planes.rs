@@ -2,7 +2,7 @@
 //!
 //! `cargo run -p sightlines-visible-surface --example bsp_planes -- OUT.svg`
 
-use sightlines_visible_surface::bsp::{Bsp, BspNode, BspOptions, Heuristic};
+use sightlines_visible_surface::bsp::{BspOptions, FaceBsp, FaceBspNode, Heuristic};
 use sightlines_visible_surface::{Camera, Counters, FaceMask, Faces, RenderInput, RenderOutput, VisibleSurface};
 use std::error::Error;
 use std::fmt::Write;
@@ -76,7 +76,7 @@ fn cut(region: &[[f64; 2]], wall: usize, sign: f64) -> (Vec<[f64; 2]>, Vec<[f64;
 }
 
 /// The nodes below one, the farthest from the eye first: those on the other side of the plane, the node, those on the eye's side.
-fn back_to_front(nodes: &[BspNode], node: usize) -> Vec<usize> {
+fn back_to_front(nodes: &[FaceBspNode], node: usize) -> Vec<usize> {
     let [behind, front] = nodes[node].children;
     let is_in_front = side(nodes[node].faces[0] as usize, EYE) > 0.0;
     let [far, near] = if is_in_front { [behind, front] } else { [front, behind] };
@@ -92,8 +92,8 @@ pub(crate) fn picture() -> Result<String, Box<dyn Error>> {
     // Upright triangles, whose planes are upright too: x to the right, y up, z into the plan.
     let faces = Faces::new(WALLS.map(|[[x0, z0], [x1, z1]]| [[x0, 0.0, z0], [x1, 0.0, z1], [x0, 2.0, z0]]).to_vec())?;
     let options = BspOptions { heuristic: Heuristic::FirstFace, axis_above: usize::MAX, ..BspOptions::default() };
-    let bsp = Bsp::build(&faces, &options);
-    let nodes: Vec<BspNode> = bsp.nodes().collect();
+    let bsp = FaceBsp::build(&faces, &options);
+    let nodes: Vec<FaceBspNode> = bsp.nodes().collect();
     let mut out = String::from(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"1000\" height=\"620\" viewBox=\"0 0 1000 620\" \
          font-family=\"sans-serif\">\n<title>A BSP and its planes</title>\n<rect width=\"1000\" height=\"620\" fill=\"#fff\"/>\n",

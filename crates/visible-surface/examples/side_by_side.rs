@@ -3,7 +3,7 @@
 //! `cargo run -p sightlines-visible-surface --example side_by_side`
 
 use sightlines_visible_surface::{
-    Bsp, BspOptions, Camera, DepthFormat, FaceMask, Faces, Image, NOTHING, Newell, Painter, RayCaster, RenderInput,
+    BspOptions, Camera, DepthFormat, FaceBsp, FaceMask, Faces, Image, NOTHING, Newell, Painter, RayCaster, RenderInput,
     Schumacker, SchumackerOptions, VisibleSurface, ZBuffer, compare,
 };
 use std::error::Error;
@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let camera = Camera::new([0.0; 3], [-0.9, 0.8, 1.0], [pixel / 2.0, 0., 0.], [0., -pixel, 0.], [72, 32])?;
     let chosen = FaceMask::all(&faces);
     let input = RenderInput { faces: &faces, camera: &camera, mask: &chosen };
-    let tree = Bsp::build(&faces, &BspOptions::default());
+    let tree = FaceBsp::build(&faces, &BspOptions::default());
     let methods: Vec<Box<dyn VisibleSurface>> = vec![
         Box::new(Painter),
         Box::new(Newell),

@@ -4,7 +4,7 @@ use crate::counters::Counters;
 use crate::faces::Faces;
 use crate::fragment::Fragment;
 use crate::method::{RenderInput, RenderOutput, VisibleSurface};
-use crate::plane::Plane;
+use crate::plane::InputPlane;
 use sightlines_geometry::{Adaptive, Orient2d, Point2, Point3};
 use std::collections::BTreeSet;
 
@@ -23,7 +23,7 @@ impl VisibleSurface for AnyOrder {
         let mut n_tested = 0;
         let is_front = |&face: &u32| {
             n_tested += 1;
-            Plane::Face(face).side(input.faces, eye) > 0
+            InputPlane::Face(face).side(input.faces, eye) > 0
         };
         let fragments: Vec<Fragment> = input.mask.iter().filter(is_front).map(Fragment::whole).collect();
         counters.polygons += fragments.len() as u64;
@@ -48,7 +48,7 @@ pub fn is_convex(faces: &Faces, of: impl IntoIterator<Item = u32>) -> bool {
     let corners: BTreeSet<[u64; 3]> = of.iter().flat_map(|&f| faces.of(f).map(|p| p.map(f64::to_bits))).collect();
     let corners: Vec<Point3> = corners.into_iter().map(|p| p.map(f64::from_bits)).collect();
     is_closed(faces, &of)
-        && of.iter().all(|&f| corners.iter().all(|&p| Plane::Face(f).side(faces, p) <= 0))
+        && of.iter().all(|&f| corners.iter().all(|&p| InputPlane::Face(f).side(faces, p) <= 0))
         && of.iter().enumerate().all(|(k, &f)| of[..k].iter().all(|&g| !overlap_in_plane(faces, f, g)))
 }
 
@@ -65,7 +65,7 @@ fn is_closed(faces: &Faces, of: &[u32]) -> bool {
 
 /// Whether two faces lie in one plane, turned the same way, and share an area.
 fn overlap_in_plane(faces: &Faces, f: u32, g: u32) -> bool {
-    let plane = Plane::Face(f);
+    let plane = InputPlane::Face(f);
     if faces.of(g).iter().any(|&p| plane.side(faces, p) != 0) {
         return false;
     }

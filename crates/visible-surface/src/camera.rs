@@ -179,10 +179,10 @@ impl Camera {
         [0, 1, 2].map(|k| self.corner[k].abs() + width * self.across[k].abs() + height * self.down[k].abs())
     }
 
-    /// Where a point is in the picture. See [`Place`].
-    pub fn place(&self, p: Point3) -> Place {
+    /// Where a point is in the picture. See [`ProjectedPoint`].
+    pub fn place(&self, p: Point3) -> ProjectedPoint {
         let way = sub(p, self.eye);
-        Place {
+        ProjectedPoint {
             scaled: self.normals.map(|n| dot(n, way)),
             // A difference; a product and a difference in the normal; a product and two sums: six roundings.
             error: self.normal_sizes.map(|n| 16.0 * U * dot_size(n, way) + TINY_ERROR),
@@ -200,7 +200,7 @@ pub(crate) const TINY_ERROR: f64 = 1e-290;
 /// A point as the camera sees it, with bounds of rounding: x and y in pixels are `scaled[0] / scaled[2]` and
 /// `scaled[1] / scaled[2]`, the depth is `scaled[2] / volume`; negative depths are behind the eye.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Place {
+pub struct ProjectedPoint {
     /// Pixels to the right and down, times depth, and depth; all times `volume`.
     pub scaled: [f64; 3],
     /// How much each may be off.
@@ -211,7 +211,7 @@ pub struct Place {
     pub volume_error: f64,
 }
 
-impl Place {
+impl ProjectedPoint {
     /// Bounds of the depth.
     pub fn depth(&self) -> [f64; 2] {
         let (low, high) = (self.scaled[2] - self.error[2], self.scaled[2] + self.error[2]);

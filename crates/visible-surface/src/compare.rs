@@ -4,7 +4,7 @@ use crate::camera::Camera;
 use crate::faces::{Faces, NOTHING};
 use crate::image::Image;
 use crate::method::RenderInput;
-use crate::plane::Plane;
+use crate::plane::InputPlane;
 use crate::raycast::covers;
 use crate::side::Side;
 
@@ -39,6 +39,6 @@ fn is_tie(camera: &Camera, faces: &Faces, pair: [u32; 2], x: u32, y: u32) -> boo
     if pair.contains(&NOTHING) || !pair.iter().all(|&f| covers(camera, faces, f, x, y)) {
         return false;
     }
-    let [a, b] = pair.map(|f| Plane::of(faces, f));
+    let [a, b] = pair.map(|f| InputPlane::of(faces, f));
     !a.is_same(faces, &b) && Side::cut(camera, faces, a, b).sign(camera, faces, x, y) == 0
 }

@@ -1,6 +1,6 @@
 //! Between which pixels and depths a camera sees something.
 
-use crate::camera::{Camera, Place};
+use crate::camera::{Camera, ProjectedPoint};
 use crate::window::Window;
 use sightlines_geometry::Point3;
 
@@ -18,7 +18,7 @@ impl Extents {
         Self { pixels: [[f64::INFINITY, f64::NEG_INFINITY]; 2], depth: [f64::INFINITY, f64::NEG_INFINITY] };
 
     /// Around places.
-    pub(crate) fn around(places: impl IntoIterator<Item = Place>) -> Self {
+    pub(crate) fn around(places: impl IntoIterator<Item = ProjectedPoint>) -> Self {
         places.into_iter().fold(Self::NONE, |all, place| {
             let grown = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
             let pixels = place.pixels();
@@ -52,7 +52,7 @@ impl Window {
             return Extents::around(corners.map(|p| camera.place(p))).window(camera);
         }
         let places = corners.map(|p| camera.place(p));
-        if places.iter().all(Place::is_behind) {
+        if places.iter().all(ProjectedPoint::is_behind) {
             return Self { min: [0; 2], max: [0; 2] };
         }
         let [a, b, c] = places.map(|p| p.pixels());

@@ -5,7 +5,7 @@
 
 use crate::camera::{Camera, U};
 use crate::faces::Faces;
-use crate::plane::{LEAST, Plane};
+use crate::plane::{InputPlane, LEAST};
 use crate::side::{Side, eye_sign};
 use crate::vector::{cross, cross_size, dot, dot_size, sub};
 
@@ -108,7 +108,7 @@ impl DepthComparator {
 
     /// Where the planes of two faces meet. If they are one, that is remembered of their mates.
     fn meeting(&mut self, camera: &Camera, faces: &Faces, mates: [u32; 2], pair: [u32; 2]) -> Meeting {
-        let [first, second] = pair.map(|f| Plane::of(faces, f));
+        let [first, second] = pair.map(|f| InputPlane::of(faces, f));
         if first.is_same(faces, &second) {
             self.plane_mate[mates[0].max(mates[1]) as usize] = mates[0].min(mates[1]);
             return None;

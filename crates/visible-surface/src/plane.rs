@@ -8,7 +8,7 @@ use sightlines_geometry::{Point3, orient3d};
 
 /// A plane through what was given: exact, whatever has been cut by it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Plane {
+pub enum InputPlane {
     /// The plane of a face that has an area; positive in front of it.
     Face(u32),
     /// Across axis 0, 1 or 2 at a coordinate; positive beyond it.
@@ -38,7 +38,7 @@ impl Approx {
     }
 }
 
-impl Plane {
+impl InputPlane {
     /// The plane of a face, in the form that faces in one plane across an axis share.
     pub fn of(faces: &Faces, face: u32) -> Self {
         let [a, b, c] = faces.of(face);

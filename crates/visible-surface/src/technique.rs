@@ -1,6 +1,6 @@
 //! The classical methods by name, made ready for all pictures of a scene.
 
-use crate::bsp::{Bsp, BspOptions};
+use crate::bsp::{BspOptions, FaceBsp};
 use crate::faces::Faces;
 use crate::method::VisibleSurface;
 use crate::newell::Newell;
@@ -73,7 +73,7 @@ impl Technique {
 
 /// A method that is ready to draw, and what that took.
 #[derive(Debug)]
-pub struct Prepared {
+pub struct PreparedMethod {
     /// The method.
     pub method: Box<dyn VisibleSurface>,
     /// The time, independent of the eye.
@@ -86,7 +86,7 @@ pub struct Prepared {
 #[derive(Debug)]
 pub struct Preparer<'a> {
     faces: &'a Faces,
-    tree: Option<(Bsp, Duration)>,
+    tree: Option<(FaceBsp, Duration)>,
 }
 
 impl<'a> Preparer<'a> {
@@ -98,7 +98,7 @@ impl<'a> Preparer<'a> {
     /// Makes a method ready.
     ///
     /// * `depth`: what a z-buffer keeps
-    pub fn prepare(&mut self, technique: Technique, depth: DepthFormat) -> Prepared {
+    pub fn prepare(&mut self, technique: Technique, depth: DepthFormat) -> PreparedMethod {
         let (start, faces) = (Instant::now(), self.faces);
         let (method, splits): (Box<dyn VisibleSurface>, u64) = match technique {
             Technique::Painter => (Box::new(Painter), 0),
@@ -112,15 +112,15 @@ impl<'a> Preparer<'a> {
             Technique::Raycast => (Box::new(RayCaster::build(faces)), 0),
             Technique::Bsp | Technique::BspFront => {
                 let built = || {
-                    let tree = Bsp::build(faces, &BspOptions::default());
+                    let tree = FaceBsp::build(faces, &BspOptions::default());
                     (tree, start.elapsed())
                 };
                 let (tree, time) = self.tree.get_or_insert_with(built).clone();
                 let splits = tree.stats().splits;
                 let tree = if technique == Technique::BspFront { tree.front_to_back() } else { tree };
-                return Prepared { method: Box::new(tree), time, splits };
+                return PreparedMethod { method: Box::new(tree), time, splits };
             }
         };
-        Prepared { method, time: start.elapsed(), splits }
+        PreparedMethod { method, time: start.elapsed(), splits }
     }
 }

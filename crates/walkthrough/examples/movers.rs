@@ -11,7 +11,7 @@ use sightlines_geometry::Aabb;
 use sightlines_pvs::Table;
 use sightlines_scenes::{TowerOptions, tower, tower_rooms};
 use sightlines_walkthrough::{
-    Answer, CameraPose, Frame, Motion, MoverId, MoverOptions, Movers, WalkOptions, Walkthrough, wander,
+    AnswerKind, CameraPose, DrawList, Motion, MoverId, MoverOptions, Movers, WalkOptions, Walkthrough, wander,
 };
 use std::error::Error;
 use std::sync::Arc;
@@ -93,7 +93,7 @@ fn things(n: usize, kind: Kind, rooms: &[Aabb<3>], all: &Aabb<3>) -> Vec<(Thing,
 /// A stored frame of the walk: its visible cells do not depend on movers.
 struct Kept {
     seen: VisibleSet,
-    answer: Answer,
+    answer: AnswerKind,
 }
 
 fn frames_of(cells: &Cells, stands: &[CameraPose]) -> Result<Vec<Kept>, Box<dyn Error>> {
@@ -150,7 +150,7 @@ fn compare(cells: &Cells, frames: &[Kept], how: MoverOptions, kind: Kind, things
     for (k, kept) in frames.iter().enumerate() {
         let now = k as f64 / RATE;
         let frame =
-            Frame { seen: &kept.seen, at: &[], answer: kept.answer, method: Method::Exact, images: &[], ahead: &[] };
+            DrawList { seen: &kept.seen, at: &[], answer: kept.answer, method: Method::Exact, images: &[], ahead: &[] };
         let start = Instant::now();
         let reported = movers.frame(now, &frame, &mut |id: MoverId| things[id.slot()].0.at(now)).expect("time goes on");
         ours.push(start.elapsed());

@@ -218,7 +218,7 @@ pub struct LevelCounters {
 ///
 /// A frame never waits: until the level of the eye's cells has arrived, the original is drawn. A level that does not
 /// fit the budget is never read.
-pub struct Levels<L: LoadLevel> {
+pub struct LevelPrefetcher<L: LoadLevel> {
     index: LevelIndex,
     budget: u64,
     levels: Prefetcher<OfCells<L>>,
@@ -226,7 +226,7 @@ pub struct Levels<L: LoadLevel> {
     counters: LevelCounters,
 }
 
-impl<L: LoadLevel> Levels<L> {
+impl<L: LoadLevel> LevelPrefetcher<L> {
     /// Starts with nothing read. `budget` bounds the bytes of the levels in memory, according to the index. The level
     /// of the eye's cells always stays, so a level that was being read when the eye turned aside may exceed the budget
     /// until the next one is read.
@@ -239,7 +239,7 @@ impl<L: LoadLevel> Levels<L> {
     }
 
     /// What to draw for an eye in the cells `at`. Requests the levels of the cells `ahead`, the most urgent first:
-    /// [`crate::Frame::at`] and [`crate::Frame::ahead`].
+    /// [`crate::DrawList::at`] and [`crate::DrawList::ahead`].
     ///
     /// A level is drawn only if all cells that contain the eye share it; otherwise, and outside every cell, the
     /// original is. A level is valid for eyes in its cells, so draw what is seen in mirrors, by eyes behind them, from
@@ -327,8 +327,11 @@ impl<L: LoadLevel> Levels<L> {
     }
 }
 
-impl<L: LoadLevel> fmt::Debug for Levels<L> {
+impl<L: LoadLevel> fmt::Debug for LevelPrefetcher<L> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Levels").field("budget", &self.budget).field("counters", &self.counters).finish_non_exhaustive()
+        f.debug_struct("LevelPrefetcher")
+            .field("budget", &self.budget)
+            .field("counters", &self.counters)
+            .finish_non_exhaustive()
     }
 }

@@ -8,7 +8,7 @@
 //!   answer is reused, and the data of the next cells is prepared on another thread ([`Prefetcher`]) along the predicted
 //!   path of the eye, within a byte budget;
 //!   doors that open and close; tables that are replaced at run time; moving objects that cost nothing while they are
-//!   hidden ([`Movers`]); simplified levels of the scene for the cells of the eye ([`Levels`]); what all this leaves to draw, and costs, along a walk
+//!   hidden ([`Movers`]); simplified levels of the scene for the cells of the eye ([`LevelPrefetcher`]); what all this leaves to draw, and costs, along a walk
 //!   ([`WalkMeasure`]).
 //! - **Out of scope**: how visibility is decided (`eye-to-cell`), how tables are stored (`packed`, `pvs`), files, drawing.
 //! - **Invariants**: a frame of a walk never waits, neither for the thread nor for a lock; an answer given before everything is
@@ -35,7 +35,7 @@ mod wander;
 
 pub use coarse::CoarseVisibility;
 pub use facts::TableFacts;
-pub use levels::{Draw, LevelCounters, LevelError, LevelIndex, LevelSize, Levels, LevelsDrawn, LoadLevel};
+pub use levels::{Draw, LevelCounters, LevelError, LevelIndex, LevelPrefetcher, LevelSize, LevelsDrawn, LoadLevel};
 pub use measure::{LeftToDraw, MeasureError, MethodSums, WalkMeasure, WalkMeasured};
 pub use movers::{
     Broken, BrokenPromise, CellBoxes, CellLocator, Motion, MotionError, MoverCounters, MoverError, MoverId,
@@ -47,5 +47,5 @@ pub use packed::PackedCells;
 pub use portals::same_portals;
 pub use prefetch::{Prefetcher, Prepare};
 pub use viewer::{Look, Viewer};
-pub use walkthrough::{Answer, Frame, WalkCounters, WalkOptions, Walkthrough};
+pub use walkthrough::{AnswerKind, DrawList, WalkCounters, WalkOptions, Walkthrough};
 pub use wander::{CameraPose, usual_step, wander};

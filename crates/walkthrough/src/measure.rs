@@ -2,7 +2,7 @@
 
 use crate::coarse::CoarseVisibility;
 use crate::nesting::{Found, Sets};
-use crate::walkthrough::{Answer, WalkOptions, Walkthrough};
+use crate::walkthrough::{AnswerKind, WalkOptions, Walkthrough};
 use sightlines_eye_to_cell::{CellSource, Method, View};
 use sightlines_pvs::ObjectId;
 use std::thread;
@@ -112,7 +112,7 @@ pub enum MeasureError<E> {
 
 /// A frame by one method.
 struct Shot {
-    answer: Answer,
+    answer: AnswerKind,
     left: LeftToDraw,
     time: Duration,
     fell_back: bool,
@@ -206,7 +206,7 @@ where
             let start = Instant::now();
             let frame = walk.frame(view, method);
             let time = start.elapsed();
-            if frame.answer == Answer::Late && left > 0 {
+            if frame.answer == AnswerKind::Late && left > 0 {
                 continue;
             }
             let polygons =
@@ -218,7 +218,7 @@ where
                 images: frame.images.len() as u64,
                 image_polygons: frame.images.iter().map(|image| polygons(&image.objects)).sum(),
             };
-            let sets = (frame.answer == Answer::Full).then(|| Sets::of(&frame));
+            let sets = (frame.answer == AnswerKind::Full).then(|| Sets::of(&frame));
             return Ok((Shot { answer: frame.answer, left, time, fell_back: frame.method < method }, sets));
         }
         unreachable!("the last try is not repeated")
@@ -242,10 +242,10 @@ where
 impl WalkMeasured {
     /// Adds a frame, as all methods had it.
     fn add<'a>(&mut self, shots: impl Iterator<Item = &'a Shot> + Clone) {
-        let all = |answer: Answer| shots.clone().all(|shot| shot.answer == answer);
-        if all(Answer::Outside) {
+        let all = |answer: AnswerKind| shots.clone().all(|shot| shot.answer == answer);
+        if all(AnswerKind::Outside) {
             self.n_outside += 1;
-        } else if all(Answer::Full) {
+        } else if all(AnswerKind::Full) {
             self.n_full += 1;
             for (sums, shot) in self.methods.iter_mut().zip(shots) {
                 sums.left += shot.left;

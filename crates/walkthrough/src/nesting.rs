@@ -1,7 +1,7 @@
 //! Whether what a method finds is among what a coarser one finds.
 
-use crate::walkthrough::Frame;
-use sightlines_eye_to_cell::Image;
+use crate::walkthrough::DrawList;
+use sightlines_eye_to_cell::MirrorImage;
 use std::fmt;
 
 /// Something that a method found: a cell, an object or an image, by way of some mirrors.
@@ -57,13 +57,13 @@ fn first_missing(inner: &[u32], outer: &[u32]) -> Option<u32> {
 
 impl Sets {
     /// Of a frame.
-    pub(super) fn of(frame: &Frame<'_>) -> Self {
+    pub(super) fn of(frame: &DrawList<'_>) -> Self {
         let direct = Set {
             mirrors: vec![],
             cells: sorted(frame.seen.cells().iter().map(|c| c.0)),
             objects: sorted(frame.seen.objects().iter().map(|o| o.0)),
         };
-        let image = |image: &Image| Set {
+        let image = |image: &MirrorImage| Set {
             mirrors: image.mirrors.iter().map(|mirror| mirror.0).collect(),
             cells: image.cells.iter().map(|cell| cell.0).collect(),
             objects: image.objects.iter().map(|object| object.0).collect(),

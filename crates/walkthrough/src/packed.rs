@@ -4,21 +4,21 @@ use crate::coarse::CoarseVisibility;
 use crate::facts::TableFacts;
 use sightlines_eye_to_cell::{CellSource, MirrorPiece, PortalEdge, StabStep};
 use sightlines_geometry::Aabb;
-use sightlines_packed::{Packed, PackedError, Source};
+use sightlines_packed::{ByteSource, Packed, PackedError};
 use sightlines_pvs::{Axis, CellId, DoorRecord, Frame, ObjectId, ObjectSource, Place, PlaceBuffer};
 use std::sync::Arc;
 
 /// A packed table, shared by the frames and the thread that reads ahead.
 #[derive(Debug)]
-pub struct PackedCells<S: Source>(Arc<Packed<S>>);
+pub struct PackedCells<S: ByteSource>(Arc<Packed<S>>);
 
-impl<S: Source> Clone for PackedCells<S> {
+impl<S: ByteSource> Clone for PackedCells<S> {
     fn clone(&self) -> Self {
         Self(Arc::clone(&self.0))
     }
 }
 
-impl<S: Source> PackedCells<S> {
+impl<S: ByteSource> PackedCells<S> {
     /// Shares a table.
     pub fn new(packed: Packed<S>) -> Self {
         Self(Arc::new(packed))
@@ -34,7 +34,7 @@ fn bounds((min, max): ([f64; 3], [f64; 3])) -> Aabb<3> {
     Aabb { min, max }
 }
 
-impl<S: Source> CellSource for PackedCells<S> {
+impl<S: ByteSource> CellSource for PackedCells<S> {
     type Error = PackedError;
 
     fn dimension(&self) -> u8 {
@@ -99,7 +99,7 @@ impl<S: Source> CellSource for PackedCells<S> {
     }
 }
 
-impl<S: Source> CoarseVisibility for PackedCells<S> {
+impl<S: ByteSource> CoarseVisibility for PackedCells<S> {
     type PlaceError = PackedError;
 
     fn n_cells(&self) -> usize {
@@ -127,7 +127,7 @@ impl<S: Source> CoarseVisibility for PackedCells<S> {
     }
 }
 
-impl<S: Source> TableFacts for PackedCells<S> {
+impl<S: ByteSource> TableFacts for PackedCells<S> {
     fn up(&self) -> Option<Axis> {
         self.0.up()
     }

@@ -3,7 +3,7 @@
 use crate::cache::Cache;
 use crate::coarse::CoarseVisibility;
 use sightlines_eye_to_cell::{
-    Budget, CellSource, Doors, Image, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph,
+    CellSource, Doors, Method, MirrorImage, Scratch, StepBudget, TableCells, View, VisibleSet, VisibleSubgraph,
     follow_reflections,
 };
 use sightlines_geometry::Aabb;
@@ -18,7 +18,7 @@ const MEMORY: usize = 64 << 20;
 
 /// Finds what one eye sees, look by look, all on the thread that asks.
 ///
-/// Exact within [`Budget::FRAME`], with all doors open, unless it is told otherwise. The first look from a cell gathers the data of
+/// Exact within [`StepBudget::FRAME`], with all doors open, unless it is told otherwise. The first look from a cell gathers the data of
 /// that cell, which takes longer than later looks and is kept within [`Viewer::set_memory`]; [`crate::Walkthrough`] gathers it on another
 /// thread before the eye is there.
 ///
@@ -27,7 +27,7 @@ const MEMORY: usize = 64 << 20;
 pub struct Viewer<S = TableCells<Arc<Table>>> {
     cells: Arc<S>,
     method: Method,
-    budget: Budget,
+    budget: StepBudget,
     doors: Doors,
     /// The data of cells that were looked from lately.
     kept: Cache<VisibleSubgraph>,
@@ -38,7 +38,7 @@ pub struct Viewer<S = TableCells<Arc<Table>>> {
     view: Option<View>,
     /// Whether nothing is known at the eye, so that the last answer is everything.
     sees_all: bool,
-    images: Vec<Image>,
+    images: Vec<MirrorImage>,
 }
 
 /// The answer of [`Viewer::look`].
@@ -75,7 +75,7 @@ impl<S> Viewer<S> {
         Self {
             cells: cells.into(),
             method: Method::Exact,
-            budget: Budget::FRAME,
+            budget: StepBudget::FRAME,
             doors: Doors::all_open(),
             kept: Cache::new(MEMORY),
             scratch: Scratch::new(),
@@ -97,9 +97,9 @@ impl<S> Viewer<S> {
         self.method = method;
     }
 
-    /// Bounds the work of each look from here on, and apart from that of following its mirrors; [`Budget::FRAME`] at first. An answer of
+    /// Bounds the work of each look from here on, and apart from that of following its mirrors; [`StepBudget::FRAME`] at first. An answer of
     /// the exact method that would take more is exact near the eye, and that of the incident portals farther away, which is never less.
-    pub fn set_budget(&mut self, budget: Budget) {
+    pub fn set_budget(&mut self, budget: StepBudget) {
         self.budget = budget;
     }
 
@@ -130,7 +130,7 @@ impl<S> Viewer<S> {
     }
 
     /// What the last look saw in mirrors, by ascending mirrors; nothing until [`Viewer::follow_reflections`].
-    pub fn images(&self) -> &[Image] {
+    pub fn images(&self) -> &[MirrorImage] {
         &self.images
     }
 }
@@ -173,7 +173,7 @@ impl<S: CellSource + CoarseVisibility<PlaceError = <S as CellSource>::Error>> Vi
     ///
     /// # Errors
     /// If the data of a cell with a mirror cannot be read. The images for which it was needed are not complete then.
-    pub fn try_follow_reflections(&mut self, bounces: usize) -> Result<&[Image], S::Error> {
+    pub fn try_follow_reflections(&mut self, bounces: usize) -> Result<&[MirrorImage], S::Error> {
         let Self { cells, method, budget, doors, kept, scratch, seen, images, .. } = self;
         scratch.allow(*budget);
         let mut failed = None;
@@ -197,9 +197,9 @@ impl<S: CellSource<Error = Infallible> + CoarseVisibility<PlaceError = Infallibl
     /// Follows the views into mirrors of the last look, through `bounces` mirrors one after another at most. What is found stays in the
     /// viewer until the next look. By ascending mirrors; none before the first look, and outside, where anything may be seen in them.
     ///
-    /// Errs towards visible, within [`Image::complete`]. Costs a look for each view into a mirror, all together within the budget of one.
+    /// Errs towards visible, within [`MirrorImage::complete`]. Costs a look for each view into a mirror, all together within the budget of one.
     /// Allocates.
-    pub fn follow_reflections(&mut self, bounces: usize) -> &[Image] {
+    pub fn follow_reflections(&mut self, bounces: usize) -> &[MirrorImage] {
         let Ok(images) = self.try_follow_reflections(bounces);
         images
     }

@@ -4,7 +4,7 @@ use crate::coarse::CoarseVisibility;
 use crate::predict::Path;
 use crate::prefetch::{Prefetcher, Prepare};
 use sightlines_eye_to_cell::{
-    Budget, CellSource, Doors, Image, Method, Scratch, View, VisibleSet, VisibleSubgraph, follow_reflections,
+    CellSource, Doors, Method, MirrorImage, Scratch, StepBudget, View, VisibleSet, VisibleSubgraph, follow_reflections,
 };
 use sightlines_geometry::Aabb;
 use sightlines_pvs::{CellId, DoorId, DoorRecord, ObjectId, Place, PlaceBuffer, PortalId};
@@ -23,8 +23,8 @@ pub struct WalkOptions {
     /// Maximum number of reflections in a row; 0 for no mirrors.
     pub bounces: usize,
     /// Work that the queries of a frame may do together, those in mirrors included; beyond it the exact method's answer is
-    /// exact only near the eye, and that of the incident portals farther away, which is never less ([`Frame::method`]).
-    pub steps: Budget,
+    /// exact only near the eye, and that of the incident portals farther away, which is never less ([`DrawList::method`]).
+    pub steps: StepBudget,
     /// Whether subgraphs are prepared on another thread. Otherwise each frame prepares those that it requests before it
     /// returns: such a frame waits. For measurements that have to be repeatable, and for targets without threads.
     pub has_thread: bool,
@@ -37,7 +37,7 @@ impl Default for WalkOptions {
             frames_ahead: 60,
             places_per_frame: 4,
             bounces: 0,
-            steps: Budget::FRAME,
+            steps: StepBudget::FRAME,
             has_thread: true,
         }
     }
@@ -45,8 +45,8 @@ impl Default for WalkOptions {
 
 /// How a frame's answer relates to the method's.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Answer {
-    /// It is the answer of [`Frame::method`], or, where the work of the frame was spent, between that and the answer of the method
+pub enum AnswerKind {
+    /// It is the answer of [`DrawList::method`], or, where the work of the frame was spent, between that and the answer of the method
     /// that was asked for.
     Full,
     /// Something was not prepared yet: the cells and objects are a superset of the method's, cut by the view where the boxes of cells and
@@ -58,19 +58,19 @@ pub enum Answer {
 
 /// What to draw in a frame.
 #[derive(Debug)]
-pub struct Frame<'a> {
+pub struct DrawList<'a> {
     /// The cells and objects.
     pub seen: &'a VisibleSet,
     /// The cells that contain the eye, ascending: several on a border, none outside.
     pub at: &'a [CellId],
     /// How that relates to the method's answer.
-    pub answer: Answer,
+    pub answer: AnswerKind,
     /// The method that answered: the one that was asked for, or the coarsest that a query of the frame fell back to, in mirrors
     /// too, as [`WalkOptions::steps`] were spent. The answer is no more than its, and may be less.
     pub method: Method,
-    /// What is seen in mirrors, if [`WalkOptions::bounces`] is above 0. Complete only with [`Answer::Full`]; otherwise
+    /// What is seen in mirrors, if [`WalkOptions::bounces`] is above 0. Complete only with [`AnswerKind::Full`]; otherwise
     /// anything may be seen in any mirror, listed or not.
-    pub images: &'a [Image],
+    pub images: &'a [MirrorImage],
     /// The cells of the eye, those with mirrors in view, and those on the predicted path: the most urgent first, each
     /// once. For any other data that is prepared for the viewers of a cell.
     pub ahead: &'a [CellId],
@@ -83,11 +83,11 @@ pub struct WalkCounters {
     pub frames: u64,
     /// Frames without a change since the one before, which reused its answer.
     pub repeated: u64,
-    /// Frames with [`Answer::Late`].
+    /// Frames with [`AnswerKind::Late`].
     pub late: u64,
-    /// Frames with [`Answer::Outside`].
+    /// Frames with [`AnswerKind::Outside`].
     pub outside: u64,
-    /// Frames with a coarser [`Frame::method`] than was asked for; repeated ones count again.
+    /// Frames with a coarser [`DrawList::method`] than was asked for; repeated ones count again.
     pub fell_back: u64,
 }
 
@@ -123,7 +123,7 @@ pub struct Walkthrough<R: CoarseVisibility, S: CellSource<Error: Send + 'static>
     doors: Doors,
     scratch: Scratch,
     seen: VisibleSet,
-    images: Vec<Image>,
+    images: Vec<MirrorImage>,
     at: Vec<CellId>,
     /// Cells with mirrors in view.
     mirrored: Vec<CellId>,
@@ -139,7 +139,7 @@ pub struct Walkthrough<R: CoarseVisibility, S: CellSource<Error: Send + 'static>
 struct Last {
     view: View,
     method: Method,
-    answer: Answer,
+    answer: AnswerKind,
     /// Who answered.
     by: Method,
     doors_changed: bool,
@@ -169,14 +169,14 @@ impl<R: CoarseVisibility, S: CellSource<Error: Send + 'static> + Send + 'static>
 
     /// What an eye sees now, by `method`. Requests the data that it will need next.
     ///
-    /// Errs towards visible: see [`Answer`]. Costs as much as the method; nothing, if nothing changed since the last
+    /// Errs towards visible: see [`AnswerKind`]. Costs as much as the method; nothing, if nothing changed since the last
     /// frame.
-    pub fn frame(&mut self, view: &View, method: Method) -> Frame<'_> {
+    pub fn frame(&mut self, view: &View, method: Method) -> DrawList<'_> {
         self.counters.frames += 1;
         self.subgraphs.poll();
         self.path.follow(view.eye());
         let repeats = |last: &Last| {
-            last.answer != Answer::Late && !last.doors_changed && last.method == method && last.view == *view
+            last.answer != AnswerKind::Late && !last.doors_changed && last.method == method && last.view == *view
         };
         let (answer, by) = match &self.last {
             Some(last) if repeats(last) => {
@@ -187,15 +187,15 @@ impl<R: CoarseVisibility, S: CellSource<Error: Send + 'static> + Send + 'static>
         };
         self.look_ahead();
         match answer {
-            Answer::Full => {}
-            Answer::Late => self.counters.late += 1,
-            Answer::Outside => self.counters.outside += 1,
+            AnswerKind::Full => {}
+            AnswerKind::Late => self.counters.late += 1,
+            AnswerKind::Outside => self.counters.outside += 1,
         }
         self.counters.fell_back += u64::from(by < method);
-        Frame { seen: &self.seen, at: &self.at, answer, method: by, images: &self.images, ahead: &self.wishes }
+        DrawList { seen: &self.seen, at: &self.at, answer, method: by, images: &self.images, ahead: &self.wishes }
     }
 
-    fn look(&mut self, view: &View, method: Method) -> (Answer, Method) {
+    fn look(&mut self, view: &View, method: Method) -> (AnswerKind, Method) {
         self.scratch.allow(self.options.steps);
         let mut by = method;
         let (n_cells, n_objects) = (self.resident.n_cells(), self.resident.n_objects());
@@ -206,12 +206,12 @@ impl<R: CoarseVisibility, S: CellSource<Error: Send + 'static> + Send + 'static>
         let mut answer = match self.resident.cells_at(view.eye(), &mut self.buffer) {
             Ok(Place::Inside(cells)) => {
                 self.at.extend_from_slice(cells);
-                Answer::Full
+                AnswerKind::Full
             }
-            Ok(Place::Outside) => Answer::Outside,
+            Ok(Place::Outside) => AnswerKind::Outside,
             Err(error) => {
                 self.place_error = Some(error);
-                Answer::Late
+                AnswerKind::Late
             }
         };
         // Where the eye is outside, or cannot be located, nothing is known.
@@ -222,7 +222,7 @@ impl<R: CoarseVisibility, S: CellSource<Error: Send + 'static> + Send + 'static>
                     by = by.min(method.look(&subgraph, view, &self.doors, &mut self.scratch, &mut self.seen));
                 }
                 None => {
-                    answer = Answer::Late;
+                    answer = AnswerKind::Late;
                     let view = (method != Method::CellToCell).then_some(view);
                     coarse(&self.resident, cell, view, &mut self.seen);
                 }
@@ -253,7 +253,7 @@ impl<R: CoarseVisibility, S: CellSource<Error: Send + 'static> + Send + 'static>
                 by = by.min(Method::IncidentPortals);
             }
             if self.images.iter().any(|image| !image.complete) {
-                answer = Answer::Late;
+                answer = AnswerKind::Late;
             }
         }
         match &mut self.last {
@@ -332,7 +332,7 @@ impl<R: CoarseVisibility, S: CellSource<Error: Send + 'static> + Send + 'static>
     }
 
     /// Switches to another table, for example after a wall was added or removed. Subgraphs and mirrors of the old one
-    /// are dropped, and pending results of its thread are ignored; the first frames are [`Answer::Late`], as at the
+    /// are dropped, and pending results of its thread are ignored; the first frames are [`AnswerKind::Late`], as at the
     /// start. The path of the eye and the counters continue.
     ///
     /// `keep` maps a closed portal of the old table to the same portal of the new one, which stays closed. Portals
@@ -340,7 +340,7 @@ impl<R: CoarseVisibility, S: CellSource<Error: Send + 'static> + Send + 'static>
     /// the numbers; [`crate::same_portals`] compares corners. Doors that were shut by [`Walkthrough::close_door`] are open, as the new
     /// table may have others: shut them again. O(closed portals), and a new thread.
     ///
-    /// Movers follow by [`crate::Movers::replace`], simplified levels by [`crate::Levels::forget`].
+    /// Movers follow by [`crate::Movers::replace`], simplified levels by [`crate::LevelPrefetcher::forget`].
     pub fn replace(&mut self, resident: R, source: S, keep: impl Fn(PortalId) -> Option<PortalId>) {
         let mut doors = Doors::all_open();
         self.doors.closed_alone().filter_map(keep).for_each(|portal| {
@@ -379,12 +379,12 @@ impl<R: CoarseVisibility, S: CellSource<Error: Send + 'static> + Send + 'static>
     }
 
     /// Takes the last error of preparing a subgraph, with its cell. Until preparing succeeds, frames there are
-    /// [`Answer::Late`].
+    /// [`AnswerKind::Late`].
     pub fn take_error(&mut self) -> Option<(CellId, S::Error)> {
         self.subgraphs.take_error()
     }
 
-    /// Takes the last error of locating the eye. Until that succeeds, frames there are [`Answer::Late`], and show everything.
+    /// Takes the last error of locating the eye. Until that succeeds, frames there are [`AnswerKind::Late`], and show everything.
     pub fn take_place_error(&mut self) -> Option<R::PlaceError> {
         self.place_error.take()
     }

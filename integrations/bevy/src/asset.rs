@@ -10,7 +10,7 @@ use sightlines_walkthrough::WalkOptions;
 use std::sync::Arc;
 
 #[cfg(feature = "packed")]
-use sightlines_packed::{Packed, PackedError, Source};
+use sightlines_packed::{ByteSource, Packed, PackedError};
 #[cfg(feature = "packed")]
 use sightlines_walkthrough::{CellBoxes, PackedCells};
 
@@ -93,7 +93,7 @@ impl PvsTable {
     /// # Errors
     /// [`PackedError`], with section and byte offset.
     #[cfg(feature = "packed")]
-    pub fn packed(source: impl Source + 'static, cache_bytes: usize) -> Result<Self, PackedError> {
+    pub fn packed(source: impl ByteSource + 'static, cache_bytes: usize) -> Result<Self, PackedError> {
         let cells = PackedCells::new(Packed::open(PackedBytes(Box::new(source)), cache_bytes)?);
         let boxes = Arc::new(CellBoxes::read(&cells)?);
         Ok(Self { form: Form::Packed { cells, boxes } })
@@ -292,7 +292,7 @@ impl PvsTable {
 
 /// The bytes of a packed table, wherever they are.
 #[cfg(feature = "packed")]
-pub(crate) struct PackedBytes(Box<dyn Source>);
+pub(crate) struct PackedBytes(Box<dyn ByteSource>);
 
 #[cfg(feature = "packed")]
 impl std::fmt::Debug for PackedBytes {
@@ -302,7 +302,7 @@ impl std::fmt::Debug for PackedBytes {
 }
 
 #[cfg(feature = "packed")]
-impl Source for PackedBytes {
+impl ByteSource for PackedBytes {
     fn len(&self) -> std::io::Result<u64> {
         self.0.len()
     }

@@ -5,7 +5,7 @@ use crate::follow::Follow;
 use crate::tie::{PvsMisfit, Tie};
 use bevy::platform::collections::HashMap;
 use bevy::prelude::*;
-use sightlines_eye_to_cell::{Budget, Method, View};
+use sightlines_eye_to_cell::{Method, StepBudget, View};
 use sightlines_pvs::CellId;
 use std::fmt;
 use std::sync::Mutex;
@@ -73,7 +73,7 @@ impl PvsCamera {
             table,
             level: None,
             method: PvsMethod::Exact,
-            steps: Some(Budget::FRAME.n_steps()),
+            steps: Some(StepBudget::FRAME.n_steps()),
             prepares_ahead: true,
             prepared_bytes: 64 << 20,
             culls: true,

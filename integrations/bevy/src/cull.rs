@@ -16,9 +16,9 @@ use bevy::camera::visibility::{NoFrustumCulling, VisibleEntities};
 use bevy::platform::collections::HashMap;
 use bevy::platform::time::Instant;
 use bevy::prelude::*;
-use sightlines_eye_to_cell::{Budget, View};
+use sightlines_eye_to_cell::{StepBudget, View};
 use sightlines_pvs::CellId;
-use sightlines_walkthrough::{Answer, Frame, WalkOptions};
+use sightlines_walkthrough::{AnswerKind, DrawList, WalkOptions};
 
 /// Frames in which scenes are there and none fits, before that is worth a warning: others may still be on their way.
 const PATIENCE: u32 = 60;
@@ -139,13 +139,13 @@ pub(crate) fn cull(
         follower.look(&eye, pvs.method.into(), &mut |frame, sees_box| {
             view.query = asked.elapsed();
             view.state = match frame.answer {
-                Answer::Outside => PvsState::Outside,
-                Answer::Late => PvsState::Late,
-                Answer::Full => PvsState::Inside,
+                AnswerKind::Outside => PvsState::Outside,
+                AnswerKind::Late => PvsState::Late,
+                AnswerKind::Full => PvsState::Inside,
             };
             view.fell_back = frame.method < pvs.method.into();
             view.at.extend_from_slice(frame.at);
-            if frame.answer == Answer::Outside || !pvs.culls {
+            if frame.answer == AnswerKind::Outside || !pvs.culls {
                 return;
             }
             view.cells.extend_from_slice(frame.seen.cells());
@@ -208,7 +208,7 @@ impl PvsView {
 }
 
 /// Whether one of the sources of a mesh is seen, or nothing is known of one.
-fn sees_part(tie: &Tie, parts: &PvsParts, frame: &Frame<'_>) -> bool {
+fn sees_part(tie: &Tie, parts: &PvsParts, frame: &DrawList<'_>) -> bool {
     let sees = |&source: &u32| tie.object(source).is_none_or(|object| frame.seen.has_object(object));
     parts.sources.is_empty() || parts.sources.iter().any(sees)
 }
@@ -273,7 +273,7 @@ fn start(walk: &mut Walk, table: &PvsTable, pvs: &PvsCamera) {
     walk.doors = None;
     walk.follower = Some(table.follow(WalkOptions {
         budget: pvs.prepared_bytes,
-        steps: pvs.steps.map_or(Budget::UNLIMITED, Budget::steps),
+        steps: pvs.steps.map_or(StepBudget::UNLIMITED, StepBudget::steps),
         has_thread: pvs.prepares_ahead && !cfg!(target_family = "wasm"),
         ..WalkOptions::default()
     }));

@@ -4,7 +4,7 @@ use crate::space::Point;
 use sightlines_eye_to_cell::{CellSource, Method, View};
 use sightlines_geometry::Aabb;
 use sightlines_pvs::PortalId;
-use sightlines_walkthrough::{CellLocator, CoarseVisibility, Frame, MoverOptions, Movers, WalkOptions, Walkthrough};
+use sightlines_walkthrough::{CellLocator, CoarseVisibility, DrawList, MoverOptions, Movers, WalkOptions, Walkthrough};
 use std::collections::BTreeSet;
 
 /// Whether a box of the scene meets a cell that is seen.
@@ -13,7 +13,7 @@ pub(crate) type SeesBox<'a> = dyn FnMut(Point, Point) -> bool + 'a;
 /// What a camera needs of a walk.
 pub(crate) trait Follow: Send {
     /// Passes what the eye of `view` sees, by `method`, to `answer`.
-    fn look(&mut self, view: &View, method: Method, answer: &mut dyn FnMut(&Frame<'_>, &mut SeesBox<'_>));
+    fn look(&mut self, view: &View, method: Method, answer: &mut dyn FnMut(&DrawList<'_>, &mut SeesBox<'_>));
 
     /// Closes these portals, and opens all others.
     fn close(&mut self, closed: &BTreeSet<PortalId>);
@@ -49,7 +49,7 @@ where
     S: CellSource<Error: Send + std::fmt::Display + 'static> + Send + 'static,
     P: CellLocator + Send,
 {
-    fn look(&mut self, view: &View, method: Method, answer: &mut dyn FnMut(&Frame<'_>, &mut SeesBox<'_>)) {
+    fn look(&mut self, view: &View, method: Method, answer: &mut dyn FnMut(&DrawList<'_>, &mut SeesBox<'_>)) {
         let frame = self.walk.frame(view, method);
         let movers = &mut self.movers;
         answer(&frame, &mut |min, max| movers.sees(&frame, &Aabb { min, max }));

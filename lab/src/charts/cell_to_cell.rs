@@ -21,7 +21,7 @@ use sightlines::sightline::{AxialStabber, Funnel, Stabber};
 use sightlines::stabtree::{Network, SearchOptions, Zones, axial_visibility, planar_visibility, visible_zones};
 use sightlines_benches::chart::Panel;
 use sightlines_benches::quake::MapSpec;
-use sightlines_benches::quake::job::{self, Method};
+use sightlines_benches::quake::job::{self, ClusterMethod};
 use sightlines_benches::spec::SceneSpec;
 use std::path::Path;
 use std::time::Duration;
@@ -302,8 +302,8 @@ fn through_polygons(settings: &Settings, spec: &MapSpec, rows: &mut Vec<Row>) ->
     say(settings, &name);
     let graph = spec.graph().map_err(|e| failed(&name)(e.into()))?;
     let limit = settings.pick(30.0, 150.0);
-    let run = |method: Method| settings.best_of(|| job::measure(&graph, method, 1, limit));
-    let ((measured, exact), seconds, repeats) = run(Method::Exact);
+    let run = |method: ClusterMethod| settings.best_of(|| job::measure(&graph, method, 1, limit));
+    let ((measured, exact), seconds, repeats) = run(ClusterMethod::Exact);
     if measured.done < 1.0 {
         return Err(failed(&name)(format!("the exact search does not end in {limit} s").into()));
     }
@@ -311,9 +311,9 @@ fn through_polygons(settings: &Settings, spec: &MapSpec, rows: &mut Vec<Row>) ->
     let mut case = Case { settings, name: &name, truth, truth_by: "exact search (a line for each pair)", rows };
     case.add("exact (shipped)", &exact.table, seconds, repeats, &note);
     let others = [
-        (Method::Base, "first pass of the exact search"),
-        (Method::Sampling, "lines of the exact search"),
-        (Method::Separators, "separating planes"),
+        (ClusterMethod::Base, "first pass of the exact search"),
+        (ClusterMethod::Sampling, "lines of the exact search"),
+        (ClusterMethod::Separators, "separating planes"),
     ];
     for (method, title) in others {
         let ((measured, answer), seconds, repeats) = run(method);

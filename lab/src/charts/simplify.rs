@@ -10,7 +10,7 @@ use sightlines::multifocal::{FromRegion, Layout, Multifocal, OccluderSelection, 
 use sightlines::multifocal_cpu::Fast;
 use sightlines::scenes::{CityOptions, TowerOptions, city, city_crossings, tower, tower_rooms};
 use sightlines::simplify::{
-    HiddenBy, MeasureOptions, Prepared, Simplified, SimplifyOptions, Views, geometric, measure,
+    HiddenBy, MeasureOptions, PreparedScene, Simplified, SimplifyOptions, Views, geometric, measure,
 };
 use sightlines_benches::chart::Panel;
 use std::sync::Arc;
@@ -102,7 +102,7 @@ fn all_budgets(settings: &Settings, case: &Case, rows: &mut Vec<Row>) -> Result<
     let views = Views::new([Volume::new(case.view)?])?;
     let by = HiddenBy { method: Some(&make), table: None };
     let start = Instant::now();
-    let prepared = Prepared::new(&case.scene, &views, &by, &SimplifyOptions::default())?;
+    let prepared = PreparedScene::new(&case.scene, &views, &by, &SimplifyOptions::default())?;
     let hiding = start.elapsed().as_secs_f64();
     let (n_eyes, n_rays) = settings.pick((4, 2000), (12, 30_000));
     let mut add = |method: String, of: &Simplified, seconds: f64, repeats: u32, note: String| -> Result<(), Failure> {

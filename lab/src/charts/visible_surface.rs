@@ -5,10 +5,10 @@ use super::row::Row;
 use super::{ChartError, Family, Settings};
 use sightlines::cells::Scene;
 use sightlines::formats::scene::read_scene;
-use sightlines::scenes::SceneError;
+use sightlines::scenes::GenerateError;
 use sightlines::scenes::surfaces::{self, SurfaceOptions};
 use sightlines::visible_surface::{
-    Bsp, BspOptions, Camera, DepthFormat, FaceMask, Faces, Newell, Painter, RayCaster, RenderInput, Schumacker,
+    BspOptions, Camera, DepthFormat, FaceBsp, FaceMask, Faces, Newell, Painter, RayCaster, RenderInput, Schumacker,
     SchumackerOptions, VisibleSurface, ZBuffer, compare,
 };
 use sightlines_benches::chart::Panel;
@@ -60,7 +60,7 @@ fn scenes(settings: &Settings) -> Result<Vec<(String, Scene, Camera)>, ChartErro
     let size = settings.pick([96, 72], [640, 480]);
     let n = settings.pick(150, 4000);
     let options = SurfaceOptions { triangles: n, ..SurfaceOptions::default() };
-    let made: [(&str, Result<Scene, SceneError>); 5] = [
+    let made: [(&str, Result<Scene, GenerateError>); 5] = [
         ("random triangles", surfaces::soup(options)),
         ("cycles", surfaces::cycles(n)),
         ("common planes", surfaces::coplanar(options)),
@@ -93,8 +93,8 @@ fn methods() -> Vec<(&'static str, Make)> {
         ("painter", Box::new(|_| Box::new(Painter))),
         ("Newell", Box::new(|_| Box::new(Newell))),
         ("Schumacker", Box::new(|f| Box::new(Schumacker::build(f, &SchumackerOptions::default())))),
-        ("BSP back to front", Box::new(|f| Box::new(Bsp::build(f, &BspOptions::default())))),
-        ("BSP front to back", Box::new(|f| Box::new(Bsp::build(f, &BspOptions::default()).front_to_back()))),
+        ("BSP back to front", Box::new(|f| Box::new(FaceBsp::build(f, &BspOptions::default())))),
+        ("BSP front to back", Box::new(|f| Box::new(FaceBsp::build(f, &BspOptions::default()).front_to_back()))),
         ("z-buffer (exact)", z(DepthFormat::Exact)),
         ("z-buffer (f32)", z(DepthFormat::F32)),
         ("z-buffer (f32 reversed)", z(DepthFormat::F32Reversed)),

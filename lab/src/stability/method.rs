@@ -66,7 +66,7 @@ impl Outcome {
 
 /// A method by its name, the same in all sweeps in which it takes part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Method {
+pub struct SweepMethod {
     /// Lower-case words without a comma.
     pub name: &'static str,
     /// What is expected of it.
@@ -74,9 +74,9 @@ pub struct Method {
 }
 
 /// A method with what it answers about a case of type `C`.
-pub type Decide<C> = (Method, fn(&C) -> Answer);
+pub type Decide<C> = (SweepMethod, fn(&C) -> Answer);
 
 /// Names a method.
 pub const fn method<C>(name: &'static str, kind: Kind, decide: fn(&C) -> Answer) -> Decide<C> {
-    (Method { name, kind }, decide)
+    (SweepMethod { name, kind }, decide)
 }

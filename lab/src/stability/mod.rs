@@ -30,7 +30,7 @@ pub mod surfaces;
 pub mod sweep;
 pub mod table;
 
-pub use method::{Answer, Decide, Kind, Method, Outcome, method};
+pub use method::{Answer, Decide, Kind, Outcome, SweepMethod, method};
 pub use run::{Options, RunError, run};
 pub use sweep::{Board, Finding, Sweep};
 pub use table::{Row, TableError};

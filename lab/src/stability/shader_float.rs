@@ -5,7 +5,7 @@
 
 use super::plain::{V, cross, dot, minus};
 use sightlines::geometry::Point3;
-use sightlines::multifocal::{Buffer, Job, Occluder, Plane};
+use sightlines::multifocal::{Buffer, BufferJob, BufferPlane, Occluder};
 
 /// 16 * 2^-23, the shader's.
 pub(crate) const MARGIN: f32 = f32::from_bits((127 - 19) << 23);
@@ -85,7 +85,7 @@ struct FloatOccluder {
 }
 
 impl FloatOccluder {
-    fn new(frame: &Frame, plane: &Plane, unit: f64, margin: f32, occluder: &Occluder, sign: f32) -> Self {
+    fn new(frame: &Frame, plane: &BufferPlane, unit: f64, margin: f32, occluder: &Occluder, sign: f32) -> Self {
         let outline: Vec<V<f32>> = occluder.outline().iter().map(|&p| frame.point(p)).collect();
         let facets = occluder.facets().iter().map(|f| f.map(|p| frame.point(p))).collect();
         let at = frame.coordinate(plane.at(), plane.axis());
@@ -109,7 +109,7 @@ impl FloatOccluder {
 }
 
 /// Draws one plane of a job as the shader does; with a margin of 0, as if its author had not known of rounding.
-pub(crate) fn draw(job: &Job<'_>, plane: &Plane, margin: f32) -> Buffer {
+pub(crate) fn draw(job: &BufferJob<'_>, plane: &BufferPlane, margin: f32) -> Buffer {
     let b = job.volume().bounds();
     let [w, h] = plane.texels();
     let points = job.occluders().iter().flat_map(|o| o.outline().iter().chain(o.facets().iter().flatten()).copied());

@@ -1,6 +1,6 @@
 //! What a sweep is, and how its answers are counted.
 
-use super::method::{Answer, Decide, Method, Outcome};
+use super::method::{Answer, Decide, Outcome, SweepMethod};
 use super::table::Row;
 use rayon::prelude::*;
 use sightlines::geometry::Random;
@@ -123,7 +123,7 @@ pub struct Sweep {
     /// Calls of `batch` at each level; they run in parallel, each with its own seed.
     pub batches: usize,
     /// The methods.
-    pub methods: Vec<Method>,
+    pub methods: Vec<SweepMethod>,
     /// Asks.
     pub batch: Batch,
 }

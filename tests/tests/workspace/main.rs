@@ -12,6 +12,7 @@ mod layers;
 mod lines;
 mod made_portals;
 mod materials;
+mod names;
 mod oracles;
 mod quake_tables;
 mod scenes;

@@ -7,8 +7,8 @@ use sightlines::geometry::Point3;
 use sightlines::scenes::surfaces::{self, DepthPairsOptions, SurfaceOptions};
 use sightlines::scenes::{TowerOptions, tower};
 use sightlines::visible_surface::{
-    Bsp, BspOptions, Camera, DepthFormat, FaceMask, Faces, Image, Newell, Painter, RayCaster, RenderInput, Schumacker,
-    SchumackerOptions, VisibleSurface, ZBuffer, compare, cull,
+    BspOptions, Camera, DepthFormat, FaceBsp, FaceMask, Faces, Image, Newell, Painter, RayCaster, RenderInput,
+    Schumacker, SchumackerOptions, VisibleSurface, ZBuffer, compare, cull,
 };
 use sightlines_tests::data_folder;
 
@@ -22,7 +22,7 @@ struct Tally {
 
 /// All methods that promise to show what is seen.
 fn exact_methods(faces: &Faces) -> Vec<Box<dyn VisibleSurface>> {
-    let bsp = Bsp::build(faces, &BspOptions::default());
+    let bsp = FaceBsp::build(faces, &BspOptions::default());
     vec![
         Box::new(ZBuffer::new(DepthFormat::Exact)),
         Box::new(Newell),

@@ -2,7 +2,7 @@
 
 use crate::check::check;
 use crate::common::{Triangle, classify, cuboid, floor, method, multifocal, shafts, volume};
-use sightlines_area_light::{Lighting, Options, Sides, State};
+use sightlines_area_light::{LightOptions, Lighting, Sides, State};
 use sightlines_geometry::Point3;
 use sightlines_multifocal::mesh::SheetMethod;
 use sightlines_multifocal::{BackendError, FromRegion, Guarantee, Umbra, UnionMethod, Volume};
@@ -40,8 +40,8 @@ fn floor_areas(lighting: &Lighting) -> [f64; 3] {
     [area(State::Umbra), area(State::Lit), area(State::InDoubt)]
 }
 
-fn front(max_depth: u32) -> Options {
-    Options { max_depth, sides: Sides::Front, ..Options::default() }
+fn front(max_depth: u32) -> LightOptions {
+    LightOptions { max_depth, sides: Sides::Front, ..LightOptions::default() }
 }
 
 /// Invariant: what is decided lies within the known squares, and what is not shrinks towards the penumbra: by the root of two

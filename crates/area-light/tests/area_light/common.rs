@@ -1,6 +1,6 @@
 //! Scenes and methods.
 
-use sightlines_area_light::{Lighting, Options, Shadows};
+use sightlines_area_light::{LightOptions, Lighting, Shadows};
 use sightlines_cells::{Scene, SceneObject};
 use sightlines_from_region::ViewShafts;
 use sightlines_geometry::{Aabb, Point3};
@@ -59,6 +59,6 @@ pub(crate) fn method(triangles: &[Triangle]) -> UnionMethod {
 }
 
 /// All faces.
-pub(crate) fn classify(faces: &Faces, light: &Volume, method: &mut dyn FromRegion, options: &Options) -> Lighting {
+pub(crate) fn classify(faces: &Faces, light: &Volume, method: &mut dyn FromRegion, options: &LightOptions) -> Lighting {
     Shadows::new(faces).classify(&FaceMask::all(faces), light, method, options).expect("no device is needed")
 }

@@ -2,14 +2,14 @@
 
 use crate::check::check;
 use crate::common::{Triangle, classify, cuboid, floor, method, quad, volume};
-use sightlines_area_light::{Lighting, Options, Side, Sides, State};
+use sightlines_area_light::{LightOptions, Lighting, Side, Sides, State};
 use sightlines_geometry::Point3;
 use sightlines_multifocal::Volume;
 use sightlines_visible_surface::{FaceMask, Faces};
 
 fn ask(triangles: &[Triangle], light: &Volume, sides: Sides, max_depth: u32) -> Lighting {
     let faces = Faces::new(triangles.to_vec()).unwrap();
-    let options = Options { sides, max_depth, ..Options::default() };
+    let options = LightOptions { sides, max_depth, ..LightOptions::default() };
     let lighting = classify(&faces, light, &mut method(triangles), &options);
     let checked = check(triangles, &lighting, 4, 7);
     assert!(checked.is_right(), "{checked:?}");
@@ -130,7 +130,7 @@ fn coordinates_of_any_size() {
             .collect();
         let light = volume([-unit, -unit, 5.0 * unit], [unit, unit, 5.0 * unit]);
         let faces = Faces::new(scaled.clone()).unwrap();
-        let options = Options { max_depth: 7, sides: Sides::Front, ..Options::default() };
+        let options = LightOptions { max_depth: 7, sides: Sides::Front, ..LightOptions::default() };
         let lighting = classify(&faces, &light, &mut method(&scaled), &options);
         let areas = lighting.areas();
         assert!(areas.lit > 0.0 && areas.umbra > 0.0, "{unit:e}: {areas:?}");
@@ -143,7 +143,8 @@ fn coordinates_of_any_size() {
     for light in
         [volume([-huge; 3], [huge; 3]), volume([0., 0., tiny], [tiny; 3]), volume([0., 0., 3.], [1., huge, 3.])]
     {
-        let lighting = classify(&faces, &light, &mut method(&mixed), &Options { max_depth: 5, ..Options::default() });
+        let lighting =
+            classify(&faces, &light, &mut method(&mixed), &LightOptions { max_depth: 5, ..LightOptions::default() });
         assert!(!lighting.pieces().is_empty());
     }
 }
@@ -155,28 +156,28 @@ fn options_end_cutting() {
     let faces = Faces::new(triangles.clone()).unwrap();
     let light = volume([-1., -1., 5.], [1., 1., 5.]);
     let n = |max_depth: u32, min_size: f64| {
-        let options = Options { max_depth, min_size, sides: Sides::Front };
+        let options = LightOptions { max_depth, min_size, sides: Sides::Front };
         classify(&faces, &light, &mut method(&triangles), &options).pieces().len()
     };
     assert_eq!(n(0, 0.0), 14);
     assert_eq!(n(20, f64::INFINITY), 14);
     assert_eq!(n(20, 1e300), 14);
     assert!(n(6, 0.0) > n(4, 0.0) && n(6, f64::NAN) == n(6, 0.0) && n(6, -1.0) == n(6, 0.0));
-    let lighting = |options: &Options| classify(&faces, &light, &mut method(&triangles), options);
-    let sized = lighting(&Options { max_depth: 30, min_size: 0.5, sides: Sides::Front });
+    let lighting = |options: &LightOptions| classify(&faces, &light, &mut method(&triangles), options);
+    let sized = lighting(&LightOptions { max_depth: 30, min_size: 0.5, sides: Sides::Front });
     let longest = |p: &sightlines_area_light::Piece| {
         let edge = |i: usize| (0..3).map(|k| (p.corners[i][k] - p.corners[(i + 1) % 3][k]).powi(2)).sum::<f64>().sqrt();
         edge(0).max(edge(1)).max(edge(2))
     };
     assert!(sized.pieces().iter().filter(|p| p.state == State::InDoubt).all(|p| longest(p) <= 0.5));
     // The side that an eye sees; none of faces that it lies in the plane of.
-    let eye = lighting(&Options { max_depth: 2, sides: Sides::Towards([9., 9., 0.]), ..Options::default() });
+    let eye = lighting(&LightOptions { max_depth: 2, sides: Sides::Towards([9., 9., 0.]), ..LightOptions::default() });
     assert!(eye.pieces().iter().all(|p| p.face >= 2));
     // Only what is chosen has pieces, and all blocks.
     let mut chosen = FaceMask::all(&faces);
     chosen.retain(|f| f < 2);
     let shadows = sightlines_area_light::Shadows::new(&faces);
-    let options = Options { max_depth: 6, sides: Sides::Front, ..Options::default() };
+    let options = LightOptions { max_depth: 6, sides: Sides::Front, ..LightOptions::default() };
     let some = shadows.classify(&chosen, &light, &mut method(&triangles), &options).unwrap();
     let all = lighting(&options);
     let of_floor: Vec<_> = all.pieces().iter().filter(|p| p.face < 2).copied().collect();

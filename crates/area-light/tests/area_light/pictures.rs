@@ -1,7 +1,7 @@
 //! Pictures: what is not traced is as rays of another program have it, and rays are saved.
 
 use crate::common::{Triangle, cuboid, floor, method, scene_of, volume};
-use sightlines_area_light::{LightPicture, Options, Shade, Shadows, Sides, shown};
+use sightlines_area_light::{LightOptions, LightPicture, Shade, Shadows, Sides, shown};
 use sightlines_geometry::{Point3, orient3d};
 use sightlines_multifocal::Volume;
 use sightlines_testkit::Random;
@@ -76,7 +76,7 @@ fn pictures_are_soft_shadows() {
     assert!(chosen.len() < faces.len() && !chosen.is_empty());
     let mut last = u64::MAX;
     for max_depth in [2, 6, 12] {
-        let options = Options { max_depth, sides: Sides::Towards(EYE), ..Options::default() };
+        let options = LightOptions { max_depth, sides: Sides::Towards(EYE), ..LightOptions::default() };
         let lighting = shadows.classify(&chosen, &light(), &mut method(&triangles), &options).unwrap();
         let picture = shadows.picture(&lighting, &camera, &image, N_RAYS);
         assert_eq!(wrong(&triangles, &image, &picture), [0, 0], "depth {max_depth}");
@@ -103,7 +103,7 @@ fn wrong_pictures_are_noticed() {
     let fewer = Faces::new([&triangles[..2], &triangles[14..]].concat()).unwrap();
     let camera = camera();
     let image_of_fewer = image(&fewer, &camera);
-    let options = Options { max_depth: 8, sides: Sides::Towards(EYE), ..Options::default() };
+    let options = LightOptions { max_depth: 8, sides: Sides::Towards(EYE), ..LightOptions::default() };
     let mut none = method(&[]);
     let shadows = Shadows::new(&fewer);
     let lighting = shadows.classify(&FaceMask::all(&fewer), &light(), &mut none, &options).unwrap();
@@ -133,7 +133,7 @@ fn what_was_not_asked_about_is_traced() {
     let image = image(&faces, &camera);
     let mut chosen = FaceMask::all(&faces);
     chosen.retain(|_| false);
-    let lighting = shadows.classify(&chosen, &light(), &mut method(&triangles), &Options::default()).unwrap();
+    let lighting = shadows.classify(&chosen, &light(), &mut method(&triangles), &LightOptions::default()).unwrap();
     assert!(lighting.pieces().is_empty());
     let picture = shadows.picture(&lighting, &camera, &image, 0);
     assert_eq!((picture.counts(), picture.n_rays), ([0, 0, image.n_covered()], image.n_covered()));

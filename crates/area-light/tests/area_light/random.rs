@@ -3,7 +3,7 @@
 use crate::check::{check, covers};
 use crate::common::{Triangle, classify, method, volume};
 use proptest::prelude::*;
-use sightlines_area_light::{Options, Sides, State};
+use sightlines_area_light::{LightOptions, Sides, State};
 use sightlines_geometry::Point3;
 use sightlines_visible_surface::Faces;
 
@@ -42,7 +42,7 @@ proptest! {
         let max = std::array::from_fn(|k| (min[k] + f64::from(size[k])) * scale);
         let light = volume(min.map(|x| x * scale), max);
         let faces = Faces::new(triangles.clone()).unwrap();
-        let options = Options { max_depth: 4, ..Options::default() };
+        let options = LightOptions { max_depth: 4, ..LightOptions::default() };
         let lighting = classify(&faces, &light, &mut method(&triangles), &options);
         let checked = check(&triangles, &lighting, 4, seed);
         prop_assert!(checked.is_right(), "{:?} {:?}", checked, checked.wrong_lit.first().or(checked.wrong_umbra.first()).map(|&i| lighting.pieces()[i]));
@@ -60,7 +60,7 @@ proptest! {
         let light = volume(min, std::array::from_fn(|k| min[k] + f64::from(size[k])));
         let faces = Faces::new(triangles.clone()).unwrap();
         prop_assume!(faces.has_area(0));
-        let lighting = classify(&faces, &light, &mut method(&triangles), &Options { max_depth: 2, sides: Sides::Both, ..Options::default() });
+        let lighting = classify(&faces, &light, &mut method(&triangles), &LightOptions { max_depth: 2, sides: Sides::Both, ..LightOptions::default() });
         let [a, b, c] = triangles[0];
         let sides: Vec<f64> = light.corners().iter().map(|&l| sightlines_geometry::orient3d(a, b, c, l)).collect();
         let is_cut = sides.iter().any(|&s| s > 0.0) && sides.iter().any(|&s| s < 0.0);

@@ -2,7 +2,7 @@
 
 use crate::check::check;
 use crate::common::{triangles_of, volume};
-use sightlines_area_light::{Options, Shadows, Sides, shown};
+use sightlines_area_light::{LightOptions, Shadows, Sides, shown};
 use sightlines_geometry::Point3;
 use sightlines_multifocal::mesh::SheetMethod;
 use sightlines_visible_surface::{Camera, DepthFormat, FaceMask, Faces, RenderInput, VisibleSurface, ZBuffer};
@@ -39,7 +39,7 @@ fn an_atrium_is_right() {
     let mut chosen = FaceMask::all(&faces);
     chosen.retain(|f| f % 40 == 0);
     let start = std::time::Instant::now();
-    let options = Options { max_depth: 3, sides: Sides::Both, ..Options::default() };
+    let options = LightOptions { max_depth: 3, sides: Sides::Both, ..LightOptions::default() };
     let lighting = shadows.classify(&chosen, &light, &mut method, &options).unwrap();
     let areas = *lighting.areas();
     println!("{:?}: {} pieces, {areas:?}, {:?}", start.elapsed(), lighting.pieces().len(), lighting.counters());
@@ -51,7 +51,7 @@ fn an_atrium_is_right() {
     let camera = Camera::look_at(eye, [middle[0], middle[1] - 3.0, middle[2]], [0., 1., 0.], 70.0, [96, 72]).unwrap();
     let shot = RenderInput { faces: &faces, camera: &camera, mask: &FaceMask::all(&faces) };
     let image = ZBuffer::new(DepthFormat::Exact).picture(&shot).0;
-    let options = Options { max_depth: 6, min_size: 0.05, sides: Sides::Towards(eye) };
+    let options = LightOptions { max_depth: 6, min_size: 0.05, sides: Sides::Towards(eye) };
     let start = std::time::Instant::now();
     let lighting = shadows.classify(&shown(&faces, &image), &light, &mut method, &options).unwrap();
     println!(

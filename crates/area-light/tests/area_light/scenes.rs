@@ -2,7 +2,7 @@
 
 use crate::check::{check, covers};
 use crate::common::{Triangle, classify, cuboid, floor, method, multifocal, triangles_of, volume};
-use sightlines_area_light::{Options, Sides};
+use sightlines_area_light::{LightOptions, Sides};
 use sightlines_geometry::{Aabb, Point3};
 use sightlines_multifocal::Volume;
 use sightlines_scenes::{
@@ -11,7 +11,7 @@ use sightlines_scenes::{
 use sightlines_visible_surface::Faces;
 
 /// Shares of the area in umbra, lit, in doubt, after checking with rays.
-fn shares(name: &str, triangles: &[Triangle], light: &Volume, options: &Options, n_rays: u32) -> [f64; 3] {
+fn shares(name: &str, triangles: &[Triangle], light: &Volume, options: &LightOptions, n_rays: u32) -> [f64; 3] {
     let faces = Faces::new(triangles.to_vec()).unwrap();
     let start = std::time::Instant::now();
     let lighting = classify(&faces, light, &mut method(triangles), options);
@@ -34,8 +34,8 @@ fn shares(name: &str, triangles: &[Triangle], light: &Volume, options: &Options,
     shares
 }
 
-fn front(max_depth: u32) -> Options {
-    Options { max_depth, sides: Sides::Front, ..Options::default() }
+fn front(max_depth: u32) -> LightOptions {
+    LightOptions { max_depth, sides: Sides::Front, ..LightOptions::default() }
 }
 
 #[test]
@@ -72,7 +72,7 @@ fn soups_and_slivers() {
     let light = volume([-1.0, -1.0, -1.0], [1.0, 1.0, 0.0]);
     for (name, scene) in [("soup", soup(options)), ("slivers", slivers(options))] {
         let triangles = triangles_of(&scene.unwrap());
-        let options = Options { max_depth: 5, ..Options::default() };
+        let options = LightOptions { max_depth: 5, ..LightOptions::default() };
         let [umbra, lit, _] = shares(name, &triangles, &light, &options, 2);
         assert!(umbra > 0.1 && lit > 0.02, "{name}");
     }

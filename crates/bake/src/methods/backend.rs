@@ -1,6 +1,6 @@
 //! Backends of multifocal buffers by name.
 
-use sightlines_multifocal::{BackendError, Buffer, Job, Measure, MultifocalBackend, WithFallback};
+use sightlines_multifocal::{BackendError, Buffer, BufferJob, Measure, MultifocalBackend, WithFallback};
 use sightlines_multifocal_cpu::{Fast, Reference};
 use std::fmt;
 use std::str::FromStr;
@@ -174,7 +174,7 @@ impl MultifocalBackend for Warning {
         self.inner.supports(measure)
     }
 
-    fn render(&mut self, job: &Job<'_>, out: &mut Vec<Buffer>) -> Result<(), BackendError> {
+    fn render(&mut self, job: &BufferJob<'_>, out: &mut Vec<Buffer>) -> Result<(), BackendError> {
         let before = self.inner.took_over().cloned();
         let done = self.inner.render(job, out);
         if let Some(error) = self.inner.took_over().filter(|error| before.as_ref() != Some(error)) {

@@ -34,7 +34,7 @@ use sightlines_cells::{ANYWHERE, Scene};
 use sightlines_formats::{SceneInfo, ViewCells};
 use sightlines_geometry::{Aabb, Point3};
 use sightlines_kdtree::{KdError, SceneOptions, subdivide_scene};
-use sightlines_multifocal::{Effort, FromRegion, Occludees, RaySampler, Split, Volume};
+use sightlines_multifocal::{FromRegion, Occludees, RaySampler, Split, Volume, WorkDone};
 use sightlines_progress::{Allowance, Observer, Units};
 use sightlines_pvs::{BitMatrix, SceneMethods, Table, TableKind, TableParts};
 use sightlines_stabtree::{BoxVisibility, PairMask, SearchOptions, box_visibility};
@@ -238,7 +238,7 @@ pub(crate) fn decide(
             boxes::add(&mut left, &seen.left);
             (seen.rows, seen.objects, seen.effort, Some(method))
         }
-        None => (rows, objects, Effort::default(), None),
+        None => (rows, objects, WorkDone::default(), None),
     };
     if by_sightlines && matches!(graph, TableGraph::Boxes(_)) {
         let doubt = boxes::in_doubt(&rows, &objects, &proven, &touching);

@@ -1,6 +1,6 @@
 //! What one cell sees by itself, as sets of runs, and as bytes.
 
-use sightlines_multifocal::{Effort, QueryCounts};
+use sightlines_multifocal::{QueryCounts, WorkDone};
 use sightlines_pvs::runs::{read_runs, read_varint, runs_of, write_runs, write_varint};
 use std::ops::Range;
 
@@ -16,11 +16,11 @@ pub(super) struct CellRow {
     pub(super) proven: [Runs; 2],
     /// What was not decided because the allowance was over.
     pub(super) left: [Runs; 2],
-    pub(super) effort: Effort,
+    pub(super) effort: WorkDone,
 }
 
 impl CellRow {
-    pub(super) fn new(visible: [Vec<bool>; 2], proven: [Vec<bool>; 2], left: [Vec<bool>; 2], effort: Effort) -> Self {
+    pub(super) fn new(visible: [Vec<bool>; 2], proven: [Vec<bool>; 2], left: [Vec<bool>; 2], effort: WorkDone) -> Self {
         let set = |bits: Vec<bool>| {
             let of = |(k, bit): (u32, bool)| bit.then_some(k);
             let mut runs = runs_of((0..).zip(bits).filter_map(of));
@@ -36,7 +36,7 @@ impl CellRow {
         let Self { cells, objects, proven: [cells_proven, objects_proven], effort, .. } = self;
         let mut out = Vec::new();
         [cells, objects, cells_proven, objects_proven].into_iter().for_each(|runs| write_runs(runs, &mut out));
-        let Effort { n_volumes, queries: QueryCounts { groups, boxes, triangles } } = *effort;
+        let WorkDone { n_volumes, queries: QueryCounts { groups, boxes, triangles } } = *effort;
         [n_volumes, groups, boxes, triangles].into_iter().for_each(|n| write_varint(n, &mut out));
         out
     }
@@ -49,7 +49,7 @@ impl CellRow {
         let mut number = || read_varint(&mut bytes);
         let n_volumes = number()?;
         let queries = QueryCounts { groups: number()?, boxes: number()?, triangles: number()? };
-        let effort = Effort { n_volumes, queries };
+        let effort = WorkDone { n_volumes, queries };
         bytes.is_empty().then_some(Self { cells, objects, proven, left: Default::default(), effort })
     }
 }
@@ -68,7 +68,7 @@ mod tests {
     #[test]
     fn rows_come_back_and_only_where_they_fit() {
         let bits = |text: &str| text.chars().map(|c| c == '1').collect::<Vec<bool>>();
-        let effort = Effort { n_volumes: 3, queries: QueryCounts { groups: 1, boxes: 300, triangles: 7 } };
+        let effort = WorkDone { n_volumes: 3, queries: QueryCounts { groups: 1, boxes: 300, triangles: 7 } };
         let none = || [bits("000000"), bits("000")];
         let row = CellRow::new([bits("110101"), bits("011")], [bits("100001"), bits("010")], none(), effort);
         assert_eq!((&row.cells, row.objects.len()), (&vec![0..2, 3..4, 5..6], 1));

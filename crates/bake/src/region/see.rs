@@ -7,7 +7,7 @@ use crate::error::BakeError;
 use crate::threads;
 use rayon::prelude::*;
 use sightlines_geometry::{Aabb, BoxNode, BoxTree};
-use sightlines_multifocal::{BackendError, Effort, FromRegion, Occludees, RaySampler, Umbra, Volume, adaptive};
+use sightlines_multifocal::{BackendError, FromRegion, Occludees, RaySampler, Umbra, Volume, WorkDone, adaptive};
 use sightlines_progress::{Allowance, Counter, Halt, Phase, Shares, Work, scattered, shares_of};
 use sightlines_pvs::BitMatrix;
 use sightlines_stabtree::PairMask;
@@ -69,7 +69,7 @@ pub(super) struct RegionVisibility {
     pub(super) proven: PairMask,
     /// What was not decided because the allowance was over; where the method was stopped, also some of what it would have left visible.
     pub(super) left: PairMask,
-    pub(super) effort: Effort,
+    pub(super) effort: WorkDone,
     /// If something hides from one side only: for each cell those that are hidden from it, though it may not be hidden from them.
     hidden_one_way: Option<BitMatrix>,
 }
@@ -98,7 +98,7 @@ pub(super) fn see(
     let none = || PairMask { boxes: BitMatrix::new(n, n), objects: BitMatrix::new(n, n_things) };
     let n_objects = scene.occludees.len();
     let hidden_one_way = scene.has_one_way.then(|| BitMatrix::new(n, n));
-    let (proven, left, effort) = (none(), none(), Effort::default());
+    let (proven, left, effort) = (none(), none(), WorkDone::default());
     let mut known = RegionVisibility { rows, objects, proven, left, effort, hidden_one_way };
     if !allowance.is_limited() {
         let found = see_all(scene, make, options, Some(&known))?;
@@ -288,7 +288,7 @@ fn see_from(
     );
     if unit.is_over() {
         let left = [not_proven(&of_cells, &cells_reached), not_proven(&of_objects, &objects_reached)];
-        return Ok(CellRow::new([of_cells, of_objects], [cells_reached, objects_reached], left, Effort::default()));
+        return Ok(CellRow::new([of_cells, of_objects], [cells_reached, objects_reached], left, WorkDone::default()));
     }
     let limit = Limit::new(unit);
     let mut left_cells = vec![false; of_cells.len()];

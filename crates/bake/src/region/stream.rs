@@ -9,7 +9,7 @@ use crate::stated::METHOD;
 use crate::table::state_file;
 use crate::threads;
 use sightlines_cells::Scene;
-use sightlines_multifocal::Effort;
+use sightlines_multifocal::WorkDone;
 use sightlines_packed::{PackReport, PackWriter, StreamError, StreamOptions};
 use sightlines_pvs::{CellId, ObjectId, SceneMethods, TableKind, TableParts};
 use std::collections::BTreeMap;
@@ -86,7 +86,7 @@ fn pack_here<W: Write>(
     state(&mut parts);
     let mut writer = PackWriter::new(out, &parts, &StreamOptions { objects_seen: true })?;
     drop(parts);
-    let (mut n_visible_pairs, mut n_objects_seen, mut effort) = (0, 0, Effort::default());
+    let (mut n_visible_pairs, mut n_objects_seen, mut effort) = (0, 0, WorkDone::default());
     let (mut seen, mut things): (Vec<CellId>, Vec<ObjectId>) = (Vec::new(), Vec::new());
     for (cell, row) in (0u32..).zip(&rows) {
         seen.clear();

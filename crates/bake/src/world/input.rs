@@ -8,7 +8,7 @@ use sightlines_cells::Scene;
 use sightlines_checkpoint::{Key, KeyHasher};
 use sightlines_formats::scene::{SceneReadOptions, read_scene_with};
 use sightlines_formats::view_cells::read_view_cells;
-use sightlines_formats::{SceneInfo, Simplified, ViewCell, ViewCells};
+use sightlines_formats::{SceneInfo, Simplification, ViewCell, ViewCells};
 use sightlines_geometry::Aabb;
 use sightlines_tiles::{TileBounds, TilePlan, WorldError, WorldPlan};
 use std::fs;
@@ -121,7 +121,7 @@ fn load(
     warn: fn(&str),
 ) -> Result<Loaded, WorldBakeError> {
     let file = read_scene_with(path, reading)?;
-    if matches!(file.info.simplified, Some(Simplified { occluder: false })) {
+    if matches!(file.info.simplified, Some(Simplification { occluder: false })) {
         return Err(WorldBakeError::Occluder(path.to_owned()));
     }
     file.info.warnings.iter().for_each(|warning| warn(&format!("{}: {warning}", path.display())));

@@ -3,7 +3,7 @@
 use sightlines_bake::methods::Backend;
 use sightlines_geometry::Aabb;
 use sightlines_multifocal::{
-    BackendError, Buffer, Job, Measure, MultifocalBackend, Occluder, Plane, Volume, render_by_first,
+    BackendError, Buffer, BufferJob, BufferPlane, Measure, MultifocalBackend, Occluder, Volume, render_by_first,
 };
 use sightlines_multifocal_cpu::Reference;
 
@@ -20,7 +20,7 @@ impl MultifocalBackend for Lost {
         true
     }
 
-    fn render(&mut self, _: &Job<'_>, _: &mut Vec<Buffer>) -> Result<(), BackendError> {
+    fn render(&mut self, _: &BufferJob<'_>, _: &mut Vec<Buffer>) -> Result<(), BackendError> {
         Err(BackendError::Lost { backend: self.name(), reason: "unplugged".to_owned() })
     }
 }
@@ -28,15 +28,15 @@ impl MultifocalBackend for Lost {
 #[test]
 fn the_next_backend_takes_over() {
     let chain = |backend: Backend| backend.open(|_| {}).unwrap().chain();
-    let fill = |all, job: &Job<'_>| {
+    let fill = |all, job: &BufferJob<'_>| {
         let (mut buffers, mut n_refused) = (Vec::new(), 0);
         let by = render_by_first(all, job, &mut buffers, |_| n_refused += 1)?;
         Ok::<_, BackendError>((by, buffers.pop().unwrap(), n_refused))
     };
     let volume = Volume::new(Aabb { min: [-0.5; 3], max: [0.5; 3] }).unwrap();
     let occluders = [Occluder::triangle([[-4., -4., 3.], [4., -4., 3.], [0., 4., 3.]]).unwrap()];
-    let plane = Plane::new(2, true, 9.0, [-1.; 2], [1.; 2], [4, 4]).unwrap();
-    let job = |measure| Job::new(volume, vec![plane], &occluders, measure, false).unwrap();
+    let plane = BufferPlane::new(2, true, 9.0, [-1.; 2], [1.; 2], [4, 4]).unwrap();
+    let job = |measure| BufferJob::new(volume, vec![plane], &occluders, measure, false).unwrap();
     let (by, buffer, n_refused) =
         fill(vec![Box::new(Lost), Box::new(Reference)], &job(Measure::SectionHeight)).unwrap();
     assert_eq!((by, buffer.n_blocked(), n_refused), ("cpu-reference", 16, 1));

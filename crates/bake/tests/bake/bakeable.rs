@@ -3,7 +3,7 @@
 use sightlines_bake::{BakeRequest, Bakeable, BakeableError, bake};
 use sightlines_formats::doom::{DoomMapSource, MapChoiceError, SourceLine};
 use sightlines_formats::input::Neighbours;
-use sightlines_formats::scene::{Simplified, write_glb, write_simplified_glb};
+use sightlines_formats::scene::{Simplification, write_glb, write_simplified_glb};
 use sightlines_formats::wad::{WadBuilder, WadKind};
 use sightlines_formats::{LumpName, Source, geojson};
 use sightlines_scenes::{OfficeOptions, TowerOptions, office, tower};
@@ -34,7 +34,7 @@ fn plans_and_scenes_are_those_of_the_file() {
 #[test]
 fn moved_scenes_are_refused() {
     let scene = tower(TowerOptions { floors: 1, rooms_x: 1, rooms_y: 1, ..TowerOptions::default() }).unwrap();
-    let glb = |occluder| write_simplified_glb(&scene, Simplified { occluder }).unwrap();
+    let glb = |occluder| write_simplified_glb(&scene, Simplification { occluder }).unwrap();
     assert!(read("inside.glb", &glb(true), None).is_ok());
     assert!(matches!(read("moved.glb", &glb(false), None), Err(BakeableError::Moved)));
 }

@@ -176,7 +176,7 @@ fn a_cancelled_bake_gives_no_table() {
 /// The plan as the crates below cut it; `None` for plans without a region.
 fn cut(plan: &Plan, subdivide: Subdivide) -> Option<CellGraph<Planar>> {
     if subdivide == Subdivide::KdTree {
-        let options = sightlines_kdtree::Options::default();
+        let options = sightlines_kdtree::KdOptions::default();
         sightlines_kdtree::subdivide_plan(plan, &options).ok().map(|cut| cut.graph)
     } else {
         sightlines_triangulation::subdivide(plan).ok().map(|(graph, _)| graph)

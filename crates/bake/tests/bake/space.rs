@@ -6,7 +6,7 @@ use sightlines_cells::{Axial, CellGraph, CellId};
 use sightlines_geometry::Aabb;
 use sightlines_pvs::{BitMatrix, CellRecord, Locator, PortalRecord, Table, TableKind, TableParts};
 use sightlines_scenes::{TowerOptions, tower};
-use sightlines_sightline::{Target, Verdict};
+use sightlines_sightline::{BoxTarget, Verdict};
 use sightlines_stabtree::{AxialPath, AxialProof, Barrier, Sight, explain_axial};
 use std::collections::BTreeSet;
 
@@ -85,8 +85,8 @@ fn explanations_agree_with_tables() {
                 Verdict::Hidden(Barrier::Blocked(AxialProof { proof, walls, n_blockers })) => {
                     assert!(!table.sees(a, b), "{a} {b}");
                     n_hidden += 1;
-                    assert!(proof.holds(&from, &to, Target::Inside, &walls) && walls.len() <= n_blockers);
-                    assert!(!proof.holds(&from, &to, Target::Inside, &walls[1..]), "{a} {b}");
+                    assert!(proof.holds(&from, &to, BoxTarget::Inside, &walls) && walls.len() <= n_blockers);
+                    assert!(!proof.holds(&from, &to, BoxTarget::Inside, &walls[1..]), "{a} {b}");
                     most_nodes = most_nodes.max(proof.size().n_nodes);
                 }
                 Verdict::Hidden(Barrier::NotConnected) => assert!(!table.sees(a, b), "{a} {b}"),

@@ -285,7 +285,7 @@ unsafe fn images_differ(
     // SAFETY: the viewer lives; results go to places and buffers of the stated sizes.
     unsafe {
         assert_eq!(sl_viewer_follow_mirrors(viewer, 2, &mut n), SL_OK);
-        let differs = |(id, image): (u32, &sightlines_eye_to_cell::Image)| {
+        let differs = |(id, image): (u32, &sightlines_eye_to_cell::MirrorImage)| {
             let mut out = std::mem::zeroed::<SlImage>();
             assert_eq!(sl_viewer_image(viewer, id, &mut out), SL_OK);
             let mirrors: Vec<u32> = image.mirrors.iter().map(|mirror| mirror.0).collect();

@@ -13,9 +13,9 @@ const TICKS: usize = 50;
 pub struct Local<'a> {
     /// How many run at once.
     pub workers: usize,
-    /// Starts a worker ([`Role::Worker`](crate::Role::Worker)).
+    /// Starts a worker ([`JobRole::Worker`](crate::JobRole::Worker)).
     pub worker: &'a dyn Fn() -> Command,
-    /// Starts a process for shards ([`Role::Shards`](crate::Role::Shards)).
+    /// Starts a process for shards ([`JobRole::Shards`](crate::JobRole::Shards)).
     pub shards: &'a dyn Fn(&[usize]) -> Command,
     /// What a worker had to tell that has written the output, from what it printed; `None` for others.
     pub told: fn(&[u8]) -> Option<String>,

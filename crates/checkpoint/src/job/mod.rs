@@ -19,7 +19,7 @@ pub use manifest::{Manifest, PhasePlan, ShardPlan};
 pub use runs::{ParseShardRunError, ShardRun, in_words};
 pub use slot::JobSlot;
 pub use status::PhaseStatus;
-pub use store::{JobStore, Outcome, Role};
+pub use store::{JobProgress, JobRole, JobStore};
 
 use crate::error::StateError;
 use crate::index::Results;

@@ -3,7 +3,7 @@
 use super::{JOURNAL, Job, JobError};
 use crate::error::StateError;
 use crate::index::Results;
-use crate::journal::{Journal, Opening};
+use crate::journal::{Journal, OpenMode};
 use sightlines_formats::process_mark;
 use sightlines_progress::{Halt, UnitStore};
 use std::ops::Range;
@@ -135,9 +135,9 @@ impl OwnShard {
         let (key, program) = (job.key(), &job.manifest().program);
         job.make_folder_of(shard)?;
         // What an earlier process with this number left is read with all other journals.
-        let opening = if path.exists() { Opening::Resume } else { Opening::Anew };
+        let opening = if path.exists() { OpenMode::Resume } else { OpenMode::Anew };
         let journal = Journal::open(&path, key, program, opening, after);
-        let journal = journal.or_else(|_| Journal::open(&path, key, program, Opening::Anew, after));
+        let journal = journal.or_else(|_| Journal::open(&path, key, program, OpenMode::Anew, after));
         let journal = Some(journal.map_err(|error: StateError| JobError::State(Box::new(error)))?);
         let (units, n) = (plan.begin..plan.end, plan.end - plan.begin);
         let work = Work { journal, others: Vec::new(), missing: vec![true; n], n_missing: n };

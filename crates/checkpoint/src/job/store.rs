@@ -18,7 +18,7 @@ use std::time::Duration;
 
 /// What a process does for a job.
 #[derive(Debug, Clone)]
-pub enum Role {
+pub enum JobRole {
     /// Goes through the bake with the results of all parts: it ends at the first phase that is not complete, and plans one that is not known.
     Merge,
     /// Computes the units of these shards, which are all of one phase: one shard after the other, in ascending order. Each part is written as soon as its units are done,
@@ -34,7 +34,7 @@ pub enum Role {
     },
 }
 
-impl Role {
+impl JobRole {
     /// Computes the units of one shard.
     pub fn shard(shard: usize) -> Self {
         Self::Shards(vec![shard])
@@ -44,7 +44,7 @@ impl Role {
 /// How far a process came.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Outcome {
+pub enum JobProgress {
     /// The next phase is known now, with these shards.
     Planned {
         /// Its place.
@@ -75,7 +75,7 @@ const OPEN: usize = 32;
 /// A store of units in the folder of a job.
 #[derive(Debug)]
 pub struct JobStore {
-    role: Role,
+    role: JobRole,
     /// How long results of a shard are only in memory.
     after: Duration,
     /// The shards that the process computes now.
@@ -94,7 +94,7 @@ struct State {
     claims: Claims,
     /// Of the worker that writes: its claim, and the file that says that it has written.
     writing: Option<(Claim, PathBuf)>,
-    outcome: Option<Outcome>,
+    outcome: Option<JobProgress>,
 }
 
 /// The parts of a phase, in order.
@@ -114,17 +114,17 @@ impl JobStore {
     ///
     /// # Errors
     /// [`JobError::NoShard`], and [`JobError::TwoPhases`].
-    pub fn new(job: Job, role: Role, after: Duration) -> Result<Self, JobError> {
+    pub fn new(job: Job, role: JobRole, after: Duration) -> Result<Self, JobError> {
         let own = match &role {
-            Role::Merge | Role::Worker { .. } => None,
-            Role::Shards(shards) => Some(Arc::new(OwnShards::new(&job, shards, after)?)),
+            JobRole::Merge | JobRole::Worker { .. } => None,
+            JobRole::Shards(shards) => Some(Arc::new(OwnShards::new(&job, shards, after)?)),
         };
         let state = State { job, n_begun: 0, parts: None, claims: Claims::default(), writing: None, outcome: None };
         Ok(Self { role, after, own: Mutex::new(own), state: Mutex::new(state) })
     }
 
     /// Why the bake ended early, if the store ended it.
-    pub fn outcome(&self) -> Option<Outcome> {
+    pub fn outcome(&self) -> Option<JobProgress> {
         self.lock().outcome.clone()
     }
 
@@ -148,7 +148,7 @@ impl JobStore {
     /// # Errors
     /// [`Halt::Shared`] if another worker has written them, [`Halt::Cancelled`] if the worker is to end, [`Halt::Store`] if nothing can be claimed.
     pub fn begin_writing(&self, outputs: &[PathBuf]) -> Result<(), Halt> {
-        let Role::Worker { stop, .. } = self.role else { return Ok(()) };
+        let JobRole::Worker { stop, .. } = self.role else { return Ok(()) };
         let mut state = self.lock();
         if state.writing.is_some() {
             return Ok(());
@@ -158,7 +158,7 @@ impl JobStore {
         let path = state.job.folder().join(format!("{}.written", hasher.finish()));
         let claim = wait_for(&path.with_extension("writing.claim"), LOOKS[1], stop)?;
         if path.is_file() && outputs.iter().all(|output| output.exists()) {
-            return Err(state.end_with(Outcome::Done));
+            return Err(state.end_with(JobProgress::Done));
         }
         state.writing = Some((claim, path));
         Ok(())
@@ -250,7 +250,7 @@ impl State {
     fn open(&mut self, phase: usize) -> Result<(), Halt> {
         match self.open_parts(phase) {
             Ok(parts) => self.parts = Some(parts),
-            Err(shards) => return Err(self.end_with(Outcome::Missing { phase, shards })),
+            Err(shards) => return Err(self.end_with(JobProgress::Missing { phase, shards })),
         }
         Ok(())
     }
@@ -278,7 +278,7 @@ impl State {
         Ok(())
     }
 
-    fn end_with(&mut self, outcome: Outcome) -> Halt {
+    fn end_with(&mut self, outcome: JobProgress) -> Halt {
         self.outcome = Some(outcome);
         Halt::Shared
     }
@@ -324,13 +324,13 @@ impl UnitStore for JobStore {
         state.n_begun += 1;
         if state.job.manifest.phases.len() <= place {
             match self.role {
-                Role::Shards(_) => return Err(Halt::Store(format!("the job has no phase {} yet", phase.name))),
-                Role::Worker { stop, .. } => state.plan_together(phase, place, stop)?,
-                Role::Merge => {
+                JobRole::Shards(_) => return Err(Halt::Store(format!("the job has no phase {} yet", phase.name))),
+                JobRole::Worker { stop, .. } => state.plan_together(phase, place, stop)?,
+                JobRole::Merge => {
                     state.plan(phase).map_err(failed)?;
                     let shards = state.job.manifest.shards_of(place);
                     if !phase.costs.is_empty() {
-                        return Err(state.end_with(Outcome::Planned { phase: place, shards }));
+                        return Err(state.end_with(JobProgress::Planned { phase: place, shards }));
                     }
                 }
             }
@@ -350,7 +350,7 @@ impl UnitStore for JobStore {
             return Ok(());
         }
         match self.role {
-            Role::Worker { n_workers, stop } => self.next_pass(&mut state, place, n_workers, stop),
+            JobRole::Worker { n_workers, stop } => self.next_pass(&mut state, place, n_workers, stop),
             _ => state.open(place),
         }
     }
@@ -385,7 +385,7 @@ impl UnitStore for JobStore {
             return Ok(Pass::Last);
         };
         own.end(&state.job, phase)?;
-        let Role::Worker { n_workers, stop } = self.role else { return Err(state.end_with(Outcome::Done)) };
+        let JobRole::Worker { n_workers, stop } = self.role else { return Err(state.end_with(JobProgress::Done)) };
         let place = state.n_begun - 1;
         self.next_pass(&mut state, place, n_workers, stop)?;
         Ok(Pass::Again)
@@ -401,7 +401,7 @@ impl UnitStore for JobStore {
 
     fn needs_costs(&self) -> bool {
         let mut state = self.lock();
-        if state.job.manifest.phases.len() <= state.n_begun && matches!(self.role, Role::Worker { .. }) {
+        if state.job.manifest.phases.len() <= state.n_begun && matches!(self.role, JobRole::Worker { .. }) {
             // Another worker may have planned it. If that cannot be read, costs are only computed for nothing.
             let _ = state.job.read_again();
         }

@@ -2,7 +2,7 @@
 
 use crate::jobs::plan;
 use crate::toy::PROGRAM;
-use sightlines_checkpoint::{Job, JobStore, Outcome, Role};
+use sightlines_checkpoint::{Job, JobProgress, JobRole, JobStore};
 use sightlines_progress::{Halt, Phase, UnitStore, Units};
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
@@ -31,7 +31,7 @@ fn bake(store: Option<&dyn UnitStore>, n_computed: &AtomicUsize, most: usize) ->
     found.ok_or(Halt::Shared)
 }
 
-fn store(folder: &Path, role: Role) -> JobStore {
+fn store(folder: &Path, role: JobRole) -> JobStore {
     JobStore::new(Job::open(folder, PROGRAM).unwrap(), role, Duration::ZERO).unwrap()
 }
 
@@ -42,15 +42,15 @@ fn a_chain_is_one_shard() {
     let folder = all.path().join("job");
     plan(&folder, "a", 5).unwrap();
     let n_computed = AtomicUsize::new(0);
-    let merge = store(&folder, Role::Merge);
+    let merge = store(&folder, JobRole::Merge);
     assert_eq!(bake(Some(&merge), &n_computed, N), Err(Halt::Shared));
-    assert_eq!(merge.outcome(), Some(Outcome::Planned { phase: 0, shards: 0..1 }));
-    let stopped = bake(Some(&store(&folder, Role::shard(0))), &n_computed, 7);
+    assert_eq!(merge.outcome(), Some(JobProgress::Planned { phase: 0, shards: 0..1 }));
+    let stopped = bake(Some(&store(&folder, JobRole::shard(0))), &n_computed, 7);
     assert_eq!((stopped, n_computed.swap(0, Relaxed)), (Err(Halt::Store("killed".to_owned())), 8));
-    let own = store(&folder, Role::shard(0));
+    let own = store(&folder, JobRole::shard(0));
     assert_eq!(bake(Some(&own), &n_computed, N), Err(Halt::Shared));
-    assert_eq!((own.outcome(), n_computed.swap(0, Relaxed)), (Some(Outcome::Done), N - 7));
-    let merged = bake(Some(&store(&folder, Role::Merge)), &n_computed, 0);
+    assert_eq!((own.outcome(), n_computed.swap(0, Relaxed)), (Some(JobProgress::Done), N - 7));
+    let merged = bake(Some(&store(&folder, JobRole::Merge)), &n_computed, 0);
     assert_eq!(merged, bake(None, &n_computed, N));
 }
 
@@ -62,7 +62,7 @@ fn workers_leave_a_chain_to_one_of_them() {
     plan(&folder, "a", 5).unwrap();
     let n_computed = AtomicUsize::new(0);
     let work = || {
-        let store = store(&folder, Role::Worker { n_workers: 3, stop: || false });
+        let store = store(&folder, JobRole::Worker { n_workers: 3, stop: || false });
         bake(Some(&store), &n_computed, usize::MAX)
     };
     let found: Vec<_> = thread::scope(|scope| {

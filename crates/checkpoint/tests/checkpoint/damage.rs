@@ -3,7 +3,7 @@
 use crate::jobs::{copy_of_first_phase, run};
 use crate::toy::{PROGRAM, key, toy};
 use proptest::prelude::*;
-use sightlines_checkpoint::{Job, Journal, Opening, Outcome, Role, ShardState};
+use sightlines_checkpoint::{Job, JobProgress, JobRole, Journal, OpenMode, ShardState};
 use std::fs;
 use std::time::Duration;
 
@@ -24,7 +24,7 @@ proptest! {
     fn damaged_journals_give_no_wrong_answer(at in any::<usize>(), flip in any::<u8>()) {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("out.state");
-        let open = || Journal::open(&path, key("a"), PROGRAM, Opening::Resume, Duration::ZERO);
+        let open = || Journal::open(&path, key("a"), PROGRAM, OpenMode::Resume, Duration::ZERO);
         let expected = toy([5, 5]).bake(Some(&open().unwrap())).unwrap();
         fs::write(&path, damaged(&fs::read(&path).unwrap(), at, flip)).unwrap();
         if let Ok(journal) = open() {
@@ -37,7 +37,7 @@ proptest! {
     fn only_what_is_damaged_is_computed_again(at in any::<usize>(), flip in 1..=255_u8, n_bytes in 1..60_usize, cut in any::<bool>()) {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("out.state");
-        let open = || Journal::open(&path, key("a"), PROGRAM, Opening::Resume, Duration::ZERO);
+        let open = || Journal::open(&path, key("a"), PROGRAM, OpenMode::Resume, Duration::ZERO);
         let expected = toy([9, 9]).bake(Some(&open().unwrap())).unwrap();
         let mut bytes = fs::read(&path).unwrap();
         // Behind the header.
@@ -65,8 +65,8 @@ proptest! {
         let part = fs::read(job.part_path(shard)).unwrap();
         fs::write(job.part_path(shard), damaged(&part, at, flip)).unwrap();
         prop_assert!(matches!(job.state(shard).unwrap(), ShardState::Broken(_)));
-        match run(&folder, [6, 4], Role::Merge) {
-            Err(Outcome::Missing { shards, .. }) => prop_assert_eq!(shards[0].0, shard),
+        match run(&folder, [6, 4], JobRole::Merge) {
+            Err(JobProgress::Missing { shards, .. }) => prop_assert_eq!(shards[0].0, shard),
             other => prop_assert!(false, "{:?}", other),
         }
     }
@@ -93,7 +93,7 @@ proptest! {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("out.state");
         fs::write(&path, &bytes).unwrap();
-        prop_assert!(Journal::open(&path, key("a"), PROGRAM, Opening::Resume, Duration::ZERO).is_err());
+        prop_assert!(Journal::open(&path, key("a"), PROGRAM, OpenMode::Resume, Duration::ZERO).is_err());
         fs::write(folder.path().join("job.json"), &bytes).unwrap();
         prop_assert!(Job::open(folder.path(), PROGRAM).is_err());
     }

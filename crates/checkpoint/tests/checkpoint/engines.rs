@@ -3,7 +3,7 @@
 use crate::jobs::{plan, run};
 use crate::toy::{PROGRAM, toy};
 use sightlines_checkpoint::engine::{Did, Engine, EngineError, Host, Merge, Round, Rounds, run_rounds};
-use sightlines_checkpoint::{Outcome, Role};
+use sightlines_checkpoint::{JobProgress, JobRole};
 use sightlines_progress::{Observer, Progress};
 use std::cell::Cell;
 use std::ops::ControlFlow;
@@ -23,7 +23,7 @@ impl Engine for Forgetful<'_> {
         self.n_rounds.set(self.n_rounds.get() + 1);
         let n_forgotten = usize::from(attempt == 1 || self.is_hopeless);
         for &shard in &round.shards[n_forgotten..] {
-            assert_eq!(run(round.job.folder(), N, Role::shard(shard)), Err(Outcome::Done));
+            assert_eq!(run(round.job.folder(), N, JobRole::shard(shard)), Err(JobProgress::Done));
         }
         Ok(Did::Shards)
     }
@@ -38,9 +38,9 @@ fn rounds(
     let observe = || -> Box<dyn Observer> { Box::new(|_: Progress| ControlFlow::Continue(())) };
     let host = Host { observe: &observe, stop, warn: |_| {}, said: |_| {} };
     run_rounds((folder, PROGRAM), (engine, retries), &host, || {
-        Ok(match run(folder, N, Role::Merge) {
+        Ok(match run(folder, N, JobRole::Merge) {
             Ok(bytes) => Merge::Written(bytes),
-            Err(Outcome::Missing { phase, shards }) => Merge::Missing { phase, shards },
+            Err(JobProgress::Missing { phase, shards }) => Merge::Missing { phase, shards },
             Err(_) => Merge::Planned,
         })
     })

@@ -2,7 +2,7 @@
 
 use crate::toy::{PROGRAM, key, toy};
 use proptest::prelude::*;
-use sightlines_checkpoint::{Job, JobError, JobStore, Manifest, Outcome, Role, ShardState};
+use sightlines_checkpoint::{Job, JobError, JobProgress, JobRole, JobStore, Manifest, ShardState};
 use sightlines_progress::{Halt, UnitStore};
 use std::fs;
 use std::path::Path;
@@ -17,7 +17,7 @@ pub(crate) fn plan(folder: &Path, of: &str, max_shards: usize) -> Result<Job, Jo
 }
 
 /// Goes through a bake as a role; its answer, or how far it came.
-pub(crate) fn run(folder: &Path, n: [usize; 2], role: Role) -> Result<Vec<u8>, Outcome> {
+pub(crate) fn run(folder: &Path, n: [usize; 2], role: JobRole) -> Result<Vec<u8>, JobProgress> {
     let store = JobStore::new(Job::open(folder, PROGRAM).unwrap(), role, Duration::ZERO).unwrap();
     toy(n).bake(Some(&store)).map_err(|halt| {
         assert_eq!(halt, Halt::Shared);
@@ -38,14 +38,14 @@ proptest! {
         let expected = toy(n).bake(None).unwrap();
         let mut n_rounds = 0;
         let merged = loop {
-            match run(&folder, n, Role::Merge) {
+            match run(&folder, n, JobRole::Merge) {
                 Ok(bytes) => break bytes,
-                Err(Outcome::Planned { shards, .. }) => {
+                Err(JobProgress::Planned { shards, .. }) => {
                     let mut todo: Vec<usize> = shards.clone().chain(shards.take(1)).collect();
                     let by = order.rotate_left(n_rounds * 9);
                     todo.sort_by_key(|&shard| (by.wrapping_mul(shard as u64 * 2 + 1) >> 7, shard));
                     for shard in todo {
-                        prop_assert_eq!(run(&folder, n, Role::shard(shard)), Err(Outcome::Done));
+                        prop_assert_eq!(run(&folder, n, JobRole::shard(shard)), Err(JobProgress::Done));
                     }
                 }
                 Err(other) => prop_assert!(false, "{:?}", other),
@@ -67,9 +67,9 @@ proptest! {
 /// A job with all parts of its first phase, of six units in three shards.
 pub(crate) fn first_phase(folder: &Path) -> Job {
     plan(folder, "a", 3).unwrap();
-    assert_eq!(run(folder, [6, 4], Role::Merge), Err(Outcome::Planned { phase: 0, shards: 0..3 }));
+    assert_eq!(run(folder, [6, 4], JobRole::Merge), Err(JobProgress::Planned { phase: 0, shards: 0..3 }));
     for shard in 0..3 {
-        assert_eq!(run(folder, [6, 4], Role::shard(shard)), Err(Outcome::Done));
+        assert_eq!(run(folder, [6, 4], JobRole::shard(shard)), Err(JobProgress::Done));
     }
     Job::open(folder, PROGRAM).unwrap()
 }
@@ -95,7 +95,7 @@ fn what_is_missing_or_broken_is_named() {
     let job = first_phase(&folder);
     let missing = |expected: &[(usize, ShardState)]| {
         let shards = expected.to_vec();
-        assert_eq!(run(&folder, [6, 4], Role::Merge), Err(Outcome::Missing { phase: 0, shards }));
+        assert_eq!(run(&folder, [6, 4], JobRole::Merge), Err(JobProgress::Missing { phase: 0, shards }));
         assert!(expected.iter().all(|(shard, state)| job.state(*shard).unwrap() == *state));
     };
     let parts: Vec<Vec<u8>> = (0..3).map(|shard| fs::read(job.part_path(shard)).unwrap()).collect();
@@ -112,15 +112,15 @@ fn what_is_missing_or_broken_is_named() {
     assert!(matches!(job.state(1).unwrap(), ShardState::Broken(text) if text.contains("it is cut off after byte")));
     let other = all.path().join("other");
     plan(&other, "b", 3).unwrap();
-    assert!(matches!(run(&other, [6, 4], Role::Merge), Err(Outcome::Planned { .. })));
-    assert_eq!(run(&other, [6, 4], Role::shard(1)), Err(Outcome::Done));
+    assert!(matches!(run(&other, [6, 4], JobRole::Merge), Err(JobProgress::Planned { .. })));
+    assert_eq!(run(&other, [6, 4], JobRole::shard(1)), Err(JobProgress::Done));
     fs::copy(Job::open(&other, PROGRAM).unwrap().part_path(1), job.part_path(1)).unwrap();
     let text = format!("{name}: the results are of another input or of other options");
     missing(&[(1, ShardState::Broken(text))]);
     // A process that does the shard replaces what is broken.
-    assert_eq!(run(&folder, [6, 4], Role::shard(1)), Err(Outcome::Done));
+    assert_eq!(run(&folder, [6, 4], JobRole::shard(1)), Err(JobProgress::Done));
     assert_eq!(fs::read(job.part_path(1)).unwrap(), parts[1]);
-    assert!(matches!(run(&folder, [6, 4], Role::Merge), Err(Outcome::Planned { phase: 1, .. })));
+    assert!(matches!(run(&folder, [6, 4], JobRole::Merge), Err(JobProgress::Planned { phase: 1, .. })));
 }
 
 /// A shard goes on from what stopped processes left, and two at once write the same part.
@@ -131,7 +131,7 @@ fn shards_go_on_and_may_be_done_at_once() {
     let job = first_phase(&folder);
     let part = fs::read(job.part_path(1)).unwrap();
     fs::remove_file(job.part_path(1)).unwrap();
-    let store = |job: &Job| JobStore::new(job.clone(), Role::shard(1), Duration::ZERO).unwrap();
+    let store = |job: &Job| JobStore::new(job.clone(), JobRole::shard(1), Duration::ZERO).unwrap();
     let mut stopped = toy([6, 4]);
     stopped.stop_after = 1;
     assert_eq!(stopped.bake(Some(&store(&job))), Err(Halt::Store("killed".to_owned())));
@@ -151,7 +151,7 @@ fn shards_go_on_and_may_be_done_at_once() {
     assert_eq!(fs::read(job.part_path(1)).unwrap(), part);
     std::thread::scope(|scope| {
         for _ in 0..4 {
-            scope.spawn(|| assert_eq!(run(&folder, [6, 4], Role::shard(2)), Err(Outcome::Done)));
+            scope.spawn(|| assert_eq!(run(&folder, [6, 4], JobRole::shard(2)), Err(JobProgress::Done)));
         }
     });
     assert_eq!(job.state(2).unwrap(), ShardState::Done);
@@ -170,14 +170,14 @@ fn other_inputs_and_programs_are_refused() {
         "{error}"
     );
     // A bake with other units than were planned.
-    let store = JobStore::new(job.clone(), Role::shard(1), Duration::ZERO).unwrap();
+    let store = JobStore::new(job.clone(), JobRole::shard(1), Duration::ZERO).unwrap();
     let Err(Halt::Store(text)) = toy([7, 4]).bake(Some(&store)) else { panic!("it went on") };
     assert!(text.starts_with("the job was planned with 6 units of phase pairs, and there are 7"), "{text}");
     assert!(matches!(
-        JobStore::new(job, Role::shard(3), Duration::ZERO),
+        JobStore::new(job, JobRole::shard(3), Duration::ZERO),
         Err(JobError::NoShard { shard: 3, n: 3, .. })
     ));
-    let stranger = JobStore::new(Job::open(&folder, PROGRAM).unwrap(), Role::Merge, Duration::ZERO).unwrap();
+    let stranger = JobStore::new(Job::open(&folder, PROGRAM).unwrap(), JobRole::Merge, Duration::ZERO).unwrap();
     assert!(!stranger.wants("pairs", 0) && stranger.save("pairs", 0, b"").is_err());
 }
 
@@ -192,16 +192,16 @@ proptest! {
         let folders = ["alone", "together"].map(|name| all.path().join(name));
         folders.iter().for_each(|folder| drop(plan(folder, "a", max_shards).unwrap()));
         let mut n_rounds = 0;
-        while let Err(Outcome::Planned { shards, .. }) = run(&folders[0], n, Role::Merge) {
-            prop_assert_eq!(run(&folders[1], n, Role::Merge), Err(Outcome::Planned { phase: n_rounds, shards: shards.clone() }));
-            shards.clone().for_each(|shard| assert_eq!(run(&folders[0], n, Role::shard(shard)), Err(Outcome::Done)));
+        while let Err(JobProgress::Planned { shards, .. }) = run(&folders[0], n, JobRole::Merge) {
+            prop_assert_eq!(run(&folders[1], n, JobRole::Merge), Err(JobProgress::Planned { phase: n_rounds, shards: shards.clone() }));
+            shards.clone().for_each(|shard| assert_eq!(run(&folders[0], n, JobRole::shard(shard)), Err(JobProgress::Done)));
             // Four groups, named from the last shard on, some shards twice.
             for group in 0..4 {
                 let is_of = |shard: &usize| groups.rotate_left(*shard as u32 * 7 + 1) % 4 == group;
                 let mut of: Vec<usize> = shards.clone().rev().filter(is_of).collect();
                 of.extend(of.first().copied());
                 if !of.is_empty() {
-                    prop_assert_eq!(run(&folders[1], n, Role::Shards(of)), Err(Outcome::Done));
+                    prop_assert_eq!(run(&folders[1], n, JobRole::Shards(of)), Err(JobProgress::Done));
                 }
             }
             let jobs = [0, 1].map(|k| Job::open(&folders[k], PROGRAM).unwrap());
@@ -211,7 +211,7 @@ proptest! {
             }
             n_rounds += 1;
         }
-        prop_assert_eq!(run(&folders[1], n, Role::Merge), Ok(toy(n).bake(None).unwrap()));
+        prop_assert_eq!(run(&folders[1], n, JobRole::Merge), Ok(toy(n).bake(None).unwrap()));
     }
 }
 
@@ -221,22 +221,22 @@ fn parts_of_a_group_are_written_one_by_one() {
     let all = tempfile::tempdir().unwrap();
     let folder = all.path().join("job");
     plan(&folder, "a", 4).unwrap();
-    assert_eq!(run(&folder, [12, 2], Role::Merge), Err(Outcome::Planned { phase: 0, shards: 0..4 }));
+    assert_eq!(run(&folder, [12, 2], JobRole::Merge), Err(JobProgress::Planned { phase: 0, shards: 0..4 }));
     let job = Job::open(&folder, PROGRAM).unwrap();
     let n_units = |shard: usize| job.shard(shard).unwrap().1.end - job.shard(shard).unwrap().1.begin;
     let mut stopped = toy([12, 2]);
     stopped.stop_after = n_units(1) + n_units(2) + 1;
-    let store = JobStore::new(job.clone(), Role::Shards(vec![3, 1, 2]), Duration::ZERO).unwrap();
+    let store = JobStore::new(job.clone(), JobRole::Shards(vec![3, 1, 2]), Duration::ZERO).unwrap();
     assert_eq!(stopped.bake(Some(&store)), Err(Halt::Store("killed".to_owned())));
     let states = [0, 1, 2, 3].map(|shard| job.state(shard).unwrap());
     assert_eq!(states, [ShardState::Missing, ShardState::Done, ShardState::Done, ShardState::Partial(1)]);
     // Who goes on computes what is missing.
     let going_on = toy([12, 2]);
-    let store = JobStore::new(job.clone(), Role::Shards(vec![0, 3]), Duration::ZERO).unwrap();
+    let store = JobStore::new(job.clone(), JobRole::Shards(vec![0, 3]), Duration::ZERO).unwrap();
     assert_eq!(going_on.bake(Some(&store)), Err(Halt::Shared));
     assert_eq!(going_on.n(), n_units(0) + n_units(3) - 1);
-    assert!(matches!(run(&folder, [12, 2], Role::Merge), Err(Outcome::Planned { phase: 1, .. })));
+    assert!(matches!(run(&folder, [12, 2], JobRole::Merge), Err(JobProgress::Planned { phase: 1, .. })));
     // Shards of two phases cannot be done together: the second waits for all of the first.
-    let refused = JobStore::new(Job::open(&folder, PROGRAM).unwrap(), Role::Shards(vec![3, 4]), Duration::ZERO);
+    let refused = JobStore::new(Job::open(&folder, PROGRAM).unwrap(), JobRole::Shards(vec![3, 4]), Duration::ZERO);
     assert!(matches!(&refused, Err(JobError::TwoPhases { shards: [3, 4], .. })), "{refused:?}");
 }

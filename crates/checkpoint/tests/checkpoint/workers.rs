@@ -3,7 +3,7 @@
 use crate::jobs::{first_phase, plan};
 use crate::toy::{PROGRAM, Toy, toy};
 use proptest::prelude::*;
-use sightlines_checkpoint::{Job, JobStore, Outcome, Role, ShardState};
+use sightlines_checkpoint::{Job, JobProgress, JobRole, JobStore, ShardState};
 use sightlines_progress::Halt;
 use std::fs;
 use std::path::Path;
@@ -12,7 +12,7 @@ use std::thread;
 use std::time::Duration;
 
 fn worker(folder: &Path, n_workers: usize) -> JobStore {
-    let role = Role::Worker { n_workers, stop: || false };
+    let role = JobRole::Worker { n_workers, stop: || false };
     JobStore::new(Job::open(folder, PROGRAM).unwrap(), role, Duration::ZERO).unwrap()
 }
 
@@ -41,7 +41,7 @@ proptest! {
         let folder = all.path().join("job");
         plan(&folder, "a", max_shards).unwrap();
         let (shared, expected) = (toy(n), toy(n).bake(None).unwrap());
-        let ends: Vec<Result<Vec<u8>, Outcome>> = thread::scope(|scope| {
+        let ends: Vec<Result<Vec<u8>, JobProgress>> = thread::scope(|scope| {
             let one = || {
                 let store = worker(&folder, n_workers);
                 work(&shared, &store).map_err(|halt| {
@@ -54,7 +54,7 @@ proptest! {
         });
         let written: Vec<&Vec<u8>> = ends.iter().flatten().collect();
         prop_assert_eq!(written, vec![&expected]);
-        prop_assert!(ends.iter().all(|end| matches!(end, Ok(_) | Err(Outcome::Done))));
+        prop_assert!(ends.iter().all(|end| matches!(end, Ok(_) | Err(JobProgress::Done))));
         prop_assert_eq!(shared.n(), n[0] + n[1]);
         prop_assert_eq!(others(&folder.join("parts"), ".part"), Vec::<String>::new());
         prop_assert_eq!(others(&folder, ".written").len(), 2, "the manifest and the folder of parts");
@@ -63,10 +63,10 @@ proptest! {
             let other = all.path().join("other");
             plan(&other, "a", max_shards).unwrap();
             let twice = toy(n);
-            let planned = JobStore::new(Job::open(&other, PROGRAM).unwrap(), Role::Merge, Duration::ZERO).unwrap();
+            let planned = JobStore::new(Job::open(&other, PROGRAM).unwrap(), JobRole::Merge, Duration::ZERO).unwrap();
             prop_assert_eq!(twice.bake(Some(&planned)), Err(Halt::Shared));
             let job = planned.job();
-            let role = || Role::Shards((0..job.manifest().n_shards()).collect());
+            let role = || JobRole::Shards((0..job.manifest().n_shards()).collect());
             let stores = [0, 1].map(|_| JobStore::new(job.clone(), role(), Duration::from_secs(9)).unwrap());
             stores.iter().for_each(|store| assert_eq!(twice.bake(Some(store)), Err(Halt::Shared)));
             prop_assert_eq!(twice.n(), 2 * n[0]);
@@ -111,7 +111,7 @@ fn workers_wait_for_others() {
     let mut stopped = toy([3, 3]);
     stopped.stop_after = 1;
     assert_eq!(work(&stopped, &holder), Err(Halt::Store("killed".to_owned())));
-    let role = Role::Worker { n_workers: 2, stop: || STOP.load(Relaxed) };
+    let role = JobRole::Worker { n_workers: 2, stop: || STOP.load(Relaxed) };
     let waiting = JobStore::new(Job::open(&folder, PROGRAM).unwrap(), role, Duration::ZERO).unwrap();
     let idle = toy([3, 3]);
     thread::scope(|scope| {
@@ -158,7 +158,7 @@ fn one_worker_after_the_other_writes_until_one_has() {
     });
     fs::write(&outputs[0], "what the bake makes").unwrap();
     second.end_writing().unwrap();
-    assert_eq!((third.begin_writing(&outputs), third.outcome()), (Err(Halt::Shared), Some(Outcome::Done)));
+    assert_eq!((third.begin_writing(&outputs), third.outcome()), (Err(Halt::Shared), Some(JobProgress::Done)));
     // What was removed is written again, and so is another output.
     let store = worker(&folder, 3);
     assert_eq!(store.begin_writing(&[all.path().join("other")]), Ok(()));
@@ -178,7 +178,7 @@ fn workers_refuse_what_is_damaged() {
     let store = worker(&folder, 1);
     assert_eq!(work(&toy([6, 4]), &store), Err(Halt::Shared));
     let outcome = store.outcome();
-    let Some(Outcome::Missing { phase: 0, shards }) = &outcome else { panic!("{outcome:?}") };
+    let Some(JobProgress::Missing { phase: 0, shards }) = &outcome else { panic!("{outcome:?}") };
     assert!(matches!(&shards[..], [(1, ShardState::Broken(_))]), "{shards:?}");
     fs::remove_file(job.part_path(1)).unwrap();
     let store = worker(&folder, 1);
@@ -196,15 +196,15 @@ fn thousands_of_shards_have_folders_of_their_own() {
     let folder = all.path().join("job");
     plan(&folder, "a", 5000).unwrap();
     let toy = toy([2001, 0]);
-    let store = |role: Role| JobStore::new(Job::open(&folder, PROGRAM).unwrap(), role, Duration::ZERO).unwrap();
-    let bake = |role: Role| {
+    let store = |role: JobRole| JobStore::new(Job::open(&folder, PROGRAM).unwrap(), role, Duration::ZERO).unwrap();
+    let bake = |role: JobRole| {
         let store = store(role);
         assert_eq!(toy.bake(Some(&store)), Err(Halt::Shared));
         store.outcome().unwrap()
     };
-    assert_eq!(bake(Role::Merge), Outcome::Planned { phase: 0, shards: 0..2001 });
+    assert_eq!(bake(JobRole::Merge), JobProgress::Planned { phase: 0, shards: 0..2001 });
     let done = [0, 999, 1000, 1001, 1999, 2000];
-    assert_eq!(bake(Role::Shards(done.to_vec())), Outcome::Done);
+    assert_eq!(bake(JobRole::Shards(done.to_vec())), JobProgress::Done);
     let parts = |name: &str| {
         let mut names = others(&folder.join("parts").join(name), ".claim");
         names.retain(|name| name.contains(".part"));

@@ -1,7 +1,7 @@
 //! Builds that are stopped, and go on.
 
 use crate::common::{Folder, small_tower};
-use sightlines::checkpoint::{Journal, Key, Opening};
+use sightlines::checkpoint::{Journal, Key, OpenMode};
 use sightlines::progress::UnitStore;
 use std::process::{Child, Command, Stdio};
 use std::sync::LazyLock;
@@ -54,7 +54,7 @@ fn scene() -> (Folder, Vec<u8>, Duration) {
 fn journal(folder: &Folder) -> Journal {
     let bytes = folder.read(STATE);
     let key = Key(*bytes[12..28].first_chunk().unwrap());
-    Journal::open(&folder.path(STATE), key, env!("CARGO_PKG_VERSION"), Opening::Resume, Duration::ZERO).unwrap()
+    Journal::open(&folder.path(STATE), key, env!("CARGO_PKG_VERSION"), OpenMode::Resume, Duration::ZERO).unwrap()
 }
 
 /// Killed six times at moments of chance, every other time once it has more results, and taken up each time, a build ends with the bytes of one that was left alone.

@@ -4,7 +4,7 @@ use super::agreement::{block, plan};
 use super::exact::by_sequences;
 use super::missing::list_missing;
 use super::query::Query;
-use crate::{Budget, Doors, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph};
+use crate::{Doors, Method, Scratch, StepBudget, TableCells, View, VisibleSet, VisibleSubgraph};
 use proptest::prelude::*;
 use sightlines_pvs::{CellId, Table};
 use std::f64::consts::TAU;
@@ -16,7 +16,7 @@ fn subgraphs(table: &Table, view: &View) -> Vec<VisibleSubgraph> {
     roots.into_iter().map(prepare).collect()
 }
 
-fn look(method: Method, budget: Budget, subgraph: &VisibleSubgraph, view: &View) -> (Method, Vec<CellId>) {
+fn look(method: Method, budget: StepBudget, subgraph: &VisibleSubgraph, view: &View) -> (Method, Vec<CellId>) {
     let (mut scratch, mut seen) = (Scratch::new(), VisibleSet::new());
     seen.clear(1 << 10, 0);
     scratch.allow(budget);
@@ -32,17 +32,17 @@ fn faults(answer: &[CellId], exact: &[CellId], coarser: &[CellId]) -> usize {
 }
 
 /// Checks the answers of an eye within a budget; how many were exact, how many those of the incident portals, and how many between.
-fn check(table: &Table, view: &View, budget: Budget) -> Result<[usize; 3], TestCaseError> {
+fn check(table: &Table, view: &View, budget: StepBudget) -> Result<[usize; 3], TestCaseError> {
     let mut counts = [0; 3];
     for subgraph in subgraphs(table, view) {
         let (by, answer) = look(Method::Exact, budget, &subgraph, view);
-        let (best, exact) = look(Method::Exact, Budget::UNLIMITED, &subgraph, view);
+        let (best, exact) = look(Method::Exact, StepBudget::UNLIMITED, &subgraph, view);
         let (_, coarser) = look(Method::IncidentPortals, budget, &subgraph, view);
         prop_assert_eq!(best, Method::Exact);
         prop_assert_eq!(faults(&answer, &exact, &coarser), 0);
         if by == Method::Exact {
             prop_assert_eq!(&answer, &exact);
-        } else if budget == Budget::steps(0) {
+        } else if budget == StepBudget::steps(0) {
             prop_assert_eq!(&answer, &coarser);
         }
         counts[match (by, answer.len() < coarser.len()) {
@@ -67,7 +67,7 @@ proptest! {
     ) {
         prop_assume!(dir.iter().any(|x| x.abs() > 0.01));
         let view = View::perspective_horizontal(eye, dir, [0.0, 0.0, 1.0], fov, 1.25).unwrap();
-        let n: usize = check(&block(&doors), &view, Budget::steps(steps))?.iter().sum();
+        let n: usize = check(&block(&doors), &view, StepBudget::steps(steps))?.iter().sum();
         prop_assert!(n > 0);
     }
 
@@ -81,7 +81,7 @@ proptest! {
         steps in 0u64..4000,
     ) {
         let view = View::planar(eye, [turn.cos(), turn.sin()], fov).unwrap();
-        let n: usize = check(&plan(&doors, 6), &view, Budget::steps(steps))?.iter().sum();
+        let n: usize = check(&plan(&doors, 6), &view, StepBudget::steps(steps))?.iter().sum();
         prop_assert!(n > 0);
     }
 }
@@ -102,16 +102,16 @@ fn views() -> (Table, Vec<View>) {
 fn most_answers_are_exact() {
     let (table, views) = views();
     let (mut last, mut n_between) = (0, 0);
-    for steps in [0, 64, 256, 384, 512, 768, 1024, Budget::FRAME.n_steps(), u64::MAX] {
+    for steps in [0, 64, 256, 384, 512, 768, 1024, StepBudget::FRAME.n_steps(), u64::MAX] {
         let mut n_exact = 0;
         for view in &views {
-            let counts = check(&table, view, Budget::steps(steps)).unwrap();
+            let counts = check(&table, view, StepBudget::steps(steps)).unwrap();
             n_exact += counts[0];
             n_between += counts[2];
         }
         assert!(n_exact >= last, "{steps}: {n_exact}");
         assert!(steps > 0 || n_exact == 0);
-        assert!(steps < Budget::FRAME.n_steps() || n_exact * 10 > views.len() * 9, "{steps}: {n_exact}");
+        assert!(steps < StepBudget::FRAME.n_steps() || n_exact * 10 > views.len() * 9, "{steps}: {n_exact}");
         last = n_exact;
     }
     // Who has done some of the work has some of the gain.
@@ -125,8 +125,8 @@ fn whoever_drops_something_is_noticed() {
     let (mut n_stopped, mut n_dropped) = (0, 0);
     for view in &views {
         let subgraph = &subgraphs(&table, view)[0];
-        let (_, exact) = look(Method::Exact, Budget::UNLIMITED, subgraph, view);
-        let (by, mut coarser) = look(Method::Exact, Budget::steps(0), subgraph, view);
+        let (_, exact) = look(Method::Exact, StepBudget::UNLIMITED, subgraph, view);
+        let (by, mut coarser) = look(Method::Exact, StepBudget::steps(0), subgraph, view);
         assert_eq!((by, faults(&coarser, &exact, &coarser)), (Method::IncidentPortals, 0));
         let (mut scratch, mut seen, doors) = (Scratch::new(), VisibleSet::new(), Doors::all_open());
         seen.clear(1 << 10, 0);
@@ -150,7 +150,7 @@ fn queries_share_what_is_left() {
     let (table, views) = views();
     let subgraph = &subgraphs(&table, &views[9])[0];
     let (mut scratch, mut seen) = (Scratch::new(), VisibleSet::new());
-    scratch.allow(Budget::steps(2000));
+    scratch.allow(StepBudget::steps(2000));
     let mut left = vec![scratch.left()];
     let mut by = Method::Exact;
     while by == Method::Exact {
@@ -159,5 +159,5 @@ fn queries_share_what_is_left() {
         left.push(scratch.left());
         assert!(left.len() < 2000);
     }
-    assert!(left.len() > 3 && left.is_sorted_by(|a, b| a > b) && scratch.left() == Budget::steps(0));
+    assert!(left.len() > 3 && left.is_sorted_by(|a, b| a > b) && scratch.left() == StepBudget::steps(0));
 }

@@ -5,9 +5,9 @@
 ///
 /// Given to the queries by [`Scratch::allow`](super::Scratch::allow).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Budget(u64);
+pub struct StepBudget(u64);
 
-impl Budget {
+impl StepBudget {
     /// No bound.
     pub const UNLIMITED: Self = Self(u64::MAX);
     /// 4,096 steps, some tens of microseconds: what a frame of a walkthrough is allowed unless it is told otherwise. In open rooms many
@@ -38,12 +38,12 @@ pub(super) const JOIN: u64 = 4;
 
 impl Default for Work {
     fn default() -> Self {
-        Self::of(Budget::UNLIMITED)
+        Self::of(StepBudget::UNLIMITED)
     }
 }
 
 impl Work {
-    pub(super) const fn of(budget: Budget) -> Self {
+    pub(super) const fn of(budget: StepBudget) -> Self {
         Self { left: budget.0 }
     }
 

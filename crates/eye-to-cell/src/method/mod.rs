@@ -14,7 +14,7 @@ use crate::side::Side;
 use crate::subgraph::VisibleSubgraph;
 use crate::view::View;
 use crate::visible_set::VisibleSet;
-pub use budget::Budget;
+pub use budget::StepBudget;
 use budget::Work;
 use clip::Clipper;
 use exact::Frame;
@@ -76,16 +76,16 @@ impl Scratch {
         self.n_steps
     }
 
-    /// What all queries from here on may do together, until the next call; [`Budget::UNLIMITED`] at first. Once a frame, as a
+    /// What all queries from here on may do together, until the next call; [`StepBudget::UNLIMITED`] at first. Once a frame, as a
     /// rule. A query that finds nothing left takes the answer of the incident portals; one that comes to the end of it takes
     /// that for what it has not looked at yet.
-    pub fn allow(&mut self, budget: Budget) {
+    pub fn allow(&mut self, budget: StepBudget) {
         self.work = Work::of(budget);
     }
 
     /// What is left of that.
-    pub fn left(&self) -> Budget {
-        Budget::steps(self.work.left())
+    pub fn left(&self) -> StepBudget {
+        StepBudget::steps(self.work.left())
     }
 }
 
@@ -110,7 +110,7 @@ pub enum Method {
     IncidentPortals,
     /// Those to which a line leads from the eye, through portals, within the view; within rounding. The cost is that of
     /// the parts into which the cells' edges cut what is seen. Where that is out of all proportion, the answer is exact
-    /// near the eye, and that of the incident portals farther away; no scene that was measured came to that without a [`Budget`].
+    /// near the eye, and that of the incident portals farther away; no scene that was measured came to that without a [`StepBudget`].
     Exact,
 }
 

@@ -3,7 +3,7 @@
 use super::closed::is_closed_outwards;
 use super::role::Role;
 use super::surface::{Classification, Classified, SceneReadOptions};
-use super::{Axis, LengthUnit, SceneFile, SceneFormat, SceneInfo, Simplified};
+use super::{Axis, LengthUnit, SceneFile, SceneFormat, SceneInfo, Simplification};
 use crate::error::{Malformed, malformed};
 use crate::point::are_collinear;
 use sightlines_cells::{MovingObject, Point3, Scene, SceneObject};
@@ -52,14 +52,14 @@ pub(super) struct Builder {
     doors: Vec<u32>,
     /// Of all objects up to the last that has one.
     sources: Vec<Option<ObjectSource>>,
-    simplified: Option<Simplified>,
+    simplified: Option<Simplification>,
     /// What a user should hear of the file.
     pub(super) warnings: Vec<String>,
 }
 
 impl Builder {
     /// No objects yet, and what the file says of the whole.
-    pub(super) fn saying(simplified: Option<Simplified>) -> Self {
+    pub(super) fn saying(simplified: Option<Simplification>) -> Self {
         Self { simplified, ..Self::default() }
     }
 

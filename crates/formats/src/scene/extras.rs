@@ -1,6 +1,6 @@
 //! Extras of a document: roles, what moves, and whether the whole is simplified. They may contain anything.
 
-use super::Simplified;
+use super::Simplification;
 use super::role::Role;
 use crate::json::{Scalar, Seed, Shape};
 use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess};
@@ -65,10 +65,10 @@ pub(super) fn stated<'de, D: Deserializer<'de>>(deserializer: D) -> Result<State
 }
 
 /// Whether extras state that a scene was simplified; if they do not state how, the worst is assumed.
-pub(super) fn simplified<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Simplified>, D::Error> {
+pub(super) fn simplified<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Simplification>, D::Error> {
     let found = Seed(Path(&OCCLUDER)).deserialize(deserializer)?;
     let occluder = matches!(found, Found { n_keys: 3, leaf: Leaf::Truth(true), .. });
-    Ok((found.n_keys >= 2).then_some(Simplified { occluder }))
+    Ok((found.n_keys >= 2).then_some(Simplification { occluder }))
 }
 
 /// The value at the end of a path, and how many keys of the path exist.

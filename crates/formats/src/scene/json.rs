@@ -3,7 +3,7 @@
 //! Numbers of transforms are read in double precision, as JSON has them. In single precision a building
 //! that is written 10,000 km from the origin would have its walls moved against each other.
 
-use super::Simplified;
+use super::Simplification;
 use super::extras::Stated;
 use super::movers::{NodeExtensions, moves_everything};
 use serde::de::{Deserializer, IgnoredAny};
@@ -57,7 +57,7 @@ pub(super) struct Asset {
     pub(super) version: String,
     /// Whether its extras mark it as simplified: `{"sightlines": {"simplified": {"occluder": false}}}`.
     #[serde(default, rename = "extras", deserialize_with = "super::extras::simplified")]
-    pub(super) simplified: Option<Simplified>,
+    pub(super) simplified: Option<Simplification>,
 }
 
 #[derive(Debug, Default, Deserialize)]

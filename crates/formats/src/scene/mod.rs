@@ -104,7 +104,7 @@ pub struct SceneInfo {
     /// Number of triangles that hide, of which engines draw the fronts only (glTF: materials that are not `doubleSided`).
     pub n_single_sided_triangles: usize,
     /// Set if the file states that its scene was made from one with more triangles.
-    pub simplified: Option<Simplified>,
+    pub simplified: Option<Simplification>,
     /// What it was read with.
     pub read_with: SceneReadOptions,
     /// The objects that are not simply walls, ascending.
@@ -128,7 +128,7 @@ impl SceneInfo {
 
 /// How a scene with fewer triangles is related to the one that it was made from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Simplified {
+pub struct Simplification {
     /// Whether it lies inside the original, so that what it hides was hidden before: triangles were only taken
     /// away. A scene of which triangles were moved may hide what can be seen, and must not be used to hide.
     ///

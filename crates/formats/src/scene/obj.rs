@@ -7,7 +7,7 @@ use super::polygon::{MAX_WINDING_CORNERS, PolygonError, triangulate};
 use super::role::{MeshNames, Role, role_of_name};
 use super::surface::{Classification, Classifier, Evidence, SceneReadOptions};
 use super::write_obj::{OCCLUDER, SEE_THROUGH, SIMPLIFIED, STATEMENT};
-use super::{MAX_ELEMENTS, SceneFile, SceneFormat, Simplified};
+use super::{MAX_ELEMENTS, SceneFile, SceneFormat, Simplification};
 use crate::beside::Neighbours;
 use crate::bytes::without_mark;
 use crate::error::{Malformed, malformed};
@@ -190,7 +190,7 @@ struct Obj {
     /// What each line that names files with materials has behind its keyword.
     libraries: Vec<String>,
     /// What a comment of ours states of the whole.
-    simplified: Option<Simplified>,
+    simplified: Option<Simplification>,
 }
 
 /// Invariant: `first_corner` ascends, and every face has three corners or more.
@@ -245,7 +245,7 @@ impl Obj {
     fn statement(&mut self, text: &str) {
         let mut words = text.split_ascii_whitespace();
         match words.next() {
-            Some(SIMPLIFIED) => self.simplified = Some(Simplified { occluder: words.eq([OCCLUDER]) }),
+            Some(SIMPLIFIED) => self.simplified = Some(Simplification { occluder: words.eq([OCCLUDER]) }),
             Some(SEE_THROUGH) => self.groups.last_mut().expect("there is always a group").is_see_through = true,
             _ => {}
         }

@@ -1,6 +1,6 @@
 //! Scenes in space as GLB.
 
-use super::Simplified;
+use super::Simplification;
 use super::write_error::SceneWriteError;
 use sightlines_cells::{Point3, Scene, SceneObject};
 use sightlines_geometry::Aabb;
@@ -23,7 +23,7 @@ pub fn write_glb(scene: &Scene) -> Result<Vec<u8>, SceneWriteError> {
 ///
 /// # Errors
 /// As [`write_glb`].
-pub fn write_simplified_glb(scene: &Scene, simplified: Simplified) -> Result<Vec<u8>, SceneWriteError> {
+pub fn write_simplified_glb(scene: &Scene, simplified: Simplification) -> Result<Vec<u8>, SceneWriteError> {
     Ok(write(scene, Numbers::Exact, Some(simplified))?.0)
 }
 
@@ -49,7 +49,7 @@ pub struct Rounding {
 pub fn write_rounded_glb(
     scene: &Scene,
     around: &Aabb<3>,
-    simplified: Simplified,
+    simplified: Simplification,
 ) -> Result<(Vec<u8>, Rounding), SceneWriteError> {
     let mut coordinates = scene.objects().iter().flat_map(|o| o.vertices.iter().flatten());
     if coordinates.all(|&value| f64::from(value as f32) == value) {
@@ -82,7 +82,7 @@ impl Numbers {
 fn write(
     scene: &Scene,
     numbers: Numbers,
-    simplified: Option<Simplified>,
+    simplified: Option<Simplification>,
 ) -> Result<(Vec<u8>, Rounding), SceneWriteError> {
     let mut parts = Parts { numbers, ..Parts::default() };
     for (k, object) in scene.objects().iter().enumerate() {
@@ -90,7 +90,7 @@ fn write(
     }
     let rounding = parts.rounding;
     let is_rounded = rounding.n_coordinates > 0;
-    let simplified = simplified.map(|s| Simplified { occluder: s.occluder && !is_rounded });
+    let simplified = simplified.map(|s| Simplification { occluder: s.occluder && !is_rounded });
     Ok((parts.into_glb(simplified)?, rounding))
 }
 
@@ -233,8 +233,8 @@ impl Parts {
         self.views.push(format_args!(r#"{{"buffer":0,{bytes},"target":{target}}}"#))
     }
 
-    fn into_glb(self, simplified: Option<Simplified>) -> Result<Vec<u8>, SceneWriteError> {
-        let stated = |s: Simplified| format!(r#"{{"sightlines":{{"simplified":{{"occluder":{}}}}}}}"#, s.occluder);
+    fn into_glb(self, simplified: Option<Simplification>) -> Result<Vec<u8>, SceneWriteError> {
+        let stated = |s: Simplification| format!(r#"{{"sightlines":{{"simplified":{{"occluder":{}}}}}}}"#, s.occluder);
         let extras = member("extras", simplified.map(stated));
         let roots: Vec<String> = (0..self.nodes.n).map(|node| node.to_string()).collect();
         let asset = format_args!(r#"{{"version":"2.0"{extras}}}"#);

@@ -1,7 +1,7 @@
 //! Scenes in space as OBJ.
 
 use super::write_error::SceneWriteError;
-use super::{MIRROR_SUFFIX, Simplified};
+use super::{MIRROR_SUFFIX, Simplification};
 use sightlines_cells::{Scene, SceneObject};
 use std::fmt::Write;
 
@@ -28,11 +28,11 @@ pub fn write_obj(scene: &Scene) -> Result<Vec<u8>, SceneWriteError> {
 ///
 /// # Errors
 /// As [`write_obj`].
-pub fn write_simplified_obj(scene: &Scene, simplified: Simplified) -> Result<Vec<u8>, SceneWriteError> {
+pub fn write_simplified_obj(scene: &Scene, simplified: Simplification) -> Result<Vec<u8>, SceneWriteError> {
     write(scene, Some(simplified))
 }
 
-fn write(scene: &Scene, simplified: Option<Simplified>) -> Result<Vec<u8>, SceneWriteError> {
+fn write(scene: &Scene, simplified: Option<Simplification>) -> Result<Vec<u8>, SceneWriteError> {
     let mut text = String::new();
     let mut line = |line: std::fmt::Arguments<'_>| writeln!(text, "{line}").expect("a string takes any text");
     if let Some(simplified) = simplified {

@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use serde_json::{Value, json};
 use sightlines_formats::SceneFile;
 use sightlines_formats::scene::{
-    GltfSource, RewriteError, Simplified, parse_glb, parse_glb_with_source, read_scene, read_scene_with_source,
+    GltfSource, RewriteError, Simplification, parse_glb, parse_glb_with_source, read_scene, read_scene_with_source,
     write_glb, write_simplified_glb,
 };
 use std::fs;
@@ -538,7 +538,7 @@ fn simplified_scenes_say_so() {
     assert_eq!(file.info.simplified, None);
     let unchanged = vec![None; 6];
     let says = |bytes: &[u8]| parse_glb(bytes, None).unwrap().info.simplified.map(|s| s.occluder);
-    let of = |occluder| source.rewrite(&unchanged, Some(Simplified { occluder })).unwrap();
+    let of = |occluder| source.rewrite(&unchanged, Some(Simplification { occluder })).unwrap();
     assert_eq!([says(&of(true)), says(&of(false))], [Some(true), Some(false)]);
     assert_eq!(
         text_of(&of(true))["asset"]["extras"],
@@ -546,17 +546,17 @@ fn simplified_scenes_say_so() {
     );
     // What was moved once stays moved.
     let again = parse_glb_with_source(of(false), None).unwrap().1;
-    assert_eq!(says(&again.rewrite(&unchanged, Some(Simplified { occluder: true })).unwrap()), Some(false));
+    assert_eq!(says(&again.rewrite(&unchanged, Some(Simplification { occluder: true })).unwrap()), Some(false));
     assert_eq!(says(&again.rewrite(&unchanged, None).unwrap()), Some(false));
     let mut doc = Doc::new(json!([{"mesh": 0}]));
     doc.triangle();
     let scene = parse_glb(&doc.glb(), None).unwrap().scene;
-    assert_eq!(says(&write_simplified_glb(&scene, Simplified { occluder: false }).unwrap()), Some(false));
+    assert_eq!(says(&write_simplified_glb(&scene, Simplification { occluder: false }).unwrap()), Some(false));
     assert_eq!(says(&write_glb(&scene).unwrap()), None);
     // Extras of another form are not lost.
     let mut doc = rich_doc();
     doc.json["asset"]["extras"] = json!(["a", 1]);
-    let text = text_of(&with_source(&doc).1.rewrite(&unchanged, Some(Simplified { occluder: true })).unwrap());
+    let text = text_of(&with_source(&doc).1.rewrite(&unchanged, Some(Simplification { occluder: true })).unwrap());
     assert_eq!(text["asset"]["extras"]["was"], json!(["a", 1]));
 }
 
@@ -616,7 +616,7 @@ fn real(path: &Path) -> Result<(), String> {
     // What nothing refers to does not come along, and little else is new.
     assert!(unchanged.len() < bytes.len() + bytes.len() / 20 + 4096, "{} after {}", unchanged.len(), bytes.len());
     let changes = every(&file, |k| k % 2 == 1);
-    let after = source.rewrite(&changes, Some(Simplified { occluder: true })).unwrap();
+    let after = source.rewrite(&changes, Some(Simplification { occluder: true })).unwrap();
     eprintln!(
         "{}: {} bytes, {} unchanged, {} with half the triangles",
         path.display(),

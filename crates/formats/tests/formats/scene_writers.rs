@@ -2,7 +2,7 @@
 
 use sightlines_cells::{MovingObject, Scene, SceneObject};
 use sightlines_formats::scene::{
-    Rounding, SceneWriteError, Simplified, parse_glb, parse_obj, write_glb, write_obj, write_rounded_glb,
+    Rounding, SceneWriteError, Simplification, parse_glb, parse_obj, write_glb, write_obj, write_rounded_glb,
     write_simplified_glb, write_simplified_obj,
 };
 use sightlines_geometry::{Aabb, Random};
@@ -17,7 +17,7 @@ fn scene(objects: Vec<SceneObject>) -> Scene {
     Scene::new(objects).unwrap()
 }
 
-const OCCLUDER: Simplified = Simplified { occluder: true };
+const OCCLUDER: Simplification = Simplification { occluder: true };
 
 #[test]
 fn an_obj_is_read_again_bit_by_bit() {
@@ -40,13 +40,13 @@ fn an_obj_is_read_again_bit_by_bit() {
         assert_ne!(parse_obj(text.replacen(from, to, 1).as_bytes()).unwrap().scene, scene, "{to}");
     }
     for occluder in [true, false] {
-        let said = Simplified { occluder };
+        let said = Simplification { occluder };
         let read = parse_obj(&write_simplified_obj(&scene, said).unwrap()).unwrap();
         assert_eq!((read.info.simplified, &read.scene), (Some(said), &scene));
     }
     // What is not stated as we state it is taken for the worst.
     let other = text.replacen("o ", "#sightlines simplified occluder, more or less\no ", 1);
-    assert_eq!(parse_obj(other.as_bytes()).unwrap().info.simplified, Some(Simplified { occluder: false }));
+    assert_eq!(parse_obj(other.as_bytes()).unwrap().info.simplified, Some(Simplification { occluder: false }));
 }
 
 #[test]
@@ -104,7 +104,7 @@ fn rounding_is_counted_and_small() {
         let (bytes, rounding) = write_rounded_glb(&scene, &around, OCCLUDER).unwrap();
         assert_eq!(changes(&scene, &bytes), rounding);
         assert!(rounding.n_coordinates > 5 && rounding.largest < most, "{far} {rounding:?}");
-        assert_eq!(parse_glb(&bytes, None).unwrap().info.simplified, Some(Simplified { occluder: false }));
+        assert_eq!(parse_glb(&bytes, None).unwrap().info.simplified, Some(Simplification { occluder: false }));
         // An impostor rounds without a translation.
         let plain = Aabb { min: [-1e300; 3], max: [1e300; 3] };
         let (bytes, plain) = write_rounded_glb(&scene, &plain, OCCLUDER).unwrap();

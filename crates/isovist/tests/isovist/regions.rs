@@ -4,7 +4,7 @@ use crate::oracle::{sees_brute, sees_touching};
 use crate::{Walls, plan, point, walls};
 use proptest::prelude::*;
 use sightlines_geometry::Point2;
-use sightlines_isovist::{Region, Touch, WallMesh};
+use sightlines_isovist::{Touch, ViewerRegion, WallMesh};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Whether no wall touches the triangle from an eye to a piece, but for the eye and the piece, in integers: the walls are cut at all lines
@@ -39,12 +39,12 @@ proptest! {
         let frame = sightlines_geometry::Aabb { min: [-9.0; 2], max: [150.0; 2] };
         let mesh = WallMesh::with_frame(&plan(&scaled), frame).unwrap();
         let points = path.map(point);
-        let all = mesh.sees_all(point(eye), Region::Path(&points), Touch::Blocks).unwrap();
+        let all = mesh.sees_all(point(eye), ViewerRegion::Path(&points), Touch::Blocks).unwrap();
         let truth = clear(&scaled, eye, path[0], path[1]) && clear(&scaled, eye, path[1], path[2]);
         prop_assert_eq!(all, truth);
-        let polygon = mesh.sees_all(point(eye), Region::Polygon(&points), Touch::Blocks).unwrap();
+        let polygon = mesh.sees_all(point(eye), ViewerRegion::Polygon(&points), Touch::Blocks).unwrap();
         prop_assert_eq!(polygon, truth && clear(&scaled, eye, path[2], path[0]));
-        let passes = mesh.sees_all(point(eye), Region::Path(&points), Touch::Passes).unwrap();
+        let passes = mesh.sees_all(point(eye), ViewerRegion::Path(&points), Touch::Passes).unwrap();
         prop_assert!(passes || !all);
         for k in 0..=12 {
             let at = |a: [i64; 2], b: [i64; 2]| [0, 1].map(|i| a[i] + (b[i] - a[i]) / 12 * k);
@@ -62,8 +62,8 @@ fn a_pillar_in_front_of_a_region_counts() {
     let at = |x: f64, y: f64| Point2::new(x, y);
     let (eye, wall) = (at(-4.0, 0.5), [at(4.0, -8.0), at(4.0, 8.0)]);
     assert!(wall.iter().all(|&p| mesh.sees(eye, p, Touch::Blocks).unwrap()), "both ends are seen");
-    assert!(!mesh.sees_all(eye, Region::Path(&wall), Touch::Blocks).unwrap(), "not what is behind the pillar");
-    assert!(mesh.sees_all(at(2.0, 0.5), Region::Path(&wall), Touch::Blocks).unwrap());
+    assert!(!mesh.sees_all(eye, ViewerRegion::Path(&wall), Touch::Blocks).unwrap(), "not what is behind the pillar");
+    assert!(mesh.sees_all(at(2.0, 0.5), ViewerRegion::Path(&wall), Touch::Blocks).unwrap());
 }
 
 /// A wall along the line of sight hides nothing where walls may be touched.
@@ -78,6 +78,6 @@ fn walls_seen_edge_on_hide_nothing() {
         ([2, 0], Touch::Blocks, false),
         ([0, 1], Touch::Passes, false),
     ] {
-        assert_eq!(mesh.sees_all(point(eye), Region::Path(&path), touch).unwrap(), truth, "{eye:?} {touch:?}");
+        assert_eq!(mesh.sees_all(point(eye), ViewerRegion::Path(&path), touch).unwrap(), truth, "{eye:?} {touch:?}");
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::common::{cut, grid};
 use sightlines_geometry::Aabb;
-use sightlines_kdtree::{AxialFace, AxialTree, Options, bounds_of, subdivide};
+use sightlines_kdtree::{AxialFace, AxialTree, KdOptions, bounds_of, subdivide};
 
 fn upright(x: f64, y0: f64, y1: f64) -> AxialFace<2> {
     AxialFace::new(0, [x, y0], [x, y1])
@@ -79,7 +79,7 @@ fn faces_without_extent_or_on_the_bounds_divide_nothing() {
 fn negative_zero_is_zero() {
     let bounds = Aabb { min: [-2.0; 2], max: [2.0; 2] };
     let cut =
-        |x: f64| subdivide(&[upright(x, -2.0, -0.0), upright(0.0, 0.0, 2.0)], bounds, &Options::default()).unwrap();
+        |x: f64| subdivide(&[upright(x, -2.0, -0.0), upright(0.0, 0.0, 2.0)], bounds, &KdOptions::default()).unwrap();
     assert_eq!((cut(-0.0).cells().len(), cut(-0.0).portals().len()), (2, 0));
     assert_eq!(format!("{:?}", cut(-0.0)), format!("{:?}", cut(0.0)), "the same bits");
 }
@@ -90,7 +90,7 @@ fn the_largest_and_smallest_coordinates_are_cut() {
     let bounds = Aabb { min: [-huge; 2], max: [huge; 2] };
     let walls = [upright(tiny, -huge, tiny), upright(-tiny, -tiny, huge), upright(0.0, -huge, huge)];
     for tau in [0.0, 0.5, 1.0] {
-        let tree = subdivide(&walls, bounds, &Options { tau, ..Options::default() }).unwrap();
+        let tree = subdivide(&walls, bounds, &KdOptions { tau, ..KdOptions::default() }).unwrap();
         assert!(tree.cells().len() >= 2 && tree.cells().iter().all(|c| c.bounds.min[0] < c.bounds.max[0]), "{tau}");
     }
 }

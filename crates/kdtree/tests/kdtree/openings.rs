@@ -4,7 +4,7 @@ use crate::common::{
     SIDE_2D, SIDE_3D, all_shared_walls, check_connectivity, check_openings, cut, faces, office, unit_walls,
 };
 use proptest::prelude::*;
-use sightlines_kdtree::{AxialFace, AxialPortal, AxialTree, Options, bounds_of, planar_graph, subdivide};
+use sightlines_kdtree::{AxialFace, AxialPortal, AxialTree, KdOptions, bounds_of, planar_graph, subdivide};
 
 fn check_all<const D: usize>(faces: &[AxialFace<D>], n: u32, tau: f64) -> Result<AxialTree<D>, TestCaseError> {
     let tree = cut(faces, n, tau);
@@ -132,7 +132,7 @@ fn a_hole_in_space_is_cut_into_rectangles() {
 #[test]
 fn an_office_has_its_doors() {
     let walls = office(5);
-    let tree = subdivide(&walls, bounds_of(&walls), &Options { tau: 0.3, ..Options::default() }).unwrap();
+    let tree = subdivide(&walls, bounds_of(&walls), &KdOptions { tau: 0.3, ..KdOptions::default() }).unwrap();
     let doors = |y: f64| tree.portals().iter().filter(move |p| p.axis == 1 && p.at == y && p.max[0] - p.min[0] == 1.0);
     assert_eq!((doors(8.0).count(), doors(10.0).count()), (5, 5));
     assert_eq!(tree.n_detail(), 10, "desks are detail");

@@ -2,7 +2,7 @@
 
 use crate::common::{SIDE_2D, SIDE_3D, centres, cut, faces, office, on_face, step};
 use proptest::prelude::*;
-use sightlines_kdtree::{AxialCell, AxialFace, AxialTree, FaceClass, Options, bounds_of, classify, subdivide};
+use sightlines_kdtree::{AxialCell, AxialFace, AxialTree, FaceClass, KdOptions, bounds_of, classify, subdivide};
 
 /// The largest share of a cell's cross-section that faces on one plane inside of it cover, counted
 /// square by square.
@@ -68,7 +68,7 @@ fn the_oracle_sees_what_is_left() {
 fn a_larger_threshold_gives_fewer_cells_in_an_office() {
     let walls = office(6);
     let n_cells =
-        |tau| subdivide(&walls, bounds_of(&walls), &Options { tau, ..Options::default() }).unwrap().cells().len();
+        |tau| subdivide(&walls, bounds_of(&walls), &KdOptions { tau, ..KdOptions::default() }).unwrap().cells().len();
     let sweep: Vec<usize> = (0..=10).map(|i| n_cells(f64::from(i) / 10.0)).collect();
     assert!(sweep.is_sorted_by(|a, b| a >= b), "{sweep:?}");
     assert!(sweep[0] > 2 * sweep[10], "{sweep:?}");

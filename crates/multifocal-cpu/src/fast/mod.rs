@@ -7,7 +7,7 @@ mod carry;
 mod fill;
 
 use rayon::prelude::*;
-use sightlines_multifocal::{BackendError, Buffer, Carry, Forms, Job, Measure, MultifocalBackend, Outlines};
+use sightlines_multifocal::{BackendError, Buffer, BufferJob, Carry, Forms, Measure, MultifocalBackend, Outlines};
 
 /// Rows that one thread draws at a time: as many as stay in the nearest cache.
 const ROWS: usize = 16;
@@ -37,7 +37,7 @@ impl MultifocalBackend for Fast {
     }
 
     /// O(rows of umbrae · edges + texels of umbrae + texels · log(range of a carry)).
-    fn render(&mut self, job: &Job<'_>, out: &mut Vec<Buffer>) -> Result<(), BackendError> {
+    fn render(&mut self, job: &BufferJob<'_>, out: &mut Vec<Buffer>) -> Result<(), BackendError> {
         if !self.supports(job.measure()) {
             return Err(BackendError::Unsupported { backend: self.name(), measure: job.measure() });
         }

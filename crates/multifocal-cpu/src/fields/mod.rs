@@ -11,20 +11,20 @@ pub use nearest::Nearest;
 
 use rayon::prelude::*;
 use sightlines_geometry::Point3;
-use sightlines_multifocal::Plane;
+use sightlines_multifocal::BufferPlane;
 
 /// What is nearest to the centre of each texel of a plane.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Field {
+pub struct NearestField {
     texels: [u32; 2],
     nearest: Vec<Option<Nearest>>,
 }
 
-impl Field {
+impl NearestField {
     /// Finds the nearest feature of each texel's centre, rows in parallel.
     ///
     /// Cost: about O(log n) a texel for n triangles; what is equally far from the texel costs more.
-    pub fn new(features: &Features, plane: &Plane) -> Self {
+    pub fn new(features: &Features, plane: &BufferPlane) -> Self {
         let [width, height] = plane.texels();
         let mut nearest = vec![None; width as usize * height as usize];
         nearest.par_chunks_exact_mut(width as usize).zip(0..height).for_each(|(row, y)| {
@@ -52,7 +52,7 @@ impl Field {
 }
 
 /// The middle of a texel, rounded to nearest.
-fn centre(plane: &Plane, x: u32, y: u32) -> Point3 {
+fn centre(plane: &BufferPlane, x: u32, y: u32) -> Point3 {
     let (low, high) = (plane.corner(x, y), plane.corner(x + 1, y + 1));
     std::array::from_fn(|k| low[k] + 0.5 * (high[k] - low[k]))
 }

@@ -185,9 +185,9 @@ fn zeros_of_both_signs_are_one_place() {
 
 #[test]
 fn fields_are_asked_at_the_centres_of_texels() {
-    let plane = Plane::new(2, true, 5.0, [0.0, 0.0], [4.0, 2.0], [4, 2]).unwrap();
+    let plane = BufferPlane::new(2, true, 5.0, [0.0, 0.0], [4.0, 2.0], [4, 2]).unwrap();
     let features = features(&[[[0, 0, 2], [4, 0, 2], [0, 2, 2]]]);
-    let field = Field::new(&features, &plane);
+    let field = NearestField::new(&features, &plane);
     assert_eq!(field.texels(), [4, 2]);
     let expected = |x: u32, y: u32| features.nearest([f64::from(x) + 0.5, f64::from(y) + 0.5, 5.0]);
     let all: Vec<_> = (0..2).flat_map(|y| (0..4).map(move |x| expected(x, y))).collect();
@@ -196,7 +196,7 @@ fn fields_are_asked_at_the_centres_of_texels() {
     assert_eq!((features.kind(inside.feature), inside.distance), (FeatureKind::Face, 3.0));
     let corner = field.nearest()[7].unwrap();
     assert!(features.kind(corner.feature) == FeatureKind::Edge && corner.distance == field.farthest());
-    let nothing = Field::new(&Features::new([]), &plane);
+    let nothing = NearestField::new(&Features::new([]), &plane);
     assert!(nothing.nearest().iter().all(Option::is_none) && nothing.farthest() == 0.0);
 }
 
@@ -211,9 +211,9 @@ fn large_fields_can_be_repeated() {
         .collect();
     let features = features(&all);
     assert_eq!((features.first_edge(), features.len() - features.first_face() as usize), (41 * 41, 3200));
-    let plane = Plane::new(2, true, 30.0, [-3.0, -3.0], [43.0, 43.0], [61, 47]).unwrap();
-    let field = Field::new(&features, &plane);
-    assert_eq!(field, Field::new(&features, &plane));
+    let plane = BufferPlane::new(2, true, 30.0, [-3.0, -3.0], [43.0, 43.0], [61, 47]).unwrap();
+    let field = NearestField::new(&features, &plane);
+    assert_eq!(field, NearestField::new(&features, &plane));
     for (i, nearest) in field.nearest().iter().enumerate().step_by(53) {
         let p = centre(&plane, i as u32 % 61, i as u32 / 61);
         let all = (0..all.len() as u32).map(|f| features.of_face(p, f));

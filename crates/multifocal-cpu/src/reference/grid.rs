@@ -1,13 +1,13 @@
 //! The coordinates of a job as integers.
 
 use sightlines_exact::{BigInt, Grid};
-use sightlines_multifocal::Job;
+use sightlines_multifocal::BufferJob;
 
 /// A point or a vector in steps of a job's grid.
 pub(super) type Integer3 = [BigInt; 3];
 
 /// The grid of all coordinates of a job, and of its unit.
-pub(super) fn grid_of(job: &Job<'_>) -> Grid {
+pub(super) fn grid_of(job: &BufferJob<'_>) -> Grid {
     let planes = job.planes().iter().flat_map(|p| {
         let ([a, b], [c, d]) = (p.origin(), p.step());
         [p.at(), a, b, c, d]

@@ -12,7 +12,7 @@ mod value;
 
 use sightlines_exact::Grid;
 use sightlines_geometry::Point3;
-use sightlines_multifocal::{BackendError, Buffer, Job, Measure, MultifocalBackend, Plane};
+use sightlines_multifocal::{BackendError, Buffer, BufferJob, BufferPlane, Measure, MultifocalBackend};
 use umbra::Hiding;
 use value::Values;
 
@@ -32,7 +32,7 @@ impl MultifocalBackend for Reference {
         true
     }
 
-    fn render(&mut self, job: &Job<'_>, out: &mut Vec<Buffer>) -> Result<(), BackendError> {
+    fn render(&mut self, job: &BufferJob<'_>, out: &mut Vec<Buffer>) -> Result<(), BackendError> {
         let grid = grid::grid_of(job);
         out.resize_with(job.planes().len(), Buffer::default);
         for (idx, plane) in job.planes().iter().enumerate() {
@@ -49,7 +49,7 @@ impl MultifocalBackend for Reference {
 }
 
 /// Fills the buffer of a plane with what each occluder blocks by itself.
-fn draw(job: &Job<'_>, grid: Grid, plane: &Plane, out: &mut Buffer) {
+fn draw(job: &BufferJob<'_>, grid: Grid, plane: &BufferPlane, out: &mut Buffer) {
     let [w, h] = plane.texels();
     out.reset([w, h]);
     for occluder in job.occluders() {
@@ -65,6 +65,6 @@ fn draw(job: &Job<'_>, grid: Grid, plane: &Plane, out: &mut Buffer) {
 }
 
 /// The corners of a texel, once around.
-fn corners(plane: &Plane, x: u32, y: u32) -> [Point3; 4] {
+fn corners(plane: &BufferPlane, x: u32, y: u32) -> [Point3; 4] {
     [[x, y], [x + 1, y], [x + 1, y + 1], [x, y + 1]].map(|[x, y]| plane.corner(x, y))
 }

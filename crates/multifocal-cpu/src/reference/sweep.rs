@@ -12,10 +12,10 @@
 
 use num_traits::{ToPrimitive, Zero};
 use sightlines_exact::{BigRational, rational};
-use sightlines_multifocal::{Buffer, Job, Plane};
+use sightlines_multifocal::{Buffer, BufferJob, BufferPlane};
 
 /// Adds to `out`, the buffer of the farther plane, what follows from that of the nearer one. Exact.
-pub(super) fn carry(job: &Job<'_>, [nearer, plane]: [&Plane; 2], known: &Buffer, out: &mut Buffer) {
+pub(super) fn carry(job: &BufferJob<'_>, [nearer, plane]: [&BufferPlane; 2], known: &Buffer, out: &mut Buffer) {
     let between = (rational(plane.at()) - rational(nearer.at())) * rational(if plane.positive() { 1.0 } else { -1.0 });
     let rise = (&between / rational(job.unit())).floor().to_u32().expect("values of a job are less than 2^28");
     let [columns, rows] = [0, 1].map(|k| touched(job, [nearer, plane], &between, k));
@@ -32,7 +32,12 @@ pub(super) fn carry(job: &Job<'_>, [nearer, plane]: [&Plane; 2], known: &Buffer,
 
 /// For each texel along axis `k` of a plane, the texels of the nearer plane that segments to it cross: from the first
 /// to before the second. None if they leave the window.
-fn touched(job: &Job<'_>, [nearer, plane]: [&Plane; 2], between: &BigRational, k: usize) -> Vec<Option<[u32; 2]>> {
+fn touched(
+    job: &BufferJob<'_>,
+    [nearer, plane]: [&BufferPlane; 2],
+    between: &BigRational,
+    k: usize,
+) -> Vec<Option<[u32; 2]>> {
     let eyes = job.volume().corners().map(|v| {
         let height =
             (rational(plane.at()) - rational(v[plane.axis()])) / rational(if plane.positive() { 1.0 } else { -1.0 });

@@ -27,7 +27,7 @@ use num_traits::{ToPrimitive, Zero};
 use sightlines_exact::vector::{dot, normal, sub};
 use sightlines_exact::{BigInt, Fraction, Grid};
 use sightlines_geometry::Point3;
-use sightlines_multifocal::{Job, Measure, Occluder, Plane};
+use sightlines_multifocal::{BufferJob, BufferPlane, Measure, Occluder};
 
 /// The values of one occluder on one plane.
 pub(super) struct Values {
@@ -81,7 +81,7 @@ impl Facet {
 }
 
 impl Values {
-    pub(super) fn new(job: &Job<'_>, grid: Grid, plane: &Plane, hiding: &Hiding<'_>) -> Self {
+    pub(super) fn new(job: &BufferJob<'_>, grid: Grid, plane: &BufferPlane, hiding: &Hiding<'_>) -> Self {
         let occluder = hiding.occluder();
         let eyes = hiding.eyes().map(|v| grid.vector(v));
         let height = |x: f64| {
@@ -160,7 +160,7 @@ fn least(mut of: impl Iterator<Item = Fraction>) -> Fraction {
     of.fold(first, Fraction::min)
 }
 
-fn lowest(occluder: &Occluder, plane: &Plane, height: impl Fn(f64) -> BigInt) -> BigInt {
+fn lowest(occluder: &Occluder, plane: &BufferPlane, height: impl Fn(f64) -> BigInt) -> BigInt {
     let b = occluder.bounds();
     let farthest = if plane.positive() { b.max } else { b.min };
     height(farthest[plane.axis()]).max(BigInt::zero())

@@ -155,7 +155,8 @@ fn walls_that_overlap_hide_together_what_none_hides_alone() {
     let (carried, _) = buffers(&scene, Measure::SectionHeight);
     let occluders = scene.occluders();
     let job = scene.job(&occluders, Measure::SectionHeight);
-    let apart = sightlines_multifocal::Job::new(*job.volume(), job.planes().to_vec(), &occluders, job.measure(), false);
+    let apart =
+        sightlines_multifocal::BufferJob::new(*job.volume(), job.planes().to_vec(), &occluders, job.measure(), false);
     let mut alone = Vec::new();
     Reference.render(&apart.expect("a job"), &mut alone).expect("the reference does every job");
     assert_eq!(alone[0], carried[0], "nothing is carried to the first plane");

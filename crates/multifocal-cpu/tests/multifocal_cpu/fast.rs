@@ -3,12 +3,12 @@
 use proptest::prelude::*;
 use sightlines_geometry::Aabb;
 use sightlines_multifocal::{
-    BackendError, Buffer, Carry, Forms, Job, Measure, MultifocalBackend, Occluder, Plane, Volume,
+    BackendError, Buffer, BufferJob, BufferPlane, Carry, Forms, Measure, MultifocalBackend, Occluder, Volume,
 };
 use sightlines_multifocal_cpu::Fast;
 
 /// Oracle: every texel, every form, every edge, as the forms' documentation says.
-fn plain(job: &Job<'_>) -> Vec<Buffer> {
+fn plain(job: &BufferJob<'_>) -> Vec<Buffer> {
     let mut out: Vec<Buffer> = Vec::new();
     for (k, plane) in job.planes().iter().enumerate() {
         let forms = Forms::of(job, k);
@@ -64,10 +64,10 @@ proptest! {
         let volume = Volume::new(Aabb { min: [-half; 3], max: [half, half, half.min(0.4)] }).unwrap();
         let plane = |(k, n): (usize, &[u32; 2])| {
             let (at, window) = (4.0 + 3.0 * k as f64, 3.0 + k as f64);
-            Plane::new(2, true, at, [-window; 2], [window, 1.5 * window], *n).unwrap()
+            BufferPlane::new(2, true, at, [-window; 2], [window, 1.5 * window], *n).unwrap()
         };
-        let planes: Vec<Plane> = texels.iter().enumerate().map(plane).collect();
-        let job = Job::new(volume, planes, &occluders, measure, carry && measure.is_height()).unwrap();
+        let planes: Vec<BufferPlane> = texels.iter().enumerate().map(plane).collect();
+        let job = BufferJob::new(volume, planes, &occluders, measure, carry && measure.is_height()).unwrap();
         let expected = plain(&job);
         for threads in [1, 3] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -93,9 +93,9 @@ fn plain_loops_find_blocked_texels_and_carry_some() {
     };
     let occluders = [wall(-9.0, 0.2, 2.0), wall(-0.2, 9.0, 3.0)];
     let volume = Volume::new(Aabb { min: [-0.25; 3], max: [0.25; 3] }).unwrap();
-    let planes = [3.2, 16.0].map(|at| Plane::new(2, true, at, [-3.0; 2], [3.0; 2], [40, 40]).unwrap());
+    let planes = [3.2, 16.0].map(|at| BufferPlane::new(2, true, at, [-3.0; 2], [3.0; 2], [40, 40]).unwrap());
     let count = |carry| {
-        let job = Job::new(volume, planes.to_vec(), &occluders, Measure::SectionHeight, carry).unwrap();
+        let job = BufferJob::new(volume, planes.to_vec(), &occluders, Measure::SectionHeight, carry).unwrap();
         plain(&job).iter().map(Buffer::n_blocked).collect::<Vec<_>>()
     };
     let (with, without) = (count(true), count(false));
@@ -105,8 +105,8 @@ fn plain_loops_find_blocked_texels_and_carry_some() {
 #[test]
 fn fast_has_no_form_of_the_clipped_distance() {
     let volume = Volume::new(Aabb { min: [-0.25; 3], max: [0.25; 3] }).unwrap();
-    let plane = Plane::new(2, true, 4.0, [-1.0; 2], [1.0; 2], [4, 4]).unwrap();
-    let job = Job::new(volume, vec![plane], [], Measure::ClippedEuclid, false).unwrap();
+    let plane = BufferPlane::new(2, true, 4.0, [-1.0; 2], [1.0; 2], [4, 4]).unwrap();
+    let job = BufferJob::new(volume, vec![plane], [], Measure::ClippedEuclid, false).unwrap();
     let error = Fast::new().render(&job, &mut Vec::new()).unwrap_err();
     assert_eq!(error, BackendError::Unsupported { backend: "cpu", measure: Measure::ClippedEuclid });
     assert_eq!(error.to_string(), "cpu cannot measure clipped");

@@ -3,7 +3,7 @@
 use crate::common::scene::{job, occluders};
 use crate::common::{Chance, gpu};
 use sightlines_geometry::Aabb;
-use sightlines_multifocal::{Buffer, Footprint, Job, Measure};
+use sightlines_multifocal::{Buffer, BufferJob, Footprint, Measure};
 use sightlines_multifocal_gpu::{DrawRecords, Gpu, GpuBackend, GpuPath, Values, wgpu};
 use wgpu::BufferUsages;
 
@@ -17,7 +17,7 @@ fn is_hidden(footprint: &Footprint, buffer: &Buffer) -> bool {
 }
 
 /// Boxes behind a scene's occluders, and some that nothing is in front of or that leave the window.
-fn footprints(chance: &mut Chance, job: &Job<'_>, plane: usize, n: usize) -> Vec<Footprint> {
+fn footprints(chance: &mut Chance, job: &BufferJob<'_>, plane: usize, n: usize) -> Vec<Footprint> {
     let mut out = Vec::new();
     while out.len() < n {
         let z = chance.real(2.0, 20.0);

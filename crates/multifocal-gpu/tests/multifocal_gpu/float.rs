@@ -3,12 +3,12 @@
 use crate::common::scene::{job, occluders};
 use crate::common::{Chance, gpu};
 use sightlines_geometry::{Aabb, Point3};
-use sightlines_multifocal::{Job, Measure, MultifocalBackend, Occluder, Plane, Volume};
+use sightlines_multifocal::{BufferJob, BufferPlane, Measure, MultifocalBackend, Occluder, Volume};
 use sightlines_multifocal_cpu::{Fast, Reference};
 use sightlines_multifocal_gpu::{GpuBackend, GpuPath};
 
 /// How many texels floats and integers block, after checking that neither exceeds the reference.
-fn compare(backend: &mut GpuBackend, job: &Job<'_>, what: &str) -> [usize; 3] {
+fn compare(backend: &mut GpuBackend, job: &BufferJob<'_>, what: &str) -> [usize; 3] {
     let (mut floats, mut integers, mut exact) = (Vec::new(), Vec::new(), Vec::new());
     backend.render(job, &mut floats).expect("the device does it");
     Fast::new().render(job, &mut integers).expect("the processor does it");
@@ -59,9 +59,11 @@ fn floats_never_exceed_the_reference_in_near_degenerate_scenes() {
         };
         // Half way to the plane: its umbra is twice as large, less the volume's size.
         let occluders = [square(-3.0, 3.0, 8.5), square(-4.0, -2.0, 4.0), square(0.0, 5.0, 15.0)];
-        let plane = Plane::new(axis, positive, put(0.0, 0.0, 16.0)[axis], [far - 8.0; 2], [far + 8.0; 2], [32, 32]);
+        let plane =
+            BufferPlane::new(axis, positive, put(0.0, 0.0, 16.0)[axis], [far - 8.0; 2], [far + 8.0; 2], [32, 32]);
         let plane = plane.expect("it is a plane");
-        let job = Job::new(volume, vec![plane], &occluders, Measure::VertexHeight, false).expect("it can be done");
+        let job =
+            BufferJob::new(volume, vec![plane], &occluders, Measure::VertexHeight, false).expect("it can be done");
         let [floats, ..] = compare(&mut backend, &job, &format!("axis {axis}, {far} away"));
         n_blocked += floats;
     }

@@ -1,11 +1,11 @@
 //! Affine functions on a plane, with bounds of their errors, and integers below them.
 
-use crate::Plane;
+use crate::BufferPlane;
 use sightlines_geometry::Point3;
 
 /// A plane with the scale of its coefficients.
 pub(super) struct Window<'a> {
-    pub(super) plane: &'a Plane,
+    pub(super) plane: &'a BufferPlane,
     /// Largest coefficient of an edge.
     largest: f64,
 }
@@ -37,7 +37,7 @@ impl Around {
 }
 
 impl<'a> Window<'a> {
-    pub(super) fn new(plane: &'a Plane) -> Self {
+    pub(super) fn new(plane: &'a BufferPlane) -> Self {
         let [w, h] = plane.texels();
         Self { plane, largest: (LARGEST_TERM / f64::from(w.max(h))).floor() }
     }

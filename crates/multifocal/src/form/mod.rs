@@ -16,7 +16,7 @@ mod affine;
 mod edges;
 mod value;
 
-use crate::{Job, Measure, Occluder, Plane, Volume};
+use crate::{BufferJob, BufferPlane, Measure, Occluder, Volume};
 use affine::Window;
 use sightlines_geometry::Point3;
 use std::ops::Range;
@@ -61,7 +61,7 @@ impl Forms {
     ///
     /// # Panics
     /// If the job has no plane `plane`.
-    pub fn of(job: &Job<'_>, plane: usize) -> Self {
+    pub fn of(job: &BufferJob<'_>, plane: usize) -> Self {
         let mut forms = Self::default();
         forms.extend(job, &Outlines::of(job), plane);
         forms
@@ -73,7 +73,7 @@ impl Forms {
     ///
     /// # Panics
     /// If the job has no plane `plane`.
-    pub fn extend(&mut self, job: &Job<'_>, outlines: &Outlines, plane: usize) {
+    pub fn extend(&mut self, job: &BufferJob<'_>, outlines: &Outlines, plane: usize) {
         let builder = FormBuilder::new(job.volume(), &job.planes()[plane], job.measure(), job.unit());
         for of in &outlines.of_occluders {
             builder.add(job.occluders()[of.occluder], of.n_facets, &outlines.sides[of.sides.clone()], self);
@@ -116,14 +116,14 @@ struct Outline {
 
 impl Outlines {
     /// Those of all occluders of a job. O(corners).
-    pub fn of(job: &Job<'_>) -> Self {
+    pub fn of(job: &BufferJob<'_>) -> Self {
         let mut outlines = Self::default();
         outlines.refill(job);
         outlines
     }
 
     /// Replaces them by those of another job, but keeps their memory.
-    pub fn refill(&mut self, job: &Job<'_>) {
+    pub fn refill(&mut self, job: &BufferJob<'_>) {
         self.of_occluders.clear();
         self.sides.clear();
         let corners = job.volume().corners();
@@ -146,7 +146,7 @@ struct FormBuilder<'a> {
 }
 
 impl<'a> FormBuilder<'a> {
-    fn new(volume: &Volume, plane: &'a Plane, measure: Measure, unit: f64) -> Self {
+    fn new(volume: &Volume, plane: &'a BufferPlane, measure: Measure, unit: f64) -> Self {
         Self { window: Window::new(plane), corners: volume.corners(), measure, unit }
     }
 

@@ -1,7 +1,7 @@
 //! Selection of the occluders that are worth drawing.
 
 use super::vector::{add, basis, cross, dot, length, scale, sub, unit, vector_area};
-use crate::{Occluder, Plane, Volume};
+use crate::{BufferPlane, Occluder, Volume};
 use sightlines_geometry::Point3;
 use std::cmp::Ordering;
 
@@ -36,13 +36,13 @@ impl Chooser {
     /// two, or that eyes see from both sides, are left out.
     ///
     /// O(number of occluders).
-    pub fn select(&self, volume: &Volume, plane: &Plane, n: usize) -> Vec<u32> {
+    pub fn select(&self, volume: &Volume, plane: &BufferPlane, n: usize) -> Vec<u32> {
         let [chosen] = self.select_for(volume, [plane], n);
         chosen
     }
 
     /// The same for several planes around one volume: how an occluder looks from there is the same for all of them.
-    pub fn select_for<const N: usize>(&self, volume: &Volume, planes: [&Plane; N], n: usize) -> [Vec<u32>; N] {
+    pub fn select_for<const N: usize>(&self, volume: &Volume, planes: [&BufferPlane; N], n: usize) -> [Vec<u32>; N] {
         let eye = middle_of(volume);
         let mut ranked: [Vec<(f64, u32)>; N] = std::array::from_fn(|_| Vec::new());
         for (i, sketch) in (0..).zip(&self.sketches) {
@@ -65,7 +65,7 @@ impl Chooser {
 }
 
 /// Like [`Chooser::select`], for a single query.
-pub fn select(volume: &Volume, plane: &Plane, occluders: &[Occluder], n: usize) -> Vec<u32> {
+pub fn select(volume: &Volume, plane: &BufferPlane, occluders: &[Occluder], n: usize) -> Vec<u32> {
     Chooser::new(occluders).select(volume, plane, n)
 }
 
@@ -124,7 +124,7 @@ impl Sketch {
     }
 
     /// The approximate space behind it, up to the plane, that is hidden from the volume; `None` if it is not between the two.
-    fn hidden_space(&self, shadow: &Shadow, eye: Point3, plane: &Plane) -> Option<f64> {
+    fn hidden_space(&self, shadow: &Shadow, eye: Point3, plane: &BufferPlane) -> Option<f64> {
         // Along the view axis: from the eye to it, and from it to the plane.
         let (in_front, behind) = (plane.height(eye) - plane.height(self.middle), plane.height(self.middle));
         if in_front <= 0.0 || behind <= 0.0 {
@@ -142,7 +142,7 @@ impl Sketch {
     }
 
     /// The share of the shadow's end that falls into the plane's window, by the middle and the widths of the shadow.
-    fn share_of_window(&self, eye: Point3, last: f64, plane: &Plane) -> f64 {
+    fn share_of_window(&self, eye: Point3, last: f64, plane: &BufferPlane) -> f64 {
         let end = add(self.middle, scale(sub(self.middle, eye), last));
         let (low, high) = (plane.origin(), plane.end());
         let mut share = 1.0;

@@ -1,7 +1,7 @@
 //! Single lines through buffers: most targets that are not hidden are given up after a few.
 
 use super::{Surrounded, limit};
-use crate::{Buffer, Plane};
+use crate::{Buffer, BufferPlane};
 use sightlines_geometry::{Aabb, Point3};
 
 impl Surrounded<'_> {
@@ -55,7 +55,7 @@ impl Surrounded<'_> {
 
 /// Whether the line from an eye through a point meets a plane in its window, at a texel with more than `limit`. In plain doubles.
 #[inline]
-fn is_blocked_along(plane: &Plane, buffer: &Buffer, limit: u32, eye: Point3, point: Point3) -> bool {
+fn is_blocked_along(plane: &BufferPlane, buffer: &Buffer, limit: u32, eye: Point3, point: Point3) -> bool {
     let height = plane.height(eye);
     let ratio = height / (height - plane.height(point));
     let ([u, v], origin, step) = (plane.across(), plane.origin(), plane.step());

@@ -6,7 +6,7 @@ use sightlines_geometry::Random;
 fn exits_beside_the_window_are_unknown() {
     let volume = Volume::new(Aabb { min: [-1.0; 3], max: [1.0; 3] }).unwrap();
     let target = Aabb { min: [20.0, 6.0, 0.0], max: [20.0, 7.0, 1.0] };
-    let plane = |window: f64| Plane::new(0, true, 10.0, [-window; 2], [window; 2], [4, 4]).unwrap();
+    let plane = |window: f64| BufferPlane::new(0, true, 10.0, [-window; 2], [window; 2], [4, 4]).unwrap();
     let face = [[-9.0, 9.0]; 2];
     assert!(matches!(exits(&volume, &plane(9.0), &face, &target), Exits::Texels(_)));
     assert_eq!(exits(&volume, &plane(3.0), &face, &target), Exits::Unknown);

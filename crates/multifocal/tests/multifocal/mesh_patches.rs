@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use sightlines_geometry::{Point3, orient3d};
 use sightlines_multifocal::mesh::{Mesh, PatchOptions, patches};
-use sightlines_multifocal::{Occluder, Plane, Volume, mesh};
+use sightlines_multifocal::{BufferPlane, Occluder, Volume, mesh};
 use sightlines_testkit::Random;
 use sightlines_testkit::meshes::{Soup, quad, scene, soup, uneven};
 use sightlines_testkit::{RayScene, draw};
@@ -228,7 +228,7 @@ fn bent_walls_give_patches_of_several_planes() {
 #[test]
 fn the_chosen_hide_most() {
     let volume = Volume::new(sightlines_geometry::Aabb { min: [-0.5; 3], max: [0.5; 3] }).unwrap();
-    let plane = Plane::new(2, true, 24.0, [-20.0; 2], [20.0; 2], [64, 64]).unwrap();
+    let plane = BufferPlane::new(2, true, 24.0, [-20.0; 2], [20.0; 2], [64, 64]).unwrap();
     let mut random = Random::new(5, 0);
     let rectangle = |random: &mut Random| {
         let [x, y] = [0; 2].map(|_| random.unit() * 16.0 - 8.0);

@@ -8,7 +8,7 @@ use super::slice::{Looked, look, title};
 use super::space::{Up, project};
 use super::svg::{self, stroke};
 use super::visible_set::VisibleSet;
-use super::{DrawError, Drawing, Sight, Surfaces, View, check_cells};
+use super::{DrawError, Drawing, PictureSubject, SeenFromEye, Surfaces, check_cells};
 use crate::frame::{Frame, Px};
 use crate::theme;
 use sightlines_geometry::{Aabb, Point2};
@@ -19,9 +19,9 @@ use std::fmt::Write;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct IsometricOptions<'a> {
     /// Whose visible set is shown.
-    pub view: View<[f64; 3]>,
-    /// With [`View::Eye`]: what the viewer sees of that.
-    pub sight: Option<Sight<'a, [f64; 3]>>,
+    pub view: PictureSubject<[f64; 3]>,
+    /// With [`PictureSubject::Eye`]: what the viewer sees of that.
+    pub sight: Option<SeenFromEye<'a, [f64; 3]>>,
     /// Which way is up.
     pub up: Up,
     /// Where to cut off what is above, as a coordinate on the axis that points up, in scene units.
@@ -45,7 +45,7 @@ impl Default for IsometricOptions<'_> {
     /// All cells alone, y up, with a legend, 1600 pixels.
     fn default() -> Self {
         Self {
-            view: View::Plan,
+            view: PictureSubject::Plan,
             sight: None,
             up: Up::Y,
             below: None,

@@ -34,21 +34,21 @@ pub const MAX_SIZE: u32 = 8192;
 ///
 /// `P` is a point in scene units: a [`Point2`] of a plan, three coordinates in space.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub enum View<P = Point2> {
+pub enum PictureSubject<P = Point2> {
     /// Nothing: cells and portals alone.
     #[default]
     Plan,
     /// The cells that this cell sees.
     Cell(CellId),
-    /// What the cells that contain this point see. What a viewer at the point sees of that is for [`Sight`] to state.
+    /// What the cells that contain this point see. What a viewer at the point sees of that is for [`SeenFromEye`] to state.
     Eye(P),
 }
 
-/// What a viewer sees, which is part of what their cell sees: the answer of an eye-to-cell method, for a picture with [`View::Eye`].
+/// What a viewer sees, which is part of what their cell sees: the answer of an eye-to-cell method, for a picture with [`PictureSubject::Eye`].
 ///
 /// `P` is a direction in scene units: a [`Point2`] of a plan, three coordinates in space.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sight<'a, P = Point2> {
+pub struct SeenFromEye<'a, P = Point2> {
     /// The cells, in any order.
     pub cells: &'a [CellId],
     /// The objects, in any order.
@@ -119,7 +119,7 @@ fn check_cells(table: &Table, cells: impl IntoIterator<Item = CellId>) -> Result
 }
 
 /// Checks that a table has what a viewer sees.
-fn check_sight<P>(table: &Table, sight: Option<&Sight<'_, P>>) -> Result<(), DrawError> {
+fn check_sight<P>(table: &Table, sight: Option<&SeenFromEye<'_, P>>) -> Result<(), DrawError> {
     let Some(sight) = sight else { return Ok(()) };
     check_cells(table, sight.cells.iter().copied())?;
     let n_objects = table.objects().len();

@@ -3,7 +3,7 @@
 use super::figure::Figure;
 use super::picture::{Annotations, Look, draw};
 use super::visible_set::VisibleSet;
-use super::{DrawError, Drawing, Sight, View, check_cells, check_sight, check_size, svg};
+use super::{DrawError, Drawing, PictureSubject, SeenFromEye, check_cells, check_sight, check_size, svg};
 use sightlines_geometry::Point2;
 use sightlines_pvs::{CellId, Table};
 
@@ -11,9 +11,9 @@ use sightlines_pvs::{CellId, Table};
 #[derive(Debug, Clone, PartialEq)]
 pub struct DrawOptions<'a> {
     /// Whose visible set is shown.
-    pub view: View,
-    /// With [`View::Eye`]: what the viewer sees of that, drawn over it.
-    pub sight: Option<Sight<'a>>,
+    pub view: PictureSubject,
+    /// With [`PictureSubject::Eye`]: what the viewer sees of that, drawn over it.
+    pub sight: Option<SeenFromEye<'a>>,
     /// A cell to mark as the one looked for.
     pub target: Option<CellId>,
     /// A line of sight, in scene units.
@@ -24,7 +24,7 @@ pub struct DrawOptions<'a> {
     pub objects: bool,
     /// Whether a legend and a scale bar stand below, if there is room for words.
     pub legend: bool,
-    /// Whether [`View::Plan`] tints the cells by group, if they have any.
+    /// Whether [`PictureSubject::Plan`] tints the cells by group, if they have any.
     pub group_colours: bool,
     /// The longer side of the picture in pixels, from [`MIN_SIZE`](super::MIN_SIZE) to
     /// [`MAX_SIZE`](super::MAX_SIZE).
@@ -35,7 +35,7 @@ impl Default for DrawOptions<'_> {
     /// The plan alone, with objects, group colours and a legend, 1600 pixels.
     fn default() -> Self {
         Self {
-            view: View::Plan,
+            view: PictureSubject::Plan,
             sight: None,
             target: None,
             line: None,
@@ -65,11 +65,11 @@ pub fn plan_svg(table: &Table, options: &DrawOptions<'_>) -> Result<String, Draw
 pub fn plan_drawing(table: &Table, options: &DrawOptions<'_>) -> Result<Drawing, DrawError> {
     check(table, options)?;
     let figure = Figure::of_plan(table);
-    let sight = options.sight.as_ref().filter(|_| matches!(options.view, View::Eye(_)));
+    let sight = options.sight.as_ref().filter(|_| matches!(options.view, PictureSubject::Eye(_)));
     let (seen, eye) = match options.view {
-        View::Plan => (None, None),
-        View::Cell(cell) => (Some(VisibleSet::from_cell(table, cell)), None),
-        View::Eye(eye) => (Some(VisibleSet::from_point(table, [eye.x, eye.y, 0.0])), Some(eye)),
+        PictureSubject::Plan => (None, None),
+        PictureSubject::Cell(cell) => (Some(VisibleSet::from_cell(table, cell)), None),
+        PictureSubject::Eye(eye) => (Some(VisibleSet::from_point(table, [eye.x, eye.y, 0.0])), Some(eye)),
     };
     let seen = match (seen, sight) {
         (Some(seen), Some(sight)) => Some(seen.narrowed(sight)),
@@ -83,9 +83,9 @@ pub fn plan_drawing(table: &Table, options: &DrawOptions<'_>) -> Result<Drawing,
         looks: sight.and_then(|sight| sight.looks),
     };
     let title = match options.view {
-        View::Plan => "Cells and portals".to_owned(),
-        View::Cell(cell) => svg::seen_from_cell(cell),
-        View::Eye(eye) => svg::seen_from_point(&[eye.x, eye.y], sight.is_some()),
+        PictureSubject::Plan => "Cells and portals".to_owned(),
+        PictureSubject::Cell(cell) => svg::seen_from_cell(cell),
+        PictureSubject::Eye(eye) => svg::seen_from_point(&[eye.x, eye.y], sight.is_some()),
     };
     let look = Look { objects: options.objects, group_colours: options.group_colours, legend: options.legend };
     Ok(draw(title, &figure, seen.as_ref(), &annotations, look, options.size))
@@ -95,7 +95,7 @@ fn check(table: &Table, options: &DrawOptions<'_>) -> Result<(), DrawError> {
     if table.dimension() != 2 {
         return Err(DrawError::NotPlanar(table.dimension()));
     }
-    let from = if let View::Cell(cell) = options.view { Some(cell) } else { None };
+    let from = if let PictureSubject::Cell(cell) = options.view { Some(cell) } else { None };
     check_cells(table, [from, options.target].into_iter().flatten())?;
     let n_portals = table.portals().len();
     if let Some(&portal) = options.marked_portals.iter().find(|&&portal| portal >= n_portals) {
@@ -103,7 +103,7 @@ fn check(table: &Table, options: &DrawOptions<'_>) -> Result<(), DrawError> {
     }
     check_size(options.size)?;
     check_sight(table, options.sight.as_ref())?;
-    let eye = if let View::Eye(eye) = options.view { Some(eye) } else { None };
+    let eye = if let PictureSubject::Eye(eye) = options.view { Some(eye) } else { None };
     let direction = options.sight.and_then(|sight| sight.looks).map(|(direction, _)| direction);
     let finite = options.line.into_iter().flatten().chain(eye).chain(direction).all(Point2::is_finite);
     if finite { Ok(()) } else { Err(DrawError::NotFinite) }

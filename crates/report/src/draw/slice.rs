@@ -5,7 +5,7 @@ use super::picture::{Annotations, Look, draw};
 use super::section::Section;
 use super::space::Up;
 use super::visible_set::VisibleSet;
-use super::{DrawError, Drawing, Sight, Surfaces, View, check_cells, check_sight, check_size, svg};
+use super::{DrawError, Drawing, PictureSubject, SeenFromEye, Surfaces, check_cells, check_sight, check_size, svg};
 use sightlines_geometry::Point2;
 use sightlines_pvs::{CellId, Table};
 
@@ -13,9 +13,9 @@ use sightlines_pvs::{CellId, Table};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SliceOptions<'a> {
     /// Whose visible set is shown; the viewer may be at another height.
-    pub view: View<[f64; 3]>,
-    /// With [`View::Eye`]: what the viewer sees of that, drawn over it.
-    pub sight: Option<Sight<'a, [f64; 3]>>,
+    pub view: PictureSubject<[f64; 3]>,
+    /// With [`PictureSubject::Eye`]: what the viewer sees of that, drawn over it.
+    pub sight: Option<SeenFromEye<'a, [f64; 3]>>,
     /// Which way is up.
     pub up: Up,
     /// Where to cut, as a coordinate on the axis that points up, in scene units.
@@ -39,7 +39,7 @@ impl Default for SliceOptions<'_> {
     /// The cells alone at height 0, y up, with a legend, 1600 pixels.
     fn default() -> Self {
         Self {
-            view: View::Plan,
+            view: PictureSubject::Plan,
             sight: None,
             up: Up::Y,
             height: 0.0,
@@ -100,11 +100,11 @@ pub fn slice_drawing(table: &Table, options: &SliceOptions<'_>) -> Result<Drawin
 }
 
 /// What a picture of a scene in space is called.
-pub(super) fn title(view: View<[f64; 3]>, seen: Option<&VisibleSet>) -> String {
+pub(super) fn title(view: PictureSubject<[f64; 3]>, seen: Option<&VisibleSet>) -> String {
     match view {
-        View::Plan => "Cells".to_owned(),
-        View::Cell(cell) => svg::seen_from_cell(cell),
-        View::Eye(eye) => svg::seen_from_point(&eye, seen.is_some_and(VisibleSet::is_narrowed)),
+        PictureSubject::Plan => "Cells".to_owned(),
+        PictureSubject::Cell(cell) => svg::seen_from_cell(cell),
+        PictureSubject::Eye(eye) => svg::seen_from_point(&eye, seen.is_some_and(VisibleSet::is_narrowed)),
     }
 }
 
@@ -119,8 +119,8 @@ pub(super) struct Looked {
 /// Checks what all pictures of scenes in space have in common; what is seen, and the viewer.
 pub(super) fn look(
     table: &Table,
-    view: View<[f64; 3]>,
-    sight: Option<Sight<'_, [f64; 3]>>,
+    view: PictureSubject<[f64; 3]>,
+    sight: Option<SeenFromEye<'_, [f64; 3]>>,
     size: u32,
 ) -> Result<Looked, DrawError> {
     if table.dimension() != 3 {
@@ -128,12 +128,12 @@ pub(super) fn look(
     }
     check_size(size)?;
     match view {
-        View::Plan => Ok(Looked::default()),
-        View::Cell(cell) => {
+        PictureSubject::Plan => Ok(Looked::default()),
+        PictureSubject::Cell(cell) => {
             check_cells(table, [cell])?;
             Ok(Looked { seen: Some(VisibleSet::from_cell(table, cell)), ..Looked::default() })
         }
-        View::Eye(eye) => {
+        PictureSubject::Eye(eye) => {
             check_sight(table, sight.as_ref())?;
             let looks = sight.and_then(|sight| sight.looks);
             if !eye.iter().chain(looks.iter().flat_map(|(direction, _)| direction)).all(|x| x.is_finite()) {

@@ -1,6 +1,6 @@
 //! What is seen in a picture, and from where.
 
-use super::Sight;
+use super::SeenFromEye;
 use sightlines_pvs::{CellId, ObjectId, Place, Table};
 
 /// What a cell or a viewer sees.
@@ -37,7 +37,7 @@ impl VisibleSet {
     }
 
     /// The same, of which a viewer sees only this.
-    pub(super) fn narrowed<P>(mut self, sight: &Sight<'_, P>) -> Self {
+    pub(super) fn narrowed<P>(mut self, sight: &SeenFromEye<'_, P>) -> Self {
         let mut seen = vec![false; self.cells.len()];
         sight.cells.iter().for_each(|id| seen[id.idx()] = true);
         self.objects = sight.objects.to_vec();

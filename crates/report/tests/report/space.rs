@@ -4,8 +4,8 @@ use crate::common::tower::house;
 use resvg::tiny_skia::Pixmap;
 use sightlines_pvs::{CellId, Table};
 use sightlines_report::{
-    DrawError, DrawOptions, IsometricOptions, SliceOptions, Up, View, ViewerShare, export_json, isometric_svg,
-    plan_svg, slice_svg, svg_to_png,
+    DrawError, DrawOptions, IsometricOptions, PictureSubject, SliceOptions, Up, ViewerShare, export_json,
+    isometric_svg, plan_svg, slice_svg, svg_to_png,
 };
 
 type Rgb = [u8; 3];
@@ -20,7 +20,7 @@ fn pixel(pixels: &Pixmap, x: f64, y: f64) -> Rgb {
     [pixel.red(), pixel.green(), pixel.blue()]
 }
 
-fn slice(view: View<[f64; 3]>, height: f64) -> SliceOptions<'static> {
+fn slice(view: PictureSubject<[f64; 3]>, height: f64) -> SliceOptions<'static> {
     SliceOptions { view, height, size: 625, legend: false, ..SliceOptions::default() }
 }
 
@@ -36,31 +36,31 @@ const ROOMS: [[f64; 2]; 2] = [[1.0, 1.7], [5.0, 1.7]];
 
 #[test]
 fn a_floor_plan_shows_the_storey_that_it_cuts() {
-    assert_eq!(colours(&slice(View::Cell(CellId(0)), 1.0), ROOMS), [FROM, SEEN]);
-    assert_eq!(colours(&slice(View::Cell(CellId(1)), 1.0), ROOMS), [SEEN, FROM]);
-    assert_eq!(colours(&slice(View::Cell(CellId(2)), 1.0), ROOMS), [HIDDEN, HIDDEN]);
-    assert_eq!(colours(&slice(View::Cell(CellId(2)), 4.0), ROOMS), [FROM, FROM]);
+    assert_eq!(colours(&slice(PictureSubject::Cell(CellId(0)), 1.0), ROOMS), [FROM, SEEN]);
+    assert_eq!(colours(&slice(PictureSubject::Cell(CellId(1)), 1.0), ROOMS), [SEEN, FROM]);
+    assert_eq!(colours(&slice(PictureSubject::Cell(CellId(2)), 1.0), ROOMS), [HIDDEN, HIDDEN]);
+    assert_eq!(colours(&slice(PictureSubject::Cell(CellId(2)), 4.0), ROOMS), [FROM, FROM]);
     // On the border of two storeys it is the upper one; the viewer may be elsewhere.
-    assert_eq!(colours(&slice(View::Cell(CellId(0)), 3.0), ROOMS), [HIDDEN, HIDDEN]);
-    assert_eq!(colours(&slice(View::Eye([1.0, 1.0, 1.0]), 1.0), ROOMS), [FROM, SEEN]);
-    assert_eq!(colours(&slice(View::Eye([5.5, 4.0, 1.0]), 1.0), ROOMS), [HIDDEN, HIDDEN]);
-    assert_eq!(colours(&slice(View::Eye([5.5, 3.0, 1.0]), 4.0), ROOMS), [FROM, FROM]);
+    assert_eq!(colours(&slice(PictureSubject::Cell(CellId(0)), 3.0), ROOMS), [HIDDEN, HIDDEN]);
+    assert_eq!(colours(&slice(PictureSubject::Eye([1.0, 1.0, 1.0]), 1.0), ROOMS), [FROM, SEEN]);
+    assert_eq!(colours(&slice(PictureSubject::Eye([5.5, 4.0, 1.0]), 1.0), ROOMS), [HIDDEN, HIDDEN]);
+    assert_eq!(colours(&slice(PictureSubject::Eye([5.5, 3.0, 1.0]), 4.0), ROOMS), [FROM, FROM]);
 }
 
 /// The z axis points down in the picture, towards the viewer of the scene: the lower z is above.
 #[test]
 fn walls_are_where_no_door_is_at_that_height() {
     let at = [[4.0, 0.25], [4.0, 1.0], [4.0, 1.75], [0.0, 1.0]];
-    let [north, door, south, outer] = colours(&slice(View::Cell(CellId(2)), 1.0), at);
+    let [north, door, south, outer] = colours(&slice(PictureSubject::Cell(CellId(2)), 1.0), at);
     assert_eq!([north, south, outer], [WALL; 3]);
     assert_ne!(door, WALL);
-    let [_, lintel, _, _] = colours(&slice(View::Cell(CellId(2)), 2.0), at);
+    let [_, lintel, _, _] = colours(&slice(PictureSubject::Cell(CellId(2)), 2.0), at);
     assert_eq!(lintel, WALL, "the door ends below");
 }
 
 #[test]
 fn the_eye_is_marked() {
-    let [eye, beside] = colours(&slice(View::Eye([1.0, 1.0, 0.5]), 1.0), [[1.0, 0.5], [1.0, 1.5]]);
+    let [eye, beside] = colours(&slice(PictureSubject::Eye([1.0, 1.0, 0.5]), 1.0), [[1.0, 0.5], [1.0, 1.5]]);
     assert_eq!((eye, beside), ([0xd6, 0x24, 0x6e], FROM));
 }
 
@@ -68,7 +68,7 @@ fn the_eye_is_marked() {
 #[test]
 fn up_is_respected() {
     let seen = |up| {
-        let options = SliceOptions { up, ..slice(View::Cell(CellId(0)), 1.0) };
+        let options = SliceOptions { up, ..slice(PictureSubject::Cell(CellId(0)), 1.0) };
         let png = svg_to_png(&slice_svg(&house(), &options).unwrap()).unwrap();
         Pixmap::decode_png(&png).unwrap()
     };
@@ -95,7 +95,7 @@ fn boxes_are_drawn_from_back_to_front() {
     let plain = isometric(&house(), &IsometricOptions::default());
     assert_eq!(n_tops(&plain), [3, 0, 0, 0]);
     assert_eq!(plain.matches("Z\" fill=").count(), 9, "three faces for each of three cells");
-    let from = |cell| IsometricOptions { view: View::Cell(CellId(cell)), ..IsometricOptions::default() };
+    let from = |cell| IsometricOptions { view: PictureSubject::Cell(CellId(cell)), ..IsometricOptions::default() };
     let seen = isometric(&house(), &from(0));
     // Room 0 lies behind room 1, and the attic, which is not seen, is grey and above both.
     assert_eq!(n_tops(&seen), [0, 1, 1, 1]);
@@ -107,7 +107,7 @@ fn boxes_are_drawn_from_back_to_front() {
     let below = IsometricOptions { below: Some(3.0), ..IsometricOptions::default() };
     assert_eq!(n_tops(&isometric(&house(), &below)), [2, 0, 0, 0], "the attic is cut off");
     assert!(isometric(&house(), &IsometricOptions { up: Up::Z, ..from(0) }) != seen);
-    let eye = IsometricOptions { view: View::Eye([1.0, 1.0, 1.0]), ..IsometricOptions::default() };
+    let eye = IsometricOptions { view: PictureSubject::Eye([1.0, 1.0, 1.0]), ..IsometricOptions::default() };
     let eye = isometric(&house(), &eye);
     assert!(eye.contains("<circle") && eye.contains("<title>What the cell of (1, 1, 1) sees</title>"));
 }
@@ -131,12 +131,12 @@ fn what_cannot_be_drawn_is_refused() {
     let table = house();
     let refused = |options: SliceOptions<'_>| slice_svg(&table, &options).unwrap_err();
     let view = |view| slice(view, 1.0);
-    assert_eq!(refused(view(View::Cell(CellId(3)))), DrawError::NoSuchCell { cell: 3, n_cells: 3 });
-    assert_eq!(refused(SliceOptions { size: 15, ..view(View::Plan) }), DrawError::Size(15));
-    assert_eq!(refused(view(View::Eye([0.0, f64::NAN, 0.0]))), DrawError::NotFinite);
-    assert_eq!(refused(slice(View::Plan, f64::INFINITY)), DrawError::NotFinite);
+    assert_eq!(refused(view(PictureSubject::Cell(CellId(3)))), DrawError::NoSuchCell { cell: 3, n_cells: 3 });
+    assert_eq!(refused(SliceOptions { size: 15, ..view(PictureSubject::Plan) }), DrawError::Size(15));
+    assert_eq!(refused(view(PictureSubject::Eye([0.0, f64::NAN, 0.0]))), DrawError::NotFinite);
+    assert_eq!(refused(slice(PictureSubject::Plan, f64::INFINITY)), DrawError::NotFinite);
     for height in [-0.5, 5.0] {
-        let error = refused(slice(View::Plan, height));
+        let error = refused(slice(PictureSubject::Plan, height));
         assert_eq!(error, DrawError::NoCellAt { height, low: 0.0, high: 5.0 });
         assert_eq!(error.to_string(), format!("there is no cell at height {height}: the cells reach from 0 to 5"));
     }

@@ -6,7 +6,9 @@ use resvg::tiny_skia::Pixmap;
 use sightlines_cells::{Scene, SceneObject};
 use sightlines_geometry::Point3;
 use sightlines_pvs::CellId;
-use sightlines_report::{IsometricOptions, SliceOptions, Surfaces, View, isometric_svg, slice_svg, svg_to_png};
+use sightlines_report::{
+    IsometricOptions, PictureSubject, SliceOptions, Surfaces, isometric_svg, slice_svg, svg_to_png,
+};
 
 const SEEN: &str = "#1c2733";
 const HIDDEN: &str = "#9aa5b1";
@@ -25,7 +27,7 @@ fn scene() -> Scene {
     Scene::new(vec![object("lamp", &[slanted]), object("cat", &[shelf])]).unwrap()
 }
 
-fn drawn(scene: &Scene, view: View<[f64; 3]>, height: f64) -> String {
+fn drawn(scene: &Scene, view: PictureSubject<[f64; 3]>, height: f64) -> String {
     let surfaces = Surfaces::of_scene(scene);
     let options = SliceOptions { view, height, surfaces: Some(&surfaces), size: 625, ..SliceOptions::default() };
     slice_svg(&house(), &options).unwrap()
@@ -38,7 +40,7 @@ const UNIT: f64 = (625.0 - 2.0 * 12.5) / 6.0;
 fn slanted_triangles_are_cut_where_the_plane_is() {
     let mut n = 0;
     for (height, z, x) in [(0.5, 0.75, 2.75), (1.0, 1.0, 2.0), (1.5, 1.25, 1.25)] {
-        let lines = lines_of(&drawn(&scene(), View::Plan, height), SEEN);
+        let lines = lines_of(&drawn(&scene(), PictureSubject::Plan, height), SEEN);
         let [[[x0, y0], [x1, y1]]] = lines[..] else { panic!("at {height}: {lines:?}") };
         let near = |a: f64, b: f64| assert!((a - b).abs() < 0.06, "at {height}: {a} is not {b}");
         near(x0, 12.5 + 0.5 * UNIT);
@@ -49,29 +51,30 @@ fn slanted_triangles_are_cut_where_the_plane_is() {
     }
     assert_eq!(n, 3);
     // The twins: above the triangle there is nothing, and without the scene there are the walls of the cells.
-    assert!(lines_of(&drawn(&scene(), View::Plan, 2.5), SEEN).is_empty());
+    assert!(lines_of(&drawn(&scene(), PictureSubject::Plan, 2.5), SEEN).is_empty());
     let bare = SliceOptions { height: 2.5, size: 625, ..SliceOptions::default() };
     assert!(lines_of(&slice_svg(&house(), &bare).unwrap(), SEEN).len() > 4);
 }
 
 #[test]
 fn surfaces_in_the_plane_are_filled() {
-    let is_filled = |height| drawn(&scene(), View::Plan, height).contains(&format!("fill=\"{FLAT}\" fill-opacity"));
+    let is_filled =
+        |height| drawn(&scene(), PictureSubject::Plan, height).contains(&format!("fill=\"{FLAT}\" fill-opacity"));
     assert_eq!([1.0, 1.5, 2.0].map(is_filled), [false, true, false]);
-    assert!(words_of(&drawn(&scene(), View::Plan, 1.5)).contains(&"surfaces in the plane".to_owned()));
+    assert!(words_of(&drawn(&scene(), PictureSubject::Plan, 1.5)).contains(&"surfaces in the plane".to_owned()));
 }
 
 /// Room 0 sees the lamp, and room 1 does not.
 #[test]
 fn surfaces_that_are_seen_are_darker() {
     let count = |scene: &Scene, cell| {
-        let svg = drawn(scene, View::Cell(CellId(cell)), 1.0);
+        let svg = drawn(scene, PictureSubject::Cell(CellId(cell)), 1.0);
         [SEEN, HIDDEN, SEE_THROUGH].map(|colour| lines_of(&svg, colour).len())
     };
     assert_eq!([count(&scene(), 0), count(&scene(), 1)], [[1, 0, 0], [0, 1, 0]]);
     let glass = scene().with_see_through(vec![0]).unwrap();
     assert_eq!([count(&glass, 0), count(&glass, 1)], [[0, 0, 1], [0, 1, 0]]);
-    let words = words_of(&drawn(&scene(), View::Cell(CellId(0)), 1.0));
+    let words = words_of(&drawn(&scene(), PictureSubject::Cell(CellId(0)), 1.0));
     for (label, is_there) in [("surfaces seen", true), ("surfaces not seen", false), ("walls", false)] {
         assert_eq!(words.contains(&label.to_owned()), is_there, "{label}");
     }
@@ -83,7 +86,7 @@ fn surfaces_that_are_seen_are_darker() {
 fn the_picture_is_as_large_as_the_scene() {
     let far = object("cat", &[[[-20.0, 0.0, 30.0], [40.0, 0.0, 30.0], [40.0, 3.0, 30.0]]]);
     let scene = Scene::new(vec![scene().objects()[0].clone(), far]).unwrap();
-    let svg = drawn(&scene, View::Plan, 1.0);
+    let svg = drawn(&scene, PictureSubject::Plan, 1.0);
     let lines = lines_of(&svg, SEEN);
     assert_eq!(lines.len(), 2);
     assert!(lines.iter().flatten().flatten().all(|x| (0.0..=625.0).contains(x)), "{lines:?}");
@@ -94,7 +97,7 @@ fn the_picture_is_as_large_as_the_scene() {
 fn lines_are_merged() {
     let twice: Vec<[Point3; 3]> = vec![[[0.5, 0.0, 0.5], [3.5, 0.0, 0.5], [0.5, 2.0, 1.5]]; 50];
     let scene = Scene::new(vec![object("lamp", &twice), object("cat", &[])]).unwrap();
-    assert_eq!(lines_of(&drawn(&scene, View::Plan, 1.0), SEEN).len(), 1);
+    assert_eq!(lines_of(&drawn(&scene, PictureSubject::Plan, 1.0), SEEN).len(), 1);
 }
 
 #[test]
@@ -118,7 +121,7 @@ fn rooms(is_single_sided: bool) -> Surfaces {
     Surfaces::of_scene(&scene.with_single_sided(if is_single_sided { vec![0, 1] } else { vec![] }).unwrap())
 }
 
-fn isometric(surfaces: &Surfaces, view: View<[f64; 3]>, below: f64) -> String {
+fn isometric(surfaces: &Surfaces, view: PictureSubject<[f64; 3]>, below: f64) -> String {
     let options = IsometricOptions {
         view,
         below: Some(below),
@@ -145,26 +148,27 @@ fn hues(svg: &str) -> [usize; 3] {
 /// What is in front of cells has their colours, pixel by pixel: the floor of one triangle pair lies in both rooms.
 #[test]
 fn surfaces_are_coloured_by_the_cells_in_front_of_them() {
-    let both = hues(&isometric(&rooms(true), View::Cell(CellId(0)), 2.0));
+    let both = hues(&isometric(&rooms(true), PictureSubject::Cell(CellId(0)), 2.0));
     assert!(both[0] > 5_000 && both[1] > 3_000, "{both:?}");
     // Room 0 is four units long, and room 1 two.
     let floors = both[0] as f64 / both[1] as f64;
     assert!((1.6..2.4).contains(&floors), "{both:?}");
-    let none = hues(&isometric(&rooms(true), View::Cell(CellId(2)), 2.0));
+    let none = hues(&isometric(&rooms(true), PictureSubject::Cell(CellId(2)), 2.0));
     assert!(none[0] < 300 && none[1] < 300 && none[2] > 10_000, "{none:?}");
 }
 
 /// The back of the wall hides the room, unless it has one side only.
 #[test]
 fn single_sided_surfaces_are_left_out_from_behind() {
-    let [open, shut] = [true, false].map(|is_single| hues(&isometric(&rooms(is_single), View::Cell(CellId(0)), 2.0)));
+    let [open, shut] =
+        [true, false].map(|is_single| hues(&isometric(&rooms(is_single), PictureSubject::Cell(CellId(0)), 2.0)));
     assert_ne!(open, shut);
     assert!(shut[0] <= open[0], "{open:?}, {shut:?}");
 }
 
 #[test]
 fn pictures_of_surfaces_have_a_line_where_they_are_cut_and_do_not_grow() {
-    let svg = isometric(&rooms(true), View::Cell(CellId(0)), 2.0);
+    let svg = isometric(&rooms(true), PictureSubject::Cell(CellId(0)), 2.0);
     assert_eq!(svg.matches("<image ").count(), 1);
     let words = words_of(&svg);
     assert_eq!(words[0], "What cell 0 sees, cut at height 2");
@@ -178,6 +182,6 @@ fn pictures_of_surfaces_have_a_line_where_they_are_cut_and_do_not_grow() {
         .map(|t| [[4.0 * t, t, 0.0], [4.0 * t, t, 2.0], [4.0 * t + 0.001, t, 2.0]])
         .collect();
     let scene = Scene::new(vec![object("lamp", &many), object("cat", &[])]).unwrap();
-    let large = isometric(&Surfaces::of_scene(&scene), View::Cell(CellId(0)), 2.0);
+    let large = isometric(&Surfaces::of_scene(&scene), PictureSubject::Cell(CellId(0)), 2.0);
     assert!(large.len() < 120_000, "{}", large.len());
 }

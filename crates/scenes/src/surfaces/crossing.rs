@@ -1,7 +1,7 @@
 //! Two families of long triangles, each of which crosses all of the other family.
 
 use super::{Steps, object, scene};
-use crate::error::{SceneError, check_range};
+use crate::error::{GenerateError, check_range};
 use sightlines_cells::Scene;
 
 /// Strips in two parallel planes: those along x in front of those along y, each of which covers a part of each of the
@@ -10,8 +10,8 @@ use sightlines_cells::Scene;
 /// * `triangles`: their number, from 2 to 2^14; half of them, rounded up, lie along x, and come first
 ///
 /// # Errors
-/// [`SceneError::OutOfRange`]
-pub fn lattice(triangles: u32) -> Result<Scene, SceneError> {
+/// [`GenerateError::OutOfRange`]
+pub fn lattice(triangles: u32) -> Result<Scene, GenerateError> {
     let n = check_range("triangles", triangles, 2, 1 << 14)?;
     let [along, across] = [n.div_ceil(2), n / 2].map(i64::from);
     // Strips are half as wide at their base as their pitch, and extend beyond the last one that they cross.
@@ -44,8 +44,8 @@ pub fn lattice(triangles: u32) -> Result<Scene, SceneError> {
 /// * `triangles`: their number, from 2 to 2^14; half of them, rounded up, hang, and come first
 ///
 /// # Errors
-/// [`SceneError::OutOfRange`]
-pub fn split_worst(triangles: u32) -> Result<Scene, SceneError> {
+/// [`GenerateError::OutOfRange`]
+pub fn split_worst(triangles: u32) -> Result<Scene, GenerateError> {
     let n = check_range("triangles", triangles, 2, 1 << 14)?;
     let [hanging, standing] = [n.div_ceil(2), n / 2].map(i64::from);
     let reach = hanging + 1;

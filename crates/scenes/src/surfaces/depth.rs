@@ -1,7 +1,7 @@
 //! Faces close behind each other, near and far, to test the precision of depths.
 
 use super::{FINE, Steps, Tile, object, scene};
-use crate::error::{SceneError, check_range};
+use crate::error::{GenerateError, check_range};
 use sightlines_cells::Scene;
 
 /// Options of [`depth_pairs`].
@@ -32,8 +32,8 @@ const SIDE: i64 = 32;
 /// distinguished show the wrong one.
 ///
 /// # Errors
-/// [`SceneError::OutOfRange`]
-pub fn depth_pairs(options: DepthPairsOptions) -> Result<Scene, SceneError> {
+/// [`GenerateError::OutOfRange`]
+pub fn depth_pairs(options: DepthPairsOptions) -> Result<Scene, GenerateError> {
     let pairs = check_range("pairs", options.pairs, 1, 40)?;
     let nearest = i64::from(check_range("nearest", options.nearest, 1, 1024)?);
     let gap = i64::from(check_range("gap", options.gap, 1, 64 * options.nearest)?);

@@ -1,7 +1,7 @@
 //! Triangles whose depths mislead: cyclic overlaps, and long triangles next to short ones.
 
 use super::{Steps, Tile, object, scene};
-use crate::error::{SceneError, check_range};
+use crate::error::{GenerateError, check_range};
 use sightlines_cells::Scene;
 
 /// Triangles in threes, each tile of the picture with three: the first covers a part of the second, that a part of the
@@ -11,8 +11,8 @@ use sightlines_cells::Scene;
 /// * `triangles`: their number, from 1 to 2^20
 ///
 /// # Errors
-/// [`SceneError::OutOfRange`]
-pub fn cycles(triangles: u32) -> Result<Scene, SceneError> {
+/// [`GenerateError::OutOfRange`]
+pub fn cycles(triangles: u32) -> Result<Scene, GenerateError> {
     check_range("triangles", triangles, 1, 1 << 20)?;
     let mut left = triangles as usize;
     let objects = Tile::all(triangles.div_ceil(3), 36).zip(0..).map(|(tile, k)| {
@@ -43,8 +43,8 @@ fn bar(tile: &Tile, turn: usize) -> Steps {
 /// * `triangles`: their number, from 1 to 2^20
 ///
 /// # Errors
-/// [`SceneError::OutOfRange`]
-pub fn interleaved(triangles: u32) -> Result<Scene, SceneError> {
+/// [`GenerateError::OutOfRange`]
+pub fn interleaved(triangles: u32) -> Result<Scene, GenerateError> {
     check_range("triangles", triangles, 1, 1 << 20)?;
     let mut left = triangles as usize;
     let objects = Tile::all(triangles.div_ceil(2), 32).zip(0..).map(|(tile, k)| {

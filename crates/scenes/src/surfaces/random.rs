@@ -1,7 +1,7 @@
 //! Random triangles: in space, in one plane, and almost without area.
 
 use super::{FINE, Steps, object, scene};
-use crate::error::{SceneError, check_range};
+use crate::error::{GenerateError, check_range};
 use crate::rng::Rng;
 use sightlines_cells::Scene;
 
@@ -27,7 +27,7 @@ impl Default for SurfaceOptions {
 const DEPTH: i64 = 16;
 
 impl SurfaceOptions {
-    fn checked(self) -> Result<Self, SceneError> {
+    fn checked(self) -> Result<Self, GenerateError> {
         check_range("triangles", self.triangles, 1, 1 << 20)?;
         check_range("layers", self.layers, 1, 64)?;
         Ok(self)
@@ -74,8 +74,8 @@ fn centre(rng: &mut Rng) -> [i64; 3] {
 /// others that each meets.
 ///
 /// # Errors
-/// [`SceneError::OutOfRange`]
-pub fn soup(options: SurfaceOptions) -> Result<Scene, SceneError> {
+/// [`GenerateError::OutOfRange`]
+pub fn soup(options: SurfaceOptions) -> Result<Scene, GenerateError> {
     let options = options.checked()?;
     let (mut rng, half) = (Rng::new(options.seed, 21), options.half());
     Ok(options.made("soup", || {
@@ -90,8 +90,8 @@ pub fn soup(options: SurfaceOptions) -> Result<Scene, SceneError> {
 /// Triangles that overlap in one sloped plane: only a rule decides which of them is visible.
 ///
 /// # Errors
-/// [`SceneError::OutOfRange`]
-pub fn coplanar(options: SurfaceOptions) -> Result<Scene, SceneError> {
+/// [`GenerateError::OutOfRange`]
+pub fn coplanar(options: SurfaceOptions) -> Result<Scene, GenerateError> {
     let options = options.checked()?;
     let (mut rng, half) = (Rng::new(options.seed, 22), options.half());
     let reach = i32::try_from(DEPTH * FINE / 2).expect("a picture is small");
@@ -108,8 +108,8 @@ pub fn coplanar(options: SurfaceOptions) -> Result<Scene, SceneError> {
 /// Triangles as long as a part of the picture and from one to 64 steps wide, in all directions.
 ///
 /// # Errors
-/// [`SceneError::OutOfRange`]
-pub fn slivers(options: SurfaceOptions) -> Result<Scene, SceneError> {
+/// [`GenerateError::OutOfRange`]
+pub fn slivers(options: SurfaceOptions) -> Result<Scene, GenerateError> {
     let options = options.checked()?;
     let mut rng = Rng::new(options.seed, 23);
     // Each crosses about 16 others per layer in the picture.

@@ -1,7 +1,7 @@
 //! Each family has its documented properties, decided by exact predicates.
 
 use super::*;
-use crate::error::SceneError;
+use crate::error::GenerateError;
 use sightlines_geometry::orient3d;
 
 type Triangle = [Point3; 3];
@@ -264,7 +264,7 @@ fn depth_pairs_are_parallel_and_behind_each_other() {
 
 #[test]
 fn surface_options_are_checked() {
-    let message = |made: Result<Scene, SceneError>| made.unwrap_err().to_string();
+    let message = |made: Result<Scene, GenerateError>| made.unwrap_err().to_string();
     assert_eq!(message(soup(SurfaceOptions { layers: 0, ..SOME })), "layers is 0, but must be from 1 to 64");
     for seeded in [soup, coplanar, slivers] {
         let none = SurfaceOptions { triangles: 0, ..SOME };

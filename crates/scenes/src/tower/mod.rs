@@ -11,7 +11,7 @@ mod stairs;
 mod tests;
 mod walls;
 
-use crate::error::{SceneError, check_range};
+use crate::error::{GenerateError, check_range};
 use crate::layout::{Layout, STEPS};
 use crate::office::half_thickness;
 use crate::rng::Rng;
@@ -78,9 +78,9 @@ const MAX_PLACES: u32 = 1 << 15;
 /// door to a corridor, and every corridor leads to a stairwell.
 ///
 /// # Errors
-/// [`SceneError`] for a count out of its range, more than 32768 room places (`floors` times `rooms_x`
+/// [`GenerateError`] for a count out of its range, more than 32768 room places (`floors` times `rooms_x`
 /// times `rooms_y`), or an unknown thickness.
-pub fn tower(options: TowerOptions) -> Result<Scene, SceneError> {
+pub fn tower(options: TowerOptions) -> Result<Scene, GenerateError> {
     let plan = TowerPlan::new(&options)?;
     let mut objects = Vec::new();
     for (i, floor) in plan.floors.iter().enumerate() {
@@ -96,7 +96,7 @@ pub fn tower(options: TowerOptions) -> Result<Scene, SceneError> {
 ///
 /// # Errors
 /// As [`tower`].
-pub fn tower_rooms(options: TowerOptions) -> Result<Vec<TowerRoom>, SceneError> {
+pub fn tower_rooms(options: TowerOptions) -> Result<Vec<TowerRoom>, GenerateError> {
     let plan = TowerPlan::new(&options)?;
     let unit = |x: i32| f64::from(x) / f64::from(STEPS);
     let mut rooms = Vec::new();
@@ -141,7 +141,7 @@ struct TowerPlan {
 }
 
 impl TowerPlan {
-    fn new(options: &TowerOptions) -> Result<Self, SceneError> {
+    fn new(options: &TowerOptions) -> Result<Self, GenerateError> {
         let n_floors = check_range("floors", options.floors, 1, 256)?;
         let rooms_x = check_range("rooms_x", options.rooms_x, 1, 128)?;
         let rooms_y = check_range("rooms_y", options.rooms_y, 1, 128)?;

@@ -4,7 +4,7 @@
 use super::brushes::{Brush, world_of_brushes};
 use super::plane::WorldPlane;
 use super::{BspWorldOptions, World, bsp_world};
-use crate::error::{SceneError, check_range};
+use crate::error::{GenerateError, check_range};
 
 /// Length of a box of a row, in scene units.
 const LENGTH: i32 = 32;
@@ -17,8 +17,8 @@ const LENGTH: i32 = 32;
 /// other if and only if that is below `width` for both bends; if it is equal, lines graze ([`corridor_sees`]).
 ///
 /// # Errors
-/// [`SceneError::OutOfRange`] unless there are 1 to 200 portals, bends up to 16 and a width from 1 to 1024.
-pub fn corridor(n_portals: u32, bends: [u32; 2], width: u32) -> Result<World, SceneError> {
+/// [`GenerateError::OutOfRange`] unless there are 1 to 200 portals, bends up to 16 and a width from 1 to 1024.
+pub fn corridor(n_portals: u32, bends: [u32; 2], width: u32) -> Result<World, GenerateError> {
     let n = check_range("n_portals", n_portals, 1, 200)?.cast_signed();
     check_range("bends", bends[0].max(bends[1]), 0, 16)?;
     let width = check_range("width", width, 1, 1024)?.cast_signed();
@@ -80,8 +80,8 @@ pub fn pillar_ring() -> World {
 /// Stairs that wind `turns` times around a pillar, 8 steps in each turn.
 ///
 /// # Errors
-/// [`SceneError::OutOfRange`] unless there are 1 to 8 turns.
-pub fn spiral_stairs(turns: u32) -> Result<World, SceneError> {
+/// [`GenerateError::OutOfRange`] unless there are 1 to 8 turns.
+pub fn spiral_stairs(turns: u32) -> Result<World, GenerateError> {
     let turns = check_range("turns", turns, 1, 8)?.cast_signed();
     let top = turns * 128 + 128;
     let mut brushes = vec![Brush::empty([-96, -96, 0], [96, 96, top]), Brush::solid([-24, -24, 0], [24, 24, top])];

@@ -2,7 +2,7 @@
 
 use super::World;
 use super::brushes::{Brush, world_of_brushes};
-use crate::error::{SceneError, check_range};
+use crate::error::{GenerateError, check_range};
 use crate::rng::Rng;
 use crate::spanning::Passages;
 
@@ -45,8 +45,8 @@ struct Room {
 /// pillars and some windows are tilted. Some rooms are closed off, and some pockets belong to none.
 ///
 /// # Errors
-/// [`SceneError::OutOfRange`].
-pub fn quake_like(options: QuakeLikeOptions) -> Result<World, SceneError> {
+/// [`GenerateError::OutOfRange`].
+pub fn quake_like(options: QuakeLikeOptions) -> Result<World, GenerateError> {
     let [w, h] = [("rooms_x", options.rooms_x), ("rooms_y", options.rooms_y)];
     let w = check_range(w.0, w.1, 1, 16)?.cast_signed();
     let h = check_range(h.0, h.1, 1, 16)?.cast_signed();

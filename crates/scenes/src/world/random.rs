@@ -4,7 +4,7 @@ use super::World;
 use super::build::{Builder, Decision, EPSILON};
 use super::plane::WorldPlane;
 use super::polytope::Polytope;
-use crate::error::{SceneError, check_range};
+use crate::error::{GenerateError, check_range};
 use crate::rng::Rng;
 
 /// Options of [`bsp_world`].
@@ -34,8 +34,8 @@ const THICKNESS: f64 = 4.0;
 /// A cube of 512 units, cut by random planes, axial or with normals of small integers; leafs are solid at random.
 ///
 /// # Errors
-/// [`SceneError::OutOfRange`].
-pub fn bsp_world(options: BspWorldOptions) -> Result<World, SceneError> {
+/// [`GenerateError::OutOfRange`].
+pub fn bsp_world(options: BspWorldOptions) -> Result<World, GenerateError> {
     let leafs = check_range("leafs", options.leafs, 1, 20_000)?;
     let solid = check_range("solid_percent", options.solid_percent, 0, 90)? as usize;
     let tilted = check_range("tilted_percent", options.tilted_percent, 0, 100)? as usize;

@@ -1,7 +1,7 @@
 //! Properties of every world.
 
 use super::*;
-use crate::SceneError;
+use crate::GenerateError;
 
 /// FNV-1a over the whole content of a world.
 fn checksum(world: &World) -> u64 {
@@ -228,7 +228,7 @@ fn maps_of_worlds_keep_their_portals() {
 
 #[test]
 fn options_of_worlds_are_checked() {
-    let text = |r: Result<World, SceneError>| r.unwrap_err().to_string();
+    let text = |r: Result<World, GenerateError>| r.unwrap_err().to_string();
     let random = |leafs| bsp_world(BspWorldOptions { leafs, ..BspWorldOptions::default() });
     assert_eq!(text(random(0)), "leafs is 0, but must be from 1 to 20000");
     assert_eq!(text(corridor(0, [0, 0], 1)), "n_portals is 0, but must be from 1 to 200");

@@ -3,7 +3,7 @@
 /// Work counts of a [`ConvexStabber`](super::ConvexStabber) since it was created. Deterministic.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[non_exhaustive]
-pub struct ConvexCounters {
+pub struct ConvexStabberCounters {
     /// Sequences decided.
     pub n_asked: u64,
     /// Linear programs solved.
@@ -38,7 +38,7 @@ pub struct ConvexCounters {
     pub n_hidden_fine: u64,
 }
 
-impl ConvexCounters {
+impl ConvexStabberCounters {
     /// Every counter, in the order of declaration.
     const fn all(&mut self) -> [&mut u64; 16] {
         [
@@ -62,7 +62,7 @@ impl ConvexCounters {
     }
 }
 
-impl std::ops::Add for ConvexCounters {
+impl std::ops::Add for ConvexStabberCounters {
     type Output = Self;
 
     fn add(mut self, mut other: Self) -> Self {
@@ -71,7 +71,7 @@ impl std::ops::Add for ConvexCounters {
     }
 }
 
-impl std::ops::Sub for ConvexCounters {
+impl std::ops::Sub for ConvexStabberCounters {
     type Output = Self;
 
     /// The difference from `other`, an earlier count.

@@ -88,7 +88,7 @@ mod verify;
 mod witness;
 
 pub use certificate::{Block, BoxProof, ConvexCertificate, ConvexNode, ConvexTerm, HullProof, PlaneProof};
-pub use counters::ConvexCounters;
+pub use counters::ConvexStabberCounters;
 pub use fine::FineLine3;
 pub use line::Line3;
 pub use sequence::{ConvexSequence, ConvexUndo};

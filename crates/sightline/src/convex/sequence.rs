@@ -1,6 +1,6 @@
 //! The incremental form: convex portals are pushed and undone.
 
-use super::{ConvexCertificate, ConvexCounters, ConvexStabber, ConvexVerdict, Line3, StabLimits};
+use super::{ConvexCertificate, ConvexStabber, ConvexStabberCounters, ConvexVerdict, Line3, StabLimits};
 use crate::stabber::Stabber;
 use crate::{LimitReached, Verdict};
 use sightlines_geometry::{Aabb, Portal3, orient3d};
@@ -40,7 +40,7 @@ impl<P: Borrow<Portal3> + Clone> ConvexSequence<P> {
     }
 
     /// Work counts of the solver since this was created.
-    pub const fn counters(&self) -> ConvexCounters {
+    pub const fn counters(&self) -> ConvexStabberCounters {
         self.stabber.counters()
     }
 

@@ -3,7 +3,7 @@
 use super::ConvexVerdict;
 use super::certificate::{BoxProof, ConvexCertificate, ConvexNode};
 use super::chart::{Chart, Plate};
-use super::counters::ConvexCounters;
+use super::counters::ConvexStabberCounters;
 use super::fine::{self, Fine, FineLine3};
 use super::hull::{self, N_HULL};
 use super::line::Line3;
@@ -107,7 +107,7 @@ impl KnownPortal {
 #[derive(Debug, Clone)]
 pub struct ConvexStabber {
     limits: StabLimits,
-    counters: ConvexCounters,
+    counters: ConvexStabberCounters,
     plates: Vec<Plate>,
     edges: Vec<Edge>,
     /// Edges of the program's rows after those of the hull.
@@ -122,7 +122,7 @@ impl ConvexStabber {
     pub fn new(limits: StabLimits) -> Self {
         Self {
             limits,
-            counters: ConvexCounters::default(),
+            counters: ConvexStabberCounters::default(),
             plates: Vec::new(),
             edges: Vec::new(),
             kept: Vec::new(),
@@ -133,7 +133,7 @@ impl ConvexStabber {
     }
 
     /// Work counts since this was created.
-    pub const fn counters(&self) -> ConvexCounters {
+    pub const fn counters(&self) -> ConvexStabberCounters {
         self.counters
     }
 

@@ -17,7 +17,7 @@ fn groups_hide_as_much_as_boxes_and_nothing_seen() {
     let boxes: Vec<Volume> = views.parts().iter().map(|view| view.volume).collect();
     assert_eq!(boxes.len(), 24);
     let sheets = Arc::new(Sheets::new(&scene.occluding_triangles().collect::<Vec<_>>()));
-    let make = || Box::new(SheetMethod::shared(Arc::clone(&sheets))) as Method;
+    let make = || Box::new(SheetMethod::shared(Arc::clone(&sheets))) as RegionMethod;
     let start = vec![faces.ids().map(|face| faces.has_area(face)).collect::<Vec<bool>>(); boxes.len()];
     let asker = Asker::new(&faces);
     let each = asker.each(&make, &boxes, start.clone()).unwrap();

@@ -121,7 +121,7 @@ fn no_budget_changes_no_pixel() {
         assert!(left.is_part_of_the_original());
         // An impostor: one visible face less.
         let mut wrong = left.clone();
-        let estimate = Estimate::new(&Faces::of_scene(&scene).unwrap(), &views, 4096);
+        let estimate = HitEstimate::new(&Faces::of_scene(&scene).unwrap(), &views, 4096);
         let mut face = 0;
         let seen = |object: usize, k: u32| {
             let first: usize = scene.objects()[..object].iter().map(|o| o.triangles.len()).sum();

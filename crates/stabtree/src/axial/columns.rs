@@ -15,7 +15,7 @@ use super::first_true::first_true;
 use super::horizons::Horizons;
 use super::witness_log::{FoundFor, Worker};
 use sightlines_geometry::Aabb;
-use sightlines_sightline::{ShaftLine, Target, Verdict};
+use sightlines_sightline::{BoxTarget, ShaftLine, Verdict};
 use std::sync::OnceLock;
 
 /// Members of the shortest column that is worth it.
@@ -201,7 +201,7 @@ impl AxialSearch<'_> {
         }
         let from = self.bounds_at(place as usize);
         let rest = Aabb { min: self.bounds_at(first).min, max: self.bounds_at(last).max };
-        match worker.shaft.decide(from, &rest, Target::Inside, BUDGET) {
+        match worker.shaft.decide(from, &rest, BoxTarget::Inside, BUDGET) {
             Verdict::Hidden(()) => true,
             Verdict::Visible(ShaftLine::Free(line)) => {
                 self.follow(&line, [from, &rest], FoundFor::Groups, worker);
@@ -219,7 +219,7 @@ mod tests {
     use crate::search::SearchOptions;
     use sightlines_cells::{Axial, BoxCell, CellGraph, Portal};
     use sightlines_geometry::AxialDoor;
-    use sightlines_kdtree::{AxialFace, AxialPortal, Options, subdivide};
+    use sightlines_kdtree::{AxialFace, AxialPortal, KdOptions, subdivide};
     use sightlines_sightline::Blockers;
 
     /// Two rooms above each other on each storey, both with a hole in the floor, the second hole every other time smaller; the
@@ -237,7 +237,7 @@ mod tests {
         };
         let faces: Vec<AxialFace<3>> = (1..storeys).flat_map(storey).collect();
         let bounds = Aabb { min: [0.0; 3], max: [3.0, storeys as f64, 2.0] };
-        let tree = subdivide(&faces, bounds, &Options::default()).unwrap();
+        let tree = subdivide(&faces, bounds, &KdOptions::default()).unwrap();
         let portal = |p: &AxialPortal<3>| {
             let shape = AxialDoor { extent: Aabb { min: p.min, max: p.max }, axis: p.axis as u8, forward: true };
             Portal { cells: p.cells, sides: [2 * p.axis as u32 + 1, 2 * p.axis as u32], shape }

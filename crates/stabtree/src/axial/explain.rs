@@ -5,7 +5,7 @@ use crate::explanation::{Barrier, Explanation, SearchLimit, Sight};
 use sightlines_cells::{Axial, CellGraph, CellId, Exit, PortalId};
 use sightlines_geometry::{Aabb, AxialDoor};
 use sightlines_sightline::{
-    AxialStabber, AxialWitness, BlockedProof, Blockers, Branch, Shaft, ShaftLine, Stabber, Target, Verdict,
+    AxialStabber, AxialWitness, BlockedProof, Blockers, BoxTarget, Branch, Shaft, ShaftLine, Stabber, Verdict,
 };
 
 /// The explanation for two cells in space.
@@ -114,13 +114,13 @@ impl<'a> AxialExplainer<'a> {
         }
         let [a, b] = [from, to].map(|cell| &graph.cell(cell).bounds);
         let mut shaft = Shaft::new(blockers);
-        let explanation = match shaft.decide(a, b, Target::Inside, budget) {
+        let explanation = match shaft.decide(a, b, BoxTarget::Inside, budget) {
             Verdict::Visible(line) => Walk::new(graph, &useful, &line, to).explain(from),
             // Cases that are left open may still be decided by the fractions of a proof.
             Verdict::Hidden(()) | Verdict::Undecided(_) => shaft
-                .certify(a, b, Target::Inside, budget)
+                .certify(a, b, BoxTarget::Inside, budget)
                 .and_then(|proof| proof.narrowed(blockers.rectangles()))
-                .filter(|(proof, walls)| proof.holds(a, b, Target::Inside, walls))
+                .filter(|(proof, walls)| proof.holds(a, b, BoxTarget::Inside, walls))
                 .map(|(proof, walls)| {
                     let proof = AxialProof { proof: Box::new(proof), walls, n_blockers: blockers.len() };
                     Verdict::Hidden(Barrier::Blocked(proof))

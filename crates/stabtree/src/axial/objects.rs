@@ -5,7 +5,7 @@ use super::pairs::{CELL_BUDGET, FEW, GROUP_BUDGET, apart};
 use super::witness_log::{FoundFor, WitnessLog, Worker};
 use sightlines_geometry::Aabb;
 use sightlines_progress::Allowance;
-use sightlines_sightline::{ShaftLine, Target, Verdict};
+use sightlines_sightline::{BoxTarget, ShaftLine, Verdict};
 use std::collections::VecDeque;
 use std::sync::atomic::Ordering::Relaxed;
 
@@ -98,7 +98,7 @@ impl AxialSearch<'_> {
             if ask {
                 let budget = if node.is_leaf() { CELL_BUDGET } else { self.group_budget() };
                 let found_for = if node.is_leaf() { FoundFor::Object([object, places[0]]) } else { FoundFor::Groups };
-                match worker.shaft.decide(&node.bounds, target, Target::Surface, budget) {
+                match worker.shaft.decide(&node.bounds, target, BoxTarget::Surface, budget) {
                     Verdict::Hidden(()) => continue,
                     Verdict::Visible(ShaftLine::Free(line)) => {
                         self.follow(&line, [&node.bounds, target], found_for, worker);
@@ -147,7 +147,7 @@ impl AxialSearch<'_> {
                 return false;
             }
             let ask = apart(&node.bounds, target);
-            if ask && worker.shaft.decide(&node.bounds, target, Target::Surface, GROUP_BUDGET).is_hidden() {
+            if ask && worker.shaft.decide(&node.bounds, target, BoxTarget::Surface, GROUP_BUDGET).is_hidden() {
                 return true;
             }
             let [low, high] = self.tree.children(n);

@@ -19,7 +19,7 @@
 //! When a beam reaches a cell in doubt, an exact search looks for a line through its sequence of gates. If there is
 //! none, the cell is left to a later stage, which follows sequences of gates one by one.
 
-use super::ConvexCounters;
+use super::ConvexSearchCounters;
 use super::cell_set::CellSet;
 use super::cut::{Cutter, Part, Plane, Vertex, is_within, middle};
 use super::gates::{Gate, Gates, Memory};
@@ -49,7 +49,7 @@ pub(super) struct BeamTracer {
     cutter: Cutter,
     stabber: ConvexStabber,
     programs_before: u64,
-    counted: ConvexCounters,
+    counted: ConvexSearchCounters,
     beams: Vec<Beam>,
     n_beams_used: usize,
     waiting: Vec<u32>,
@@ -81,7 +81,7 @@ impl BeamTracer {
             cutter: Cutter::new(gates.largest),
             stabber: ConvexStabber::new(ONLY_LINES),
             programs_before: 0,
-            counted: ConvexCounters::default(),
+            counted: ConvexSearchCounters::default(),
             beams: Vec::new(),
             n_beams_used: 0,
             waiting: Vec::new(),
@@ -98,7 +98,7 @@ impl BeamTracer {
     }
 
     /// The work done since the last call.
-    pub(super) fn take_counters(&mut self) -> ConvexCounters {
+    pub(super) fn take_counters(&mut self) -> ConvexSearchCounters {
         let programs = self.stabber.counters().n_programs;
         self.counted.programs = programs - std::mem::replace(&mut self.programs_before, programs);
         self.counted.clips = std::mem::take(&mut self.cutter.clips);

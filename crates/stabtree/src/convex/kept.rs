@@ -8,7 +8,7 @@
 
 use super::beams::Traced;
 use super::pairs::PairVerdict;
-use super::{ConvexCounters, ConvexSearch, ConvexState, FEW, Gates, N_STAGES, PAIRS};
+use super::{ConvexSearch, ConvexSearchCounters, ConvexState, FEW, Gates, N_STAGES, PAIRS};
 use sightlines_progress::{Halt, Kept, Observer, Phase, Units, kept_struct, read_whole};
 use sightlines_pvs::BitMatrix;
 use sightlines_pvs::runs::{read_runs, runs_of, write_runs};
@@ -64,7 +64,7 @@ const CELLS: usize = 16;
 /// What results are of.
 const OF: &str = "this bake";
 
-kept_struct!(ConvexCounters { clips, lines, programs, beams, sequences });
+kept_struct!(ConvexSearchCounters { clips, lines, programs, beams, sequences });
 
 impl ConvexSearch {
     /// Takes all steps of a search that has not begun, with results that are kept; reports as [`ConvexSearch::run`] does.
@@ -127,7 +127,7 @@ impl ConvexSearch {
         if ![&state.visible, &state.possible].iter().all(|matrix| matrix.is_symmetric()) {
             return None;
         }
-        (state.counters, state.stage, state.done) = (ConvexCounters::from_bytes(bytes)?, stage, 0);
+        (state.counters, state.stage, state.done) = (ConvexSearchCounters::from_bytes(bytes)?, stage, 0);
         Some(())
     }
 
@@ -163,9 +163,9 @@ impl ConvexSearch {
         units: Units<'_>,
     ) -> Result<(), Halt> {
         let compute = || {
-            let (traced, counters): (Vec<Traced>, Vec<ConvexCounters>) =
+            let (traced, counters): (Vec<Traced>, Vec<ConvexSearchCounters>) =
                 self.beams_of(range.clone()).into_iter().unzip();
-            let mut all = ConvexCounters::default();
+            let mut all = ConvexSearchCounters::default();
             counters.into_iter().for_each(|counters| all += counters);
             Ok::<_, Halt>((traced, all))
         };
@@ -211,7 +211,7 @@ impl ConvexSearch {
 
     /// Decides the pairs in doubt of some cells, and returns the verdicts.
     fn decide_cells(&mut self, cells: &[u32]) -> Vec<u8> {
-        let mut all = ConvexCounters::default();
+        let mut all = ConvexSearchCounters::default();
         let (mut out, mut n) = (Vec::new(), 0_u64);
         let pairs: Vec<[u32; 2]> = cells.iter().flat_map(|&cell| self.pairs_in_doubt(cell)).collect();
         for batch in pairs.chunks(PAIRS) {
@@ -237,7 +237,7 @@ impl ConvexSearch {
             let (pair, sight) = read_verdict(&mut bytes, &self.gates).filter(|([a, _], _)| cells.contains(a))?;
             self.apply_verdict(pair, &sight);
         }
-        self.state.counters += ConvexCounters::from_bytes(bytes)?;
+        self.state.counters += ConvexSearchCounters::from_bytes(bytes)?;
         Some(())
     }
 }
@@ -260,7 +260,7 @@ fn read_chain(bytes: &mut &[u8], gates: &Gates) -> Option<Vec<u32>> {
     Vec::read(bytes).filter(is_gate).filter(is_line)
 }
 
-fn beams_to_bytes((traced, counters): &(Vec<Traced>, ConvexCounters)) -> Vec<u8> {
+fn beams_to_bytes((traced, counters): &(Vec<Traced>, ConvexSearchCounters)) -> Vec<u8> {
     let mut out = Vec::new();
     for Traced { hidden, chains } in traced {
         write_row(hidden, &mut out);
@@ -270,7 +270,7 @@ fn beams_to_bytes((traced, counters): &(Vec<Traced>, ConvexCounters)) -> Vec<u8>
     out
 }
 
-fn beams_from_bytes(bytes: &[u8], n: usize, gates: &Gates) -> Option<(Vec<Traced>, ConvexCounters)> {
+fn beams_from_bytes(bytes: &[u8], n: usize, gates: &Gates) -> Option<(Vec<Traced>, ConvexSearchCounters)> {
     let n_cells = gates.n_cells();
     let traced = |bytes: &mut &[u8]| {
         let mut hidden = vec![0u64; n_cells.div_ceil(64)];

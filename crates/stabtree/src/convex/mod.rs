@@ -34,7 +34,7 @@ pub use explain::{
     BlockedConvex, Blocking, ConvexDoubt, ConvexExplainer, ConvexExplanation, ConvexGate, ConvexPath, ConvexProof,
     MOST_EXPLAINED, check_convex, explain_convex,
 };
-pub use state::{ConvexCounters, ConvexOptions, ConvexState, ConvexVisibility, WorkChain};
+pub use state::{ConvexOptions, ConvexSearchCounters, ConvexState, ConvexVisibility, WorkChain};
 
 pub(crate) use batch::Workers;
 use beams::{BeamTracer, Traced};
@@ -86,7 +86,7 @@ impl ConvexSearch {
             possible: BitMatrix::identity(n),
             through: BitMatrix::new(gates.len(), n),
             undecided: Vec::new(),
-            counters: ConvexCounters::default(),
+            counters: ConvexSearchCounters::default(),
         };
         let workers = Workers::new(options.threads);
         let mut scattered: Vec<u32> = (0..n as u32).collect();
@@ -289,7 +289,7 @@ impl ConvexSearch {
         let done = self.state.done as usize;
         let mut is_done = vec![false; self.order.len()];
         self.order[..done].iter().for_each(|&gate| is_done[gate as usize] = true);
-        let (traced, counters): (Vec<Traced>, Vec<ConvexCounters>) = traced.into_iter().unzip();
+        let (traced, counters): (Vec<Traced>, Vec<ConvexSearchCounters>) = traced.into_iter().unzip();
         counters.into_iter().for_each(|counters| self.state.counters += counters);
         self.apply_beams(range, &traced, &is_done);
         if done == self.order.len() {
@@ -299,7 +299,7 @@ impl ConvexSearch {
     }
 
     /// Beams of the gates at some places of the order, by what is known now.
-    fn beams_of(&self, places: Range<usize>) -> Vec<(Traced, ConvexCounters)> {
+    fn beams_of(&self, places: Range<usize>) -> Vec<(Traced, ConvexSearchCounters)> {
         let (gates, state, order) = (&self.gates, &self.state, &self.order);
         self.workers.map(
             places,
@@ -373,7 +373,7 @@ impl ConvexSearch {
         others.map(|other| [cell, other]).collect()
     }
 
-    fn verdicts_on(&self, pairs: &[[u32; 2]]) -> Vec<(PairVerdict, ConvexCounters)> {
+    fn verdicts_on(&self, pairs: &[[u32; 2]]) -> Vec<(PairVerdict, ConvexSearchCounters)> {
         let (gates, through) = (&self.gates, &self.state.through);
         self.workers.map(
             0..pairs.len(),

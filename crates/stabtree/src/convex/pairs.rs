@@ -7,7 +7,7 @@
 //! If none does, its proof names the gates responsible: the search backtracks to before the last of them, and skips
 //! other sequences with the same gates at once.
 
-use super::ConvexCounters;
+use super::ConvexSearchCounters;
 use super::cut::{Cutter, Part, Plane, enclosing, middle};
 use super::gates::{Gates, Memory};
 use super::vector::{sub, unit};
@@ -53,7 +53,7 @@ pub(super) struct SequenceTracer {
     cutter: Cutter,
     stabber: ConvexStabber,
     programs_before: u64,
-    counted: ConvexCounters,
+    counted: ConvexSearchCounters,
     levels: Vec<Level>,
     planes: Vec<Plane>,
     chain: Vec<u32>,
@@ -78,7 +78,7 @@ impl SequenceTracer {
             cutter: Cutter::new(gates.largest),
             stabber: ConvexStabber::new(StabLimits::default()),
             programs_before: 0,
-            counted: ConvexCounters::default(),
+            counted: ConvexSearchCounters::default(),
             levels: Vec::new(),
             planes: Vec::new(),
             chain: Vec::new(),
@@ -95,7 +95,7 @@ impl SequenceTracer {
     }
 
     /// The work done since the last call.
-    pub(super) fn take_counters(&mut self) -> ConvexCounters {
+    pub(super) fn take_counters(&mut self) -> ConvexSearchCounters {
         let programs = self.stabber.counters().n_programs;
         self.counted.programs = programs - std::mem::replace(&mut self.programs_before, programs);
         self.counted.clips = std::mem::take(&mut self.cutter.clips);

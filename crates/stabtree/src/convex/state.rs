@@ -14,7 +14,7 @@ pub struct ConvexOptions {
 /// The work of a search: counts of elementary operations, equal for equal input and options on every machine and with
 /// any number of threads.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct ConvexCounters {
+pub struct ConvexSearchCounters {
     /// Polygons cut by planes.
     pub clips: u64,
     /// Lines followed through the graph.
@@ -27,7 +27,7 @@ pub struct ConvexCounters {
     pub sequences: u64,
 }
 
-impl ConvexCounters {
+impl ConvexSearchCounters {
     /// Names and values, in a fixed order.
     pub fn named(&self) -> [(&'static str, u64); 5] {
         let Self { clips, lines, programs, beams, sequences } = *self;
@@ -41,7 +41,7 @@ impl ConvexCounters {
     }
 }
 
-impl std::ops::AddAssign for ConvexCounters {
+impl std::ops::AddAssign for ConvexSearchCounters {
     fn add_assign(&mut self, other: Self) {
         self.clips += other.clips;
         self.lines += other.lines;
@@ -68,13 +68,13 @@ pub struct ConvexState {
     /// Pairs (lower id first, in any order) that count as visible unless a line is found.
     pub undecided: Vec<[u32; 2]>,
     /// Counters of the work done so far.
-    pub counters: ConvexCounters,
+    pub counters: ConvexSearchCounters,
 }
 
 /// How far more threads can speed up a search, counted and not timed: see [`ConvexSearch::chain`](super::ConvexSearch::chain).
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct WorkChain {
-    /// The [work](ConvexCounters::work) of all units.
+    /// The [work](ConvexSearchCounters::work) of all units.
     pub all: u64,
     /// That of the unit with the most work of each batch, added up: batches follow each other, so however many threads
     /// there are, they wait for it.
@@ -99,7 +99,7 @@ pub struct ConvexVisibility {
     /// [`ConvexOptions::fast`], which searches for no lines.
     pub undecided: Vec<[u32; 2]>,
     /// The work done.
-    pub counters: ConvexCounters,
+    pub counters: ConvexSearchCounters,
 }
 
 #[cfg(test)]

@@ -97,7 +97,7 @@ proptest! {
 
     #[test]
     fn axial_plans_are_proven_whole(plan in axial_plan(1..20)) {
-        let cut = sightlines_kdtree::subdivide_plan(&plan, &sightlines_kdtree::Options::default());
+        let cut = sightlines_kdtree::subdivide_plan(&plan, &sightlines_kdtree::KdOptions::default());
         if let Ok(cut) = cut {
             let rows = rows_of_plan(&cut.graph);
             assert_proven(&rows, &proven_plan(&cut.graph, &rows, &CertifyOptions::default()));
@@ -188,7 +188,7 @@ fn flipped(rows: &BitMatrix, a: u32, b: u32) -> BitMatrix {
 #[test]
 fn an_office_is_proven_whole() {
     let plan = office(OfficeOptions { seed: 5, rooms_x: 8, rooms_y: 4, ..OfficeOptions::default() }).unwrap();
-    let cut = sightlines_kdtree::subdivide_plan(&plan, &sightlines_kdtree::Options::default()).unwrap();
+    let cut = sightlines_kdtree::subdivide_plan(&plan, &sightlines_kdtree::KdOptions::default()).unwrap();
     let rows = rows_of_plan(&cut.graph);
     let [visible, hidden] = assert_proven(&rows, &proven_plan(&cut.graph, &rows, &CertifyOptions::default()));
     assert!(visible > 100 && hidden > 400, "{visible} {hidden}");
@@ -198,7 +198,7 @@ fn an_office_is_proven_whole() {
 #[test]
 fn effort_has_a_limit() {
     let plan = office(OfficeOptions { seed: 5, rooms_x: 8, rooms_y: 4, ..OfficeOptions::default() }).unwrap();
-    let cut = sightlines_kdtree::subdivide_plan(&plan, &sightlines_kdtree::Options::default()).unwrap();
+    let cut = sightlines_kdtree::subdivide_plan(&plan, &sightlines_kdtree::KdOptions::default()).unwrap();
     let rows = rows_of_plan(&cut.graph);
     let mut open = Vec::new();
     for most_steps in [0, 4, 16, 20_000_000] {
@@ -213,7 +213,7 @@ fn effort_has_a_limit() {
 #[test]
 fn proofs_are_the_same_each_time() {
     let plan = office(OfficeOptions { seed: 7, rooms_x: 6, rooms_y: 3, ..OfficeOptions::default() }).unwrap();
-    let cut = sightlines_kdtree::subdivide_plan(&plan, &sightlines_kdtree::Options::default()).unwrap();
+    let cut = sightlines_kdtree::subdivide_plan(&plan, &sightlines_kdtree::KdOptions::default()).unwrap();
     let rows = rows_of_plan(&cut.graph);
     let made = || certify_planar(&cut.graph, &rows, &CertifyOptions::default()).unwrap().to_bytes();
     assert_eq!(made(), made());

@@ -3,8 +3,8 @@
 
 use sightlines_cells::{Axial, BoxCell, CellGraph, CellId, Portal};
 use sightlines_geometry::{Aabb, AxialDoor};
-use sightlines_kdtree::{AxialFace, AxialPortal, Options, subdivide};
-use sightlines_sightline::{Target, Verdict};
+use sightlines_kdtree::{AxialFace, AxialPortal, KdOptions, subdivide};
+use sightlines_sightline::{BoxTarget, Verdict};
 use sightlines_stabtree::{
     AxialPath, AxialProof, Barrier, SearchLimit, SearchOptions, Sight, axial_visibility, explain_axial,
 };
@@ -27,7 +27,7 @@ fn faces() -> impl Strategy<Value = Vec<AxialFace<3>>> {
 
 fn cut(faces: &[AxialFace<3>]) -> CellGraph<Axial> {
     let room = Aabb { min: [0.0; 3], max: [f64::from(SIDE); 3] };
-    let tree = subdivide(faces, room, &Options::default()).expect("the scene is good");
+    let tree = subdivide(faces, room, &KdOptions::default()).expect("the scene is good");
     let portal = |p: &AxialPortal<3>| {
         let axis = p.axis as u8;
         let shape = AxialDoor { extent: Aabb { min: p.min, max: p.max }, axis, forward: true };
@@ -72,7 +72,7 @@ fn every_pair_is_explained() {
                 }
                 Verdict::Hidden(Barrier::Blocked(AxialProof { proof, walls, .. })) => {
                     let [from, to] = [a, b].map(|cell| graph.cell(cell).bounds);
-                    assert!(proof.holds(&from, &to, Target::Inside, &walls), "{a} {b} in {faces:?}");
+                    assert!(proof.holds(&from, &to, BoxTarget::Inside, &walls), "{a} {b} in {faces:?}");
                     n_hidden += 1;
                 }
                 Verdict::Hidden(Barrier::NotConnected) => n_apart += 1,

@@ -4,7 +4,7 @@
 use proptest::prelude::*;
 use sightlines_cells::{Axial, AxialDoor, BoxCell, CellGraph, CellId, Convex, Plan, Planar, Portal};
 use sightlines_geometry::{Aabb, Adaptive, Point2, Portal2};
-use sightlines_kdtree::{AxialFace, AxialPortal, Options, subdivide};
+use sightlines_kdtree::{AxialFace, AxialPortal, KdOptions, subdivide};
 use sightlines_pvs::{BitMatrix, StabParts};
 use sightlines_scenes::world::{BspWorldOptions, World, bsp_world, world_families};
 use sightlines_sightline::{AxialStabber, ConvexStabber, Funnel, Line3, StabLimits, Verdict};
@@ -209,7 +209,8 @@ fn plans_unfold_to_plain_trees() {
 
 /// Cuts a cube along faces.
 fn cut_cube(faces: &[AxialFace<3>]) -> CellGraph<Axial> {
-    let tree = subdivide(faces, Aabb { min: [0.0; 3], max: [4.0; 3] }, &Options::default()).expect("the scene is good");
+    let tree =
+        subdivide(faces, Aabb { min: [0.0; 3], max: [4.0; 3] }, &KdOptions::default()).expect("the scene is good");
     let cells = tree.cells().iter().map(|cell| BoxCell { bounds: cell.bounds }).collect();
     let portal = |p: &AxialPortal<3>| {
         let axis = p.axis as u8;

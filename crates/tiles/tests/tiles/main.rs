@@ -9,10 +9,10 @@ use sightlines_geometry::{Aabb, Random};
 use sightlines_pvs::CellId;
 use sightlines_scenes::{CityOptions, city_tiles};
 use sightlines_tiles::{
-    INDEX_NAME, Seen, TileEntry, TileId, TilePlan, TileScratch, TileTables, TileWalk, TileWalkOptions, World,
+    INDEX_NAME, Seen, TileEntry, TileId, TilePlan, TileScratch, TileTables, TileWalk, TileWalkOptions, TiledWorld,
     WorldError, WorldIndex, WorldPlan,
 };
-use sightlines_walkthrough::Answer;
+use sightlines_walkthrough::AnswerKind;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
@@ -63,7 +63,7 @@ fn bake(folder: &Path) {
 }
 
 /// What an eye sees, by a loop over all tiles and all of their cells; none if it is in none.
-fn by_loops(world: &World, eye: [f64; 3]) -> Option<Seen> {
+fn by_loops(world: &TiledWorld, eye: [f64; 3]) -> Option<Seen> {
     let (mut seen, mut scratch, mut is_inside) = (Seen::default(), TileScratch::default(), false);
     for tile in world.tiles() {
         let tables = TileTables::load(world, tile, 0).unwrap();
@@ -81,7 +81,7 @@ fn by_loops(world: &World, eye: [f64; 3]) -> Option<Seen> {
 
 #[test]
 fn a_walk_sees_what_the_tables_say() {
-    let world = Arc::new(World::open(folder()).unwrap());
+    let world = Arc::new(TiledWorld::open(folder()).unwrap());
     let options = TileWalkOptions { has_thread: false, ..TileWalkOptions::default() };
     let mut walk = TileWalk::new(Arc::clone(&world), options);
     let mut random = Random::new(7);
@@ -97,13 +97,13 @@ fn a_walk_sees_what_the_tables_say() {
         let frame = walk.frame(eye);
         match expected {
             Some(expected) => {
-                assert_eq!((frame.answer, frame.seen), (Answer::Full, &expected), "{eye:?}");
+                assert_eq!((frame.answer, frame.seen), (AnswerKind::Full, &expected), "{eye:?}");
                 distinct.insert(expected.objects.len());
                 assert!(expected.tiles.len() < world.index().tiles.len());
                 n_inside += 1;
             }
             None => {
-                assert_eq!((frame.answer, frame.seen.tiles.len()), (Answer::Outside, 25), "{eye:?}");
+                assert_eq!((frame.answer, frame.seen.tiles.len()), (AnswerKind::Outside, 25), "{eye:?}");
                 n_outside += 1;
             }
         }
@@ -115,7 +115,7 @@ fn a_walk_sees_what_the_tables_say() {
 /// With a thread a frame never waits: until the tile has arrived, all of the world is seen.
 #[test]
 fn a_frame_does_not_wait_for_a_tile() {
-    let world = Arc::new(World::open(folder()).unwrap());
+    let world = Arc::new(TiledWorld::open(folder()).unwrap());
     let mut walk = TileWalk::new(Arc::clone(&world), TileWalkOptions { budget: 1, ..TileWalkOptions::default() });
     let eye = world.index().tiles[12].bounds.viewers;
     let eye = [eye.min[0] + 0.5, 1.7, eye.min[2] + 0.5];
@@ -125,13 +125,16 @@ fn a_frame_does_not_wait_for_a_tile() {
         if answers.last() != Some(&frame.answer) {
             answers.push(frame.answer);
         }
-        assert!(frame.answer != Answer::Late || frame.seen.tiles.len() == 25);
-        if frame.answer != Answer::Late {
+        assert!(frame.answer != AnswerKind::Late || frame.seen.tiles.len() == 25);
+        if frame.answer != AnswerKind::Late {
             break;
         }
         std::thread::sleep(std::time::Duration::from_millis(5));
     }
-    assert!(matches!(answers.as_slice(), [Answer::Late, _] | [Answer::Full | Answer::Outside]), "{answers:?}");
+    assert!(
+        matches!(answers.as_slice(), [AnswerKind::Late, _] | [AnswerKind::Full | AnswerKind::Outside]),
+        "{answers:?}"
+    );
     // The budget is less than a tile: that of the eye stays, and others go.
     while !walk.is_idle() {
         std::thread::sleep(std::time::Duration::from_millis(1));
@@ -154,7 +157,7 @@ fn tiles_that_are_not_known_are_seen() {
     let mut more = index.clone();
     more.tiles.push(TileEntry { name: "new".to_owned(), ..index.tiles[0].clone() });
     fs::write(copy.path().join(INDEX_NAME), more.to_json()).unwrap();
-    let world = World::open(copy.path()).unwrap();
+    let world = TiledWorld::open(copy.path()).unwrap();
     let (mut seen, mut scratch) = (Seen::default(), TileScratch::default());
     TileTables::load(&world, TileId(12), 0).unwrap().see_from(CellId(0), &mut seen, &mut scratch).unwrap();
     assert!(seen.tiles.contains(&TileId(25)));
@@ -162,7 +165,7 @@ fn tiles_that_are_not_known_are_seen() {
     for (reach, is_seen) in [(30.0, false), (60.0, true)] {
         more.reach = Some(reach);
         fs::write(copy.path().join(INDEX_NAME), more.to_json()).unwrap();
-        let world = World::open(copy.path()).unwrap();
+        let world = TiledWorld::open(copy.path()).unwrap();
         seen.clear();
         TileTables::load(&world, TileId(12), 0).unwrap().see_from(CellId(0), &mut seen, &mut scratch).unwrap();
         assert_eq!(seen.tiles.contains(&TileId(25)), is_seen, "{reach}");
@@ -172,13 +175,13 @@ fn tiles_that_are_not_known_are_seen() {
     fewer.tiles.pop();
     fs::write(copy.path().join(INDEX_NAME), fewer.to_json()).unwrap();
     assert!(matches!(
-        TileTables::load(&World::open(copy.path()).unwrap(), TileId(0), 0),
+        TileTables::load(&TiledWorld::open(copy.path()).unwrap(), TileId(0), 0),
         Err(WorldError::Mixed { .. })
     ));
     let mut other = index.clone();
     other.tiles[13].n_cells += 1;
     fs::write(copy.path().join(INDEX_NAME), other.to_json()).unwrap();
-    let world = World::open(copy.path()).unwrap();
+    let world = TiledWorld::open(copy.path()).unwrap();
     // Its own table has another number, and to those nearby it is another tile.
     assert!(
         [12, 13].iter().all(|&tile| matches!(TileTables::load(&world, TileId(tile), 0), Err(WorldError::Mixed { .. })))

@@ -8,8 +8,8 @@ mod ways;
 
 use crate::findings::{Findings, Violation};
 use crate::options::VerifyOptions;
-use crate::real::{MapWorld, PlanWorld, PortalWorld, RayOracle, SolidWorld};
-use crate::sight::{Sight, Target};
+use crate::oracle::{MapWorld, PlanWorld, PortalWorld, RayOracle, SolidWorld};
+use crate::sight::{SightSegment, Target};
 use crate::truth::Truth;
 use rayon::prelude::*;
 use seen::{Seen, Tally};
@@ -92,7 +92,7 @@ fn shoot_all<R: RayOracle>(
 ) -> Result<(), Cancelled> {
     let seen = Seen::of(table);
     let tally = Tally::new(table);
-    let mut hidden: BTreeMap<(CellId, Target), Sight> = BTreeMap::new();
+    let mut hidden: BTreeMap<(CellId, Target), SightSegment> = BTreeMap::new();
     let n_chunks = options.rays.div_ceil(CHUNK);
     let ways = if follow { Ways::of(table) } else { None };
     let absent = ways.as_ref().zip(table.stab());
@@ -223,7 +223,7 @@ fn note(astray: &mut BTreeMap<(&'static str, Vec<CellId>), Violation>, violation
 #[derive(Debug, Default)]
 struct Shot {
     /// What they see that is hidden.
-    sights: Vec<Sight>,
+    sights: Vec<SightSegment>,
     /// Faults of the table along their ways.
     astray: Vec<Violation>,
     n_rays: u64,
@@ -231,7 +231,7 @@ struct Shot {
 }
 
 /// A pair of cells, whichever of them is looked from, or of a cell and an object.
-fn key(s: &Sight) -> (CellId, Target) {
+fn key(s: &SightSegment) -> (CellId, Target) {
     match s.target {
         Target::Cell(to) if to < s.from => (to, Target::Cell(s.from)),
         target => (s.from, target),
@@ -248,12 +248,12 @@ fn shoot_chunk<R: RayOracle>(
     seed: u64,
 ) -> Shot {
     let mut random = Random::new(seed);
-    let mut hidden: BTreeMap<(CellId, Target), Sight> = BTreeMap::new();
+    let mut hidden: BTreeMap<(CellId, Target), SightSegment> = BTreeMap::new();
     let mut shot = Shot::default();
     for _ in 0..n {
         let from = random.below(seen.n_cells()) as u32;
-        let mut farthest: Option<(f64, Sight)> = None;
-        let is_shot = world.shoot(from, &mut random, &mut |s: Sight| {
+        let mut farthest: Option<(f64, SightSegment)> = None;
+        let is_shot = world.shoot(from, &mut random, &mut |s: SightSegment| {
             let key = key(&s);
             if s.target == Target::Cell(s.from) {
                 return;

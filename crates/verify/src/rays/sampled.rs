@@ -9,8 +9,8 @@ use super::seen::Seen;
 use super::ways::Ways;
 use crate::findings::Sampled;
 use crate::options::VerifyOptions;
-use crate::real::{RayOracle, Sample};
-use crate::sight::{Sight, Target};
+use crate::oracle::{RayOracle, Sample};
+use crate::sight::{SightSegment, Target};
 use rayon::prelude::*;
 use sightlines_geometry::Random;
 use sightlines_progress::{Cancelled, Counter, Observer};
@@ -31,7 +31,7 @@ pub(super) fn shoot<R: RayOracle>(
     ways: Option<&Ways<'_>>,
     options: &VerifyOptions<'_>,
     observer: Option<&dyn Observer>,
-) -> Result<(Vec<Sight>, Sampled), Cancelled> {
+) -> Result<(Vec<SightSegment>, Sampled), Cancelled> {
     let n_cells = table.n_cells();
     if R::SAMPLES == [false; 2] || options.segments == 0 {
         return Ok((Vec::new(), Sampled::default()));
@@ -54,7 +54,7 @@ pub(super) fn shoot<R: RayOracle>(
             }
             let mut random = Random::new(mixed(options.seed, hash));
             let gates = ways.map(|ways| near.gates(ways, table, seen, CellId(cell), target));
-            let leads = |sight: &Sight| {
+            let leads = |sight: &SightSegment| {
                 let passes = |(ways, gates): (&Ways<'_>, &Gates)| {
                     gates.iter().flatten().all(|gates| ways.is_near_any(gates, sight.segment)) && ways.may_lead(sight)
                 };
@@ -78,7 +78,7 @@ pub(super) fn shoot<R: RayOracle>(
         }
         counter.step().map(|()| (found, n_pairs))
     };
-    let found: Vec<(Vec<Sight>, u64)> =
+    let found: Vec<(Vec<SightSegment>, u64)> =
         (0..n_cells as u32).into_par_iter().map(shoot).collect::<Result<_, Cancelled>>()?;
     let n_pairs = found.iter().map(|found| found.1).sum();
     let sampled = if n_pairs == 0 { Sampled::default() } else { Sampled { n_pairs, n_each } };

@@ -1,7 +1,7 @@
 //! Which hidden pairs are the most suspicious: those with visible pairs next to them.
 
 use super::seen::Seen;
-use crate::real::RayOracle;
+use crate::oracle::RayOracle;
 use crate::sight::Target;
 use sightlines_geometry::Random;
 use sightlines_pvs::{CellId, Table};

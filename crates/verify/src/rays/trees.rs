@@ -3,8 +3,8 @@
 use super::ways::{Ways, inside};
 use crate::exact::snapped;
 use crate::findings::Violation;
-use crate::real::{RayOracle, climb, sub};
-use crate::sight::{Sight, Target};
+use crate::oracle::{RayOracle, climb, sub};
+use crate::sight::{SightSegment, Target};
 use sightlines_geometry::Random;
 use sightlines_pvs::{CellId, PortalId, StabTrees};
 use std::collections::{HashMap, HashSet, VecDeque};
@@ -103,7 +103,7 @@ impl Ways<'_> {
         let mut found = None;
         let mut is_good = |ends| {
             found = BEYOND.iter().find_map(|&share| {
-                let sight = Sight { from: *from, target: Target::Cell(cell), segment: beyond(ends, share) };
+                let sight = SightSegment { from: *from, target: Target::Cell(cell), segment: beyond(ends, share) };
                 self.follow(world, &sight).1
             });
             found.is_some()

@@ -3,8 +3,8 @@
 
 use crate::exact::snapped;
 use crate::findings::Violation;
-use crate::real::{RayOracle, clip, extreme, scale_of, sub};
-use crate::sight::{Sight, Target};
+use crate::oracle::{RayOracle, clip, extreme, scale_of, sub};
+use crate::sight::{SightSegment, Target};
 use sightlines_geometry::{Aabb, Point3, Random};
 use sightlines_pvs::{CellId, ObjectId, PortalId, PortalRecord, Table};
 
@@ -64,7 +64,7 @@ impl<'t> Ways<'t> {
     }
 
     /// Follows a segment through the table; says how many ways were followed, none or one, and the fault if the table does not lead to its end.
-    pub(super) fn follow<R: RayOracle>(&self, world: &R, sight: &Sight) -> (u64, Option<Violation>) {
+    pub(super) fn follow<R: RayOracle>(&self, world: &R, sight: &SightSegment) -> (u64, Option<Violation>) {
         match self.way(world, sight) {
             Way::Open => (1, None),
             Way::Unsure => (0, None),
@@ -74,7 +74,7 @@ impl<'t> Ways<'t> {
         }
     }
 
-    fn way<R: RayOracle>(&self, world: &R, &Sight { from, target, segment }: &Sight) -> Way {
+    fn way<R: RayOracle>(&self, world: &R, &SightSegment { from, target, segment }: &SightSegment) -> Way {
         let Target::Cell(to) = target else { return Way::Unsure };
         let (stab, mut cell) = (self.table.stab(), from);
         // What may be crossed next by the stab tree; anything if it was cut here.
@@ -116,7 +116,7 @@ impl<'t> Ways<'t> {
 
     /// Whether the portals of the table may lead along a segment to its end, or to a cell that its object touches: no only where the segment leaves a cell and comes
     /// near no portal there, which for a free one the borders of that cell would have shown.
-    pub(super) fn may_lead(&self, &Sight { from, target, segment: [p, q] }: &Sight) -> bool {
+    pub(super) fn may_lead(&self, &SightSegment { from, target, segment: [p, q] }: &SightSegment) -> bool {
         let (mut cell, mut last) = (from, None);
         let d = sub(q, p);
         for _ in 0..LONGEST {
@@ -147,7 +147,7 @@ impl<'t> Ways<'t> {
     pub(super) fn missing_portal<R: RayOracle>(&self, world: &R, cell: CellId) -> Option<Violation> {
         let own: Vec<&PortalRecord> = self.portals_of(cell).iter().map(|&id| self.portal(id)).collect();
         let is_missing =
-            |sight: &Sight| own.iter().all(|portal| world.misses(portal, sight.segment)) && world.proves(sight);
+            |sight: &SightSegment| own.iter().all(|portal| world.misses(portal, sight.segment)) && world.proves(sight);
         let sight = world.through_borders(cell.0, &own).into_iter().find(is_missing)?;
         Some(Violation::MissingPortal { cell, segment: sight.segment })
     }
@@ -170,7 +170,7 @@ impl<'t> Ways<'t> {
             let x = inside(&record.points, random);
             let share = 2f64.powi(-3 * k);
             let towards = |cell| snapped([0, 1, 2].map(|k| x[k] + (middle(cell)[k] - x[k]) * share));
-            let sight = Sight { from, target: Target::Cell(to), segment: [towards(from), towards(to)] };
+            let sight = SightSegment { from, target: Target::Cell(to), segment: [towards(from), towards(to)] };
             self.follow(world, &sight).1
         })
     }

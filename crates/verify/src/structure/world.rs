@@ -2,7 +2,7 @@
 
 use super::objects::compare;
 use crate::findings::{Findings, Violation};
-use crate::truth::{WorldFace, WorldTree};
+use crate::truth::{MapFace, MapTree};
 use sightlines_cells::{CellGraph, CellId, Convex};
 use sightlines_pvs::{ObjectId, Table};
 
@@ -26,8 +26,8 @@ pub(super) fn portals(table: &Table, graph: &CellGraph<Convex>, findings: &mut F
 }
 
 /// Compares objects with the faces of a map, and lists with those of its leafs.
-pub(super) fn faces(table: &Table, world: &WorldTree, findings: &mut Findings) {
-    let around = |face: &WorldFace| {
+pub(super) fn faces(table: &Table, world: &MapTree, findings: &mut Findings) {
+    let around = |face: &MapFace| {
         let b = face.bounds();
         if b.is_empty() { ([0.0; 3], [0.0; 3]) } else { (b.min, b.max) }
     };

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use sightlines_cells::Plan;
 use sightlines_geometry::Point2;
-use sightlines_visibility_graph::{Effort, GraphError, VisibilityGraph};
+use sightlines_visibility_graph::{GraphError, VisibilityGraph, WorkOptions};
 
 pub(crate) type At = [i64; 2];
 
@@ -70,7 +70,7 @@ impl Matrix {
         self.0.len()
     }
 
-    pub(crate) fn graph(&self, effort: &Effort<'_>) -> Result<VisibilityGraph, GraphError> {
+    pub(crate) fn graph(&self, effort: &WorkOptions<'_>) -> Result<VisibilityGraph, GraphError> {
         let seen =
             |i: u32, list: &mut Vec<u32>| list.extend((0..self.n() as u32).filter(|&j| self.0[i as usize][j as usize]));
         VisibilityGraph::build(self.n() as u32, seen, effort)

@@ -4,7 +4,7 @@ use crate::dense::{At, Walls, meet, point, walls};
 use proptest::prelude::*;
 use sightlines_cells::Plan;
 use sightlines_geometry::Point2;
-use sightlines_visibility_graph::{Grid, GridError};
+use sightlines_visibility_graph::{GridError, PixelGrid};
 use std::collections::BTreeSet;
 
 /// Coordinates in quarters of a spacing of 4, so that all centres and borders are whole numbers.
@@ -66,7 +66,7 @@ proptest! {
     #[test]
     fn seeds_fill_what_steps_reach(walls in moved_walls(), pick in any::<prop::sample::Index>(), dx in -1i64..=1, dy in -1i64..=1) {
         let all = centres(&walls);
-        let grid = Grid::over(&walls.plan(), SPACING as f64).unwrap();
+        let grid = PixelGrid::over(&walls.plan(), SPACING as f64).unwrap();
         let [columns, rows] = grid.size();
         prop_assert_eq!(columns * rows, all.len());
         let centre = all[pick.index(all.len())];
@@ -96,7 +96,7 @@ proptest! {
         let outside = reached(&walls, &wide, &wide[..1]);
         let expected: Vec<At> =
             all.iter().copied().filter(|&p| !outside.contains(&p) && !walls.meet([p, p])).collect();
-        match Grid::over(&walls.plan(), SPACING as f64).unwrap().enclosed() {
+        match PixelGrid::over(&walls.plan(), SPACING as f64).unwrap().enclosed() {
             Ok(points) => prop_assert_eq!(listed(points.coordinates()), expected),
             Err(error) => {
                 prop_assert_eq!(error, GridError::NothingEnclosed);
@@ -115,7 +115,7 @@ fn square(from: f64, to: f64) -> Plan {
 fn centres_are_multiples_of_the_spacing() {
     // Bounds at 0.3 and 0.5 spacings beyond a multiple, positive and negative.
     for (low, first) in [(1.3, 1.0), (1.5, 1.0), (1.6, 2.0), (-1.3, -1.0), (-1.5, -2.0), (-1.6, -2.0), (0.0, 0.0)] {
-        let grid = Grid::over(&square(low, low + 3.0), 1.0).unwrap();
+        let grid = PixelGrid::over(&square(low, low + 3.0), 1.0).unwrap();
         let centre = grid.centre(sightlines_visibility_graph::Pixel { column: 0, row: 0 });
         assert_eq!([centre.x, centre.y], [first; 2], "{low}");
     }
@@ -125,23 +125,23 @@ fn centres_are_multiples_of_the_spacing() {
 fn what_makes_no_grid_is_refused() {
     let plan = square(0.0, 4.0);
     for spacing in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert!(matches!(Grid::over(&plan, spacing), Err(GridError::Spacing(_))));
+        assert!(matches!(PixelGrid::over(&plan, spacing), Err(GridError::Spacing(_))));
     }
     let text = |error: GridError| error.to_string();
     assert_eq!(
-        text(Grid::over(&plan, 1e-5).unwrap_err()),
+        text(PixelGrid::over(&plan, 1e-5).unwrap_err()),
         "a spacing of 0.00001 makes more than 67108864 pixels of 4 by 4 units"
     );
-    assert!(matches!(Grid::over(&plan, 5e-324), Err(GridError::TooFine { .. })));
-    assert!(matches!(Grid::over(&plan, 1e300), Err(GridError::Coordinate(_))));
-    assert_eq!(Grid::over(&Plan::default(), 1.0).unwrap_err(), GridError::NoWalls);
-    let grid = Grid::over(&plan, 1.0).unwrap();
+    assert!(matches!(PixelGrid::over(&plan, 5e-324), Err(GridError::TooFine { .. })));
+    assert!(matches!(PixelGrid::over(&plan, 1e300), Err(GridError::Coordinate(_))));
+    assert_eq!(PixelGrid::over(&Plan::default(), 1.0).unwrap_err(), GridError::NoWalls);
+    let grid = PixelGrid::over(&plan, 1.0).unwrap();
     assert_eq!(text(grid.fill(&[Point2::new(5.0, 1.0)]).unwrap_err()), "the seed (5, 1) lies outside the grid");
     assert!(matches!(grid.fill(&[Point2::new(0.2, 2.0)]), Err(GridError::SeedBlocked { .. })));
     assert!(grid.fill(&[]).unwrap().is_empty());
     assert_eq!(grid.enclosed().unwrap().len(), 9);
     let wall = Plan::from_walls([(Point2::new(0.0, 0.0), Point2::new(5.0, 3.0))]).unwrap();
-    assert_eq!(Grid::over(&wall, 1.0).unwrap().enclosed().unwrap_err(), GridError::NothingEnclosed);
+    assert_eq!(PixelGrid::over(&wall, 1.0).unwrap().enclosed().unwrap_err(), GridError::NothingEnclosed);
 }
 
 /// A long slanted wall through a fine grid: no step leads through it, wherever pixels of its list begin.
@@ -151,13 +151,13 @@ fn slanted_walls_are_closed() {
     let corners = [at(0.0, 0.0), at(97.0, 31.0), at(97.0, 60.0), at(0.0, 29.0)];
     let mut lines: Vec<(Point2, Point2)> = (0..4).map(|k| (corners[k], corners[(k + 1) % 4])).collect();
     lines.push((at(0.0, 13.0), at(97.0, 44.0)));
-    let grid = Grid::over(&Plan::from_walls(lines.iter().copied()).unwrap(), 0.1).unwrap();
+    let grid = PixelGrid::over(&Plan::from_walls(lines.iter().copied()).unwrap(), 0.1).unwrap();
     let (low, high) = (grid.fill(&[at(50.0, 20.0)]).unwrap(), grid.fill(&[at(50.0, 40.0)]).unwrap());
     let line = |p: &Point2| p.x * 31.0 / 97.0;
     assert!(low.coordinates().iter().all(|p| (line(p)..line(p) + 13.0).contains(&p.y)) && low.len() > 100_000);
     assert!(high.coordinates().iter().all(|p| (line(p) + 13.0..line(p) + 29.0).contains(&p.y)) && high.len() > 100_000);
     // Without the wall they are one: the test can tell.
-    let open = Grid::over(&Plan::from_walls(lines[..4].iter().copied()).unwrap(), 0.1).unwrap();
+    let open = PixelGrid::over(&Plan::from_walls(lines[..4].iter().copied()).unwrap(), 0.1).unwrap();
     let all = open.fill(&[at(50.0, 20.0)]).unwrap().len();
     assert!(all >= low.len() + high.len(), "{all}");
 }
@@ -188,10 +188,10 @@ fn thick_walled(has_door: bool) -> Plan {
 #[test]
 fn the_interior_of_a_building_with_an_open_door_is_found() {
     let is_in_room = |p: &Point2| (1.0..=19.0).contains(&p.x) && (1.0..=11.0).contains(&p.y);
-    let closed = Grid::over(&thick_walled(false), 0.5).unwrap();
+    let closed = PixelGrid::over(&thick_walled(false), 0.5).unwrap();
     let interior = closed.interior().unwrap();
     assert!(interior.is_enclosed && interior.points == closed.enclosed().unwrap());
-    let open = Grid::over(&thick_walled(true), 0.5).unwrap();
+    let open = PixelGrid::over(&thick_walled(true), 0.5).unwrap();
     let interior = open.interior().unwrap();
     let n_in_rooms = closed.enclosed().unwrap().coordinates().iter().filter(|p| is_in_room(p)).count();
     let found = interior.points.coordinates();
@@ -202,5 +202,5 @@ fn the_interior_of_a_building_with_an_open_door_is_found() {
     // The impostor: what is enclosed is the insides of the walls alone.
     assert!(open.enclosed().unwrap().coordinates().iter().all(|p| !is_in_room(p)));
     let wall = Plan::from_walls([(Point2::new(0.0, 0.0), Point2::new(5.0, 3.0))]).unwrap();
-    assert_eq!(Grid::over(&wall, 1.0).unwrap().interior().unwrap_err(), GridError::NothingEnclosed);
+    assert_eq!(PixelGrid::over(&wall, 1.0).unwrap().interior().unwrap_err(), GridError::NothingEnclosed);
 }

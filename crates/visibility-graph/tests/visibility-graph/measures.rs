@@ -3,8 +3,8 @@
 use crate::dense::{At, Matrix, Walls, distance, global, is_near, point, walls};
 use proptest::prelude::*;
 use sightlines_visibility_graph::{
-    AngularMeasures, Effort, GlobalMeasures, Grid, LocalMeasures, MetricMeasures, Points, Turns, UNDEFINED,
-    VisibilityGraph,
+    AngularMeasures, GlobalMeasures, LocalMeasures, MetricMeasures, PixelGrid, Points, Turns, UNDEFINED,
+    VisibilityGraph, WorkOptions,
 };
 
 /// Points with distinct places, and walls.
@@ -20,7 +20,7 @@ fn scattered() -> impl Strategy<Value = (Walls, Vec<At>)> {
 /// The pixels of a grid of spacing 2, of which walls lie on whole numbers.
 fn gridded() -> impl Strategy<Value = (Walls, Vec<At>, Points)> {
     walls(20, 1, 0..8).prop_filter_map("something is enclosed", |walls| {
-        let points = Grid::over(&walls.plan(), 2.0).ok()?.enclosed().ok()?;
+        let points = PixelGrid::over(&walls.plan(), 2.0).ok()?.enclosed().ok()?;
         let at = points.coordinates().iter().map(|p| [p.x as i64, p.y as i64]).collect();
         Some((walls, at, points))
     })
@@ -32,7 +32,7 @@ fn of(at: &[At]) -> Points {
 
 /// How local measures differ from their definitions.
 fn differences(graph: &VisibilityGraph, matrix: &Matrix, at: &[At], points: &Points) -> usize {
-    let found = LocalMeasures::of(graph, points, &Effort::default()).unwrap();
+    let found = LocalMeasures::of(graph, points, &WorkOptions::default()).unwrap();
     let of_point = |i: usize| {
         let [k, clustering, control, controllability] = matrix.local(i);
         let seen = || (0..at.len()).filter(|&j| matrix.0[i][j]);
@@ -53,7 +53,7 @@ fn differences(graph: &VisibilityGraph, matrix: &Matrix, at: &[At], points: &Poi
 
 /// How global measures differ from those of Floyd's and Warshall's depths.
 fn global_differences(graph: &VisibilityGraph, matrix: &Matrix, radius: Option<u32>) -> usize {
-    let found = GlobalMeasures::of(graph, radius, &Effort::default()).unwrap();
+    let found = GlobalMeasures::of(graph, radius, &WorkOptions::default()).unwrap();
     let depths = matrix.depths();
     let of_point = |i: usize| {
         let expected = global(&depths[i], radius);
@@ -77,7 +77,7 @@ proptest! {
     #[test]
     fn local_measures_are_those_of_the_matrix((walls, at, points) in gridded()) {
         let matrix = Matrix::of(&walls, &at);
-        let graph = matrix.graph(&Effort::default()).unwrap();
+        let graph = matrix.graph(&WorkOptions::default()).unwrap();
         prop_assert_eq!(graph.first_one_sided(), None);
         prop_assert_eq!(differences(&graph, &matrix, &at, &points), 0);
     }
@@ -85,16 +85,16 @@ proptest! {
     #[test]
     fn global_measures_are_those_of_the_matrix((walls, at) in scattered(), radius in prop::option::of(0u32..4)) {
         let matrix = Matrix::of(&walls, &at);
-        let graph = matrix.graph(&Effort::default()).unwrap();
+        let graph = matrix.graph(&WorkOptions::default()).unwrap();
         prop_assert_eq!(global_differences(&graph, &matrix, radius), 0);
     }
 
     #[test]
     fn paths_are_as_long_as_those_of_the_matrix((walls, at, points) in gridded()) {
         let matrix = Matrix::of(&walls, &at);
-        let graph = matrix.graph(&Effort::default()).unwrap();
+        let graph = matrix.graph(&WorkOptions::default()).unwrap();
         for turns in [Turns::Anywhere, Turns::NearWalls] {
-            let found = MetricMeasures::of(&graph, &points, turns, None, &Effort::default()).unwrap();
+            let found = MetricMeasures::of(&graph, &points, turns, None, &WorkOptions::default()).unwrap();
             let lengths = matrix.lengths(&at, |k| turns == Turns::Anywhere || points.is_near_wall(k as u32));
             for (i, row) in lengths.iter().enumerate() {
                 let reached: Vec<usize> = (0..at.len()).filter(|&j| row[j].is_finite()).collect();
@@ -112,9 +112,9 @@ proptest! {
     #[test]
     fn angles_are_between_bounds((walls, at) in scattered()) {
         let (matrix, points) = (Matrix::of(&walls, &at), of(&at));
-        let graph = matrix.graph(&Effort::default()).unwrap();
+        let graph = matrix.graph(&WorkOptions::default()).unwrap();
         let depths = |radius: f64| {
-            AngularMeasures::of(&graph, &points, Turns::Anywhere, Some(radius), &Effort::default()).unwrap()
+            AngularMeasures::of(&graph, &points, Turns::Anywhere, Some(radius), &WorkOptions::default()).unwrap()
         };
         let (all, direct) = (depths(f64::INFINITY), depths(0.0));
         for i in 0..at.len().min(3) {
@@ -133,12 +133,12 @@ proptest! {
     #[test]
     fn angles_and_turns_are_those_of_the_matrix((walls, at) in scattered(), from in any::<prop::sample::Index>()) {
         let (matrix, points) = (Matrix::of(&walls, &at), of(&at));
-        let graph = matrix.graph(&Effort::default()).unwrap();
+        let graph = matrix.graph(&WorkOptions::default()).unwrap();
         let i = from.index(at.len());
         let (angles, _) = settled(&matrix, &at, i, false);
         let (lengths, turns) = settled(&matrix, &at, i, true);
-        let angular = AngularMeasures::of(&graph, &points, Turns::NearWalls, None, &Effort::default()).unwrap();
-        let metric = MetricMeasures::of(&graph, &points, Turns::NearWalls, None, &Effort::default()).unwrap();
+        let angular = AngularMeasures::of(&graph, &points, Turns::NearWalls, None, &WorkOptions::default()).unwrap();
+        let metric = MetricMeasures::of(&graph, &points, Turns::NearWalls, None, &WorkOptions::default()).unwrap();
         let n = f64::from(angular.node_count[i]);
         prop_assert!(is_near(angular.total_depth[i], angles.iter().sum()));
         prop_assert!(is_near(metric.mean_path_length[i], lengths.iter().sum::<f64>() / n));
@@ -220,7 +220,7 @@ fn room() -> (Walls, Vec<At>) {
 fn wrong_rows_are_noticed() {
     let (walls, at) = room();
     let matrix = Matrix::of(&walls, &at);
-    let right = matrix.graph(&Effort::default()).unwrap();
+    let right = matrix.graph(&WorkOptions::default()).unwrap();
     let points = of(&at);
     let all =
         |graph: &VisibilityGraph| [differences(graph, &matrix, &at, &points), global_differences(graph, &matrix, None)];
@@ -228,10 +228,10 @@ fn wrong_rows_are_noticed() {
     for (i, j) in [(0, 1), (3, 60), (10, 50), (0, 63), (20, 21)] {
         let mut wrong = matrix.clone();
         wrong.0[i][j] = !wrong.0[i][j];
-        let graph = wrong.graph(&Effort::default()).unwrap();
+        let graph = wrong.graph(&WorkOptions::default()).unwrap();
         assert_eq!(graph.first_one_sided().map(|(a, b)| (a.min(b), a.max(b))), Some((i as u32, j as u32)));
         wrong.0[j][i] = wrong.0[i][j];
-        let graph = wrong.graph(&Effort::default()).unwrap();
+        let graph = wrong.graph(&WorkOptions::default()).unwrap();
         assert_eq!(graph.first_one_sided(), None);
         assert!(all(&graph).iter().all(|&n| n > 2), "{i} and {j}: {:?}", all(&graph));
     }
@@ -242,9 +242,9 @@ fn wrong_rows_are_noticed() {
 fn small_graphs_have_known_values() {
     let path = |n: usize| {
         let rows: Vec<Vec<bool>> = (0..n).map(|i| (0..n).map(|j| i.abs_diff(j) == 1).collect()).collect();
-        Matrix(rows).graph(&Effort::default()).unwrap()
+        Matrix(rows).graph(&WorkOptions::default()).unwrap()
     };
-    let global = |n: usize| GlobalMeasures::of(&path(n), None, &Effort::default()).unwrap();
+    let global = |n: usize| GlobalMeasures::of(&path(n), None, &WorkOptions::default()).unwrap();
     let one = global(1);
     assert_eq!((one.node_count[0], one.total_depth[0]), (1, 0));
     assert_eq!([one.mean_depth[0], one.entropy[0], one.integration_hh[0]], [UNDEFINED; 3]);
@@ -261,13 +261,13 @@ fn small_graphs_have_known_values() {
     assert_eq!([four.integration_tekl[0], four.mean_depth[0]], [0.0, 2.0]);
 
     let points = Points::new((0..3).map(|k| point([3 * k, 0]))).unwrap();
-    let local = LocalMeasures::of(&path(3), &points, &Effort::default()).unwrap();
+    let local = LocalMeasures::of(&path(3), &points, &WorkOptions::default()).unwrap();
     assert_eq!(local.connectivity, [1, 2, 1]);
     assert_eq!((local.first_moment, local.second_moment), (vec![3.0, 6.0, 3.0], vec![9.0, 18.0, 9.0]));
     // The ends see the middle alone: their neighbourhood of one has no pairs. Around the middle nobody sees anybody else.
     assert_eq!(local.clustering, [UNDEFINED, 0.0, UNDEFINED]);
     assert_eq!((local.control[1], local.controllability[1]), (2.0, 2.0));
-    let turns = MetricMeasures::of(&path(3), &points, Turns::NearWalls, Some(3.0), &Effort::default()).unwrap();
+    let turns = MetricMeasures::of(&path(3), &points, Turns::NearWalls, Some(3.0), &WorkOptions::default()).unwrap();
     assert_eq!((turns.node_count, turns.mean_path_length[0]), (vec![2, 3, 2], 1.5));
 }
 
@@ -275,11 +275,11 @@ fn small_graphs_have_known_values() {
 #[test]
 fn turns_are_in_right_angles() {
     let rows = vec![vec![false, true, false], vec![true, false, true], vec![false, true, false]];
-    let graph = Matrix(rows).graph(&Effort::default()).unwrap();
+    let graph = Matrix(rows).graph(&WorkOptions::default()).unwrap();
     for (last, angle) in [([4, 4], 1.0), ([8, 0], 0.0), ([8, 4], 0.5), ([1, 0], 2.0), ([0, 4], 1.5)] {
         let points = of(&[[0, 0], [4, 0], last]);
-        let metric = MetricMeasures::of(&graph, &points, Turns::NearWalls, None, &Effort::default()).unwrap();
-        let angular = AngularMeasures::of(&graph, &points, Turns::NearWalls, None, &Effort::default()).unwrap();
+        let metric = MetricMeasures::of(&graph, &points, Turns::NearWalls, None, &WorkOptions::default()).unwrap();
+        let angular = AngularMeasures::of(&graph, &points, Turns::NearWalls, None, &WorkOptions::default()).unwrap();
         assert_eq!((metric.mean_path_angle[0], angular.total_depth[0]), (angle / 3.0, angle), "{last:?}");
         assert_eq!((angular.mean_depth[0], angular.node_count[0]), (angle / 3.0, 3));
     }

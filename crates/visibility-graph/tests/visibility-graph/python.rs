@@ -2,7 +2,9 @@
 
 use crate::dense::{At, Matrix, Walls, is_near};
 use sightlines_geometry::Random;
-use sightlines_visibility_graph::{Analysis, AnalysisOptions, Effort, Grid, Measure, Points, Turns, VisibilityGraph};
+use sightlines_visibility_graph::{
+    Analysis, AnalysisOptions, Measure, PixelGrid, Points, Turns, VisibilityGraph, WorkOptions,
+};
 use std::fmt::Write;
 use std::path::Path;
 use std::process::Command;
@@ -54,7 +56,7 @@ fn oracle(folder: &Path, walls: &Walls, at: &[At], points: &Points) -> Option<(V
 fn wrong(names: &[String], rows: &[Vec<f64>], graph: &VisibilityGraph, points: &Points) -> Vec<String> {
     let of = |turns| {
         let options = AnalysisOptions { turns, ..AnalysisOptions::default() };
-        Analysis::of(graph, points, &Measure::ALL, &options, &Effort::default()).unwrap()
+        Analysis::of(graph, points, &Measure::ALL, &options, &WorkOptions::default()).unwrap()
     };
     let (near, anywhere) = (of(Turns::NearWalls), of(Turns::Anywhere));
     let mut all = Vec::new();
@@ -81,10 +83,10 @@ fn measures_are_those_of_a_program_in_python() {
     let (mut n_points, mut n_longer) = (0, 0);
     for seed in 0..3 {
         let walls = random(seed);
-        let points = Grid::over(&walls.plan(), 2.0).unwrap().enclosed().unwrap();
+        let points = PixelGrid::over(&walls.plan(), 2.0).unwrap().enclosed().unwrap();
         let at: Vec<At> = points.coordinates().iter().map(|p| [p.x as i64, p.y as i64]).collect();
         let matrix = Matrix::of(&walls, &at);
-        let graph = matrix.graph(&Effort::default()).unwrap();
+        let graph = matrix.graph(&WorkOptions::default()).unwrap();
         let Some((names, rows)) = oracle(&folder, &walls, &at, &points) else { return };
         assert_eq!((names.len(), rows.len()), (17, at.len()));
         assert_eq!(wrong(&names, &rows, &graph, &points), [""; 0], "seed {seed}");
@@ -94,7 +96,7 @@ fn measures_are_those_of_a_program_in_python() {
         let mut other = matrix.clone();
         let (i, j) = (0..at.len()).flat_map(|i| (0..i).map(move |j| (i, j))).find(|&(i, j)| matrix.0[i][j]).unwrap();
         (other.0[i][j], other.0[j][i]) = (false, false);
-        let found = wrong(&names, &rows, &other.graph(&Effort::default()).unwrap(), &points);
+        let found = wrong(&names, &rows, &other.graph(&WorkOptions::default()).unwrap(), &points);
         assert!(found.len() >= 10, "{found:?}");
     }
     std::fs::remove_dir_all(&folder).unwrap();

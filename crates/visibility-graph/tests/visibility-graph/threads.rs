@@ -2,7 +2,9 @@
 
 use crate::dense::{Matrix, Walls, global, is_near};
 use sightlines_progress::Progress;
-use sightlines_visibility_graph::{Analysis, AnalysisOptions, Effort, Grid, Group, Measure, Points, VisibilityGraph};
+use sightlines_visibility_graph::{
+    Analysis, AnalysisOptions, Group, Measure, PixelGrid, Points, VisibilityGraph, WorkOptions,
+};
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 use std::sync::Mutex;
@@ -40,13 +42,13 @@ pub(crate) fn small_rooms() -> (Walls, Points, Matrix) {
 }
 
 fn of_walls(walls: Walls) -> (Walls, Points, Matrix) {
-    let points = Grid::over(&walls.plan(), 2.0).unwrap().enclosed().unwrap();
+    let points = PixelGrid::over(&walls.plan(), 2.0).unwrap().enclosed().unwrap();
     let at: Vec<[i64; 2]> = points.coordinates().iter().map(|p| [p.x as i64, p.y as i64]).collect();
     let matrix = Matrix::of(&walls, &at);
     (walls, points, matrix)
 }
 
-fn analysis(graph: &VisibilityGraph, points: &Points, effort: &Effort<'_>) -> Analysis {
+fn analysis(graph: &VisibilityGraph, points: &Points, effort: &WorkOptions<'_>) -> Analysis {
     Analysis::of(graph, points, &Measure::ALL, &AnalysisOptions::default(), effort).unwrap()
 }
 
@@ -54,7 +56,7 @@ fn analysis(graph: &VisibilityGraph, points: &Points, effort: &Effort<'_>) -> An
 fn threads_change_nothing() {
     let (_, points, matrix) = rooms();
     let run = |threads: usize| {
-        let effort = Effort { threads, ..Effort::default() };
+        let effort = WorkOptions { threads, ..WorkOptions::default() };
         let graph = matrix.graph(&effort).unwrap();
         let all = analysis(&graph, &points, &effort);
         (graph, all)
@@ -76,8 +78,8 @@ fn threads_change_nothing() {
 fn batches_are_right() {
     let (_, points, matrix) = small_rooms();
     assert!(points.len() > 256, "more than one batch: {}", points.len());
-    let graph = matrix.graph(&Effort::default()).unwrap();
-    let found = analysis(&graph, &points, &Effort::default()).global.unwrap();
+    let graph = matrix.graph(&WorkOptions::default()).unwrap();
+    let found = analysis(&graph, &points, &WorkOptions::default()).global.unwrap();
     for (i, depths) in matrix.depths().iter().enumerate() {
         let expected = global(depths, None);
         let row = [f64::from(found.node_count[i]), found.mean_depth[i], found.integration_hh[i], found.entropy[i]];
@@ -91,21 +93,21 @@ fn batches_are_right() {
 #[test]
 fn groups_are_reported_and_can_be_cancelled() {
     let (_, points, matrix) = small_rooms();
-    let graph = matrix.graph(&Effort::default()).unwrap();
+    let graph = matrix.graph(&WorkOptions::default()).unwrap();
     let phases = Mutex::new(BTreeSet::new());
     let observer = |progress: Progress| {
         phases.lock().unwrap().insert(progress.phase);
         ControlFlow::Continue(())
     };
-    analysis(&graph, &points, &Effort { threads: 2, observer: Some(&observer), ..Effort::default() });
+    analysis(&graph, &points, &WorkOptions { threads: 2, observer: Some(&observer), ..WorkOptions::default() });
     assert_eq!(phases.lock().unwrap().len(), 4, "a phase for each group");
     for group in Group::ALL {
         let measures: Vec<Measure> = Measure::ALL.into_iter().filter(|measure| measure.group() == group).collect();
         let stop = |_: Progress| ControlFlow::Break(());
-        let effort = Effort { threads: 2, observer: Some(&stop), ..Effort::default() };
+        let effort = WorkOptions { threads: 2, observer: Some(&stop), ..WorkOptions::default() };
         assert!(Analysis::of(&graph, &points, &measures, &AnalysisOptions::default(), &effort).is_err());
-        let some =
-            Analysis::of(&graph, &points, &measures[..1], &AnalysisOptions::default(), &Effort::default()).unwrap();
+        let some = Analysis::of(&graph, &points, &measures[..1], &AnalysisOptions::default(), &WorkOptions::default())
+            .unwrap();
         let computed: Vec<Group> =
             Measure::ALL.into_iter().filter(|&m| some.values(m).is_some()).map(Measure::group).collect();
         assert!(computed.iter().all(|&other| other == group) && computed.len() == measures.len());

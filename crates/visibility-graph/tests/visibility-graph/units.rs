@@ -4,10 +4,10 @@ use crate::dense::{Matrix, Walls};
 use crate::threads::small_rooms;
 use sightlines_progress::{Halt, Units};
 use sightlines_testkit::units::{check_impostor, check_units};
-use sightlines_visibility_graph::{Analysis, AnalysisOptions, Effort, GraphError, Measure, Points};
+use sightlines_visibility_graph::{Analysis, AnalysisOptions, GraphError, Measure, Points, WorkOptions};
 
 /// The graph and all measures as bytes.
-fn analysed((_, points, matrix): &(Walls, Points, Matrix), effort: &Effort<'_>) -> Result<Vec<u8>, GraphError> {
+fn analysed((_, points, matrix): &(Walls, Points, Matrix), effort: &WorkOptions<'_>) -> Result<Vec<u8>, GraphError> {
     let graph = matrix.graph(effort)?;
     let all = Analysis::of(&graph, points, &Measure::ALL, &AnalysisOptions::default(), effort)?;
     let rows = (0..points.len() as u32).map(|point| format!("{:?}", graph.row(point)));
@@ -23,7 +23,7 @@ fn all_groups() {
     let expected =
         [("sight", few), ("local-measures", few), ("depths", few), ("metric-paths", many), ("angular-paths", many)];
     assert_eq!(
-        check_units(|units, threads| analysed(&rooms, &Effort { threads, units, ..Effort::default() })),
+        check_units(|units, threads| analysed(&rooms, &WorkOptions { threads, units, ..WorkOptions::default() })),
         expected
     );
 }
@@ -32,7 +32,10 @@ fn all_groups() {
 fn other_results_are_noticed() {
     let rooms = small_rooms();
     for phase in ["sight", "local-measures", "depths", "metric-paths", "angular-paths"] {
-        check_impostor(|units, threads| analysed(&rooms, &Effort { threads, units, ..Effort::default() }), phase);
+        check_impostor(
+            |units, threads| analysed(&rooms, &WorkOptions { threads, units, ..WorkOptions::default() }),
+            phase,
+        );
     }
 }
 
@@ -40,7 +43,7 @@ fn other_results_are_noticed() {
 #[test]
 fn a_wrong_row_is_none() {
     let store = sightlines_testkit::units::Memory::default();
-    let effort = Effort { threads: 2, units: Units(Some(&store)), ..Effort::default() };
+    let effort = WorkOptions { threads: 2, units: Units(Some(&store)), ..WorkOptions::default() };
     let seen = |point: u32, list: &mut Vec<u32>| list.extend((point == 700 || point == 300).then_some(9000));
     let found = sightlines_visibility_graph::VisibilityGraph::build(1000, seen, &effort);
     assert_eq!(found, Err(GraphError::Row { point: 300, n_points: 1000 }));

@@ -3,7 +3,7 @@
 use super::{BspOptions, Heuristic};
 use crate::faces::Faces;
 use crate::fragment::{Fragment, Relation};
-use crate::plane::Plane;
+use crate::plane::InputPlane;
 use sightlines_geometry::Random;
 
 /// What a plane makes of a set of fragments; each part keeps their order.
@@ -21,7 +21,7 @@ pub(crate) struct Parts {
 
 impl Parts {
     /// Cuts a set.
-    pub(crate) fn of(faces: &Faces, fragments: &[Fragment], plane: &Plane) -> Self {
+    pub(crate) fn of(faces: &Faces, fragments: &[Fragment], plane: &InputPlane) -> Self {
         let mut parts = Self::default();
         for fragment in fragments {
             match fragment.split(faces, plane) {
@@ -58,7 +58,7 @@ pub(crate) struct Tally {
 
 impl Tally {
     /// Counts how a plane lies to fragments.
-    pub(crate) fn of<'a>(faces: &Faces, fragments: impl IntoIterator<Item = &'a Fragment>, plane: &Plane) -> Self {
+    pub(crate) fn of<'a>(faces: &Faces, fragments: impl IntoIterator<Item = &'a Fragment>, plane: &InputPlane) -> Self {
         let mut tally = Self::default();
         for fragment in fragments {
             match fragment.relation(faces, plane) {
@@ -87,7 +87,7 @@ const SAMPLE: usize = 256;
 const PLACES: usize = 5;
 
 /// Chooses a plane for a set that is not empty, and cuts it. `salt` varies what chance decides, always in the same way.
-pub(crate) fn cut(faces: &Faces, fragments: &[Fragment], options: &BspOptions, salt: u64) -> (Plane, Parts) {
+pub(crate) fn cut(faces: &Faces, fragments: &[Fragment], options: &BspOptions, salt: u64) -> (InputPlane, Parts) {
     if fragments.len() > options.axis_above
         && let Some(plane) = across_axis(faces, fragments, options)
     {
@@ -101,9 +101,9 @@ pub(crate) fn cut(faces: &Faces, fragments: &[Fragment], options: &BspOptions, s
 }
 
 /// The plane of one of the fragments.
-fn of_face(faces: &Faces, fragments: &[Fragment], options: &BspOptions, salt: u64) -> Plane {
+fn of_face(faces: &Faces, fragments: &[Fragment], options: &BspOptions, salt: u64) -> InputPlane {
     let n = fragments.len();
-    let plane = |k: usize| Plane::of(faces, fragments[k].face());
+    let plane = |k: usize| InputPlane::of(faces, fragments[k].face());
     let [splits, balance] = match options.heuristic {
         Heuristic::FirstFace => return plane(0),
         Heuristic::Random { seed } => {
@@ -121,7 +121,7 @@ fn of_face(faces: &Faces, fragments: &[Fragment], options: &BspOptions, salt: u6
 }
 
 /// A plane across an axis at a corner of a face; none if none of those tried seems to part the set.
-fn across_axis(faces: &Faces, fragments: &[Fragment], options: &BspOptions) -> Option<Plane> {
+fn across_axis(faces: &Faces, fragments: &[Fragment], options: &BspOptions) -> Option<InputPlane> {
     let weights = match options.heuristic {
         Heuristic::Weighted { splits, balance } => [splits, balance],
         _ => WEIGHTS,
@@ -135,7 +135,7 @@ fn across_axis(faces: &Faces, fragments: &[Fragment], options: &BspOptions) -> O
         let mut last = None;
         for at in places {
             if last != Some(at) {
-                planes.push(Plane::Axis(axis as u8, at));
+                planes.push(InputPlane::Axis(axis as u8, at));
             }
             last = Some(at);
         }
@@ -150,10 +150,10 @@ fn across_axis(faces: &Faces, fragments: &[Fragment], options: &BspOptions) -> O
 fn best(
     faces: &Faces,
     fragments: &[Fragment],
-    planes: impl IntoIterator<Item = Plane>,
+    planes: impl IntoIterator<Item = InputPlane>,
     [splits, balance]: [f64; 2],
-) -> Option<(Plane, Tally)> {
-    let mut best: Option<(Plane, Tally, f64)> = None;
+) -> Option<(InputPlane, Tally)> {
+    let mut best: Option<(InputPlane, Tally, f64)> = None;
     for plane in planes {
         let tally = Tally::of(faces, sample(fragments, SAMPLE), &plane);
         let cost = tally.cost(splits, balance);

@@ -15,10 +15,10 @@ use crate::faces::Faces;
 use crate::fragment::Fragment;
 use crate::image::Image;
 use crate::method::{Canvas, RenderInput, RenderOutput, VisibleSurface, drawn};
-use crate::plane::Plane;
+use crate::plane::InputPlane;
 pub(crate) use choose::{Parts, Tally, WEIGHTS, cut};
 use std::ops::ControlFlow;
-pub(crate) use tree::{Child, Place, Tree, Walked};
+pub(crate) use tree::{Child, Slot, Tree, Walked};
 
 /// Which of the candidates' planes cuts a node. Ties go to the first candidate.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -90,9 +90,9 @@ pub(crate) enum Order {
 
 /// A node of a tree, to be shown.
 #[derive(Debug, Clone, PartialEq)]
-pub struct BspNode {
+pub struct FaceBspNode {
     /// What cuts the space there.
-    pub plane: Plane,
+    pub plane: InputPlane,
     /// The nodes behind the plane and in front of it.
     pub children: [Option<u32>; 2],
     /// The faces of which a part lies in the plane, ascending.
@@ -101,13 +101,13 @@ pub struct BspNode {
 
 /// A binary space partition of faces. See the module.
 #[derive(Debug, Clone)]
-pub struct Bsp {
+pub struct FaceBsp {
     tree: Tree,
     stats: BspStats,
     order: Order,
 }
 
-impl Bsp {
+impl FaceBsp {
     /// Makes the tree of all faces that have an area. Never deeper in calls, however deep the tree.
     ///
     /// Cost: about `n log n` where planes part the scene well; each node costs candidates times at most 256 fragments.
@@ -115,7 +115,7 @@ impl Bsp {
         let all: Vec<Fragment> = faces.ids().filter(|&f| faces.has_area(f)).map(Fragment::whole).collect();
         let mut stats = BspStats { faces: all.len(), ..BspStats::default() };
         let mut tree = Tree::default();
-        let mut todo: Vec<(Place, Vec<Fragment>)> = vec![(None, all)];
+        let mut todo: Vec<(Slot, Vec<Fragment>)> = vec![(None, all)];
         while let Some((place, fragments)) = todo.pop() {
             if fragments.is_empty() {
                 continue;
@@ -142,12 +142,12 @@ impl Bsp {
     }
 
     /// The nodes, the root first, parents before their children. O(nodes + fragments).
-    pub fn nodes(&self) -> impl Iterator<Item = BspNode> + '_ {
+    pub fn nodes(&self) -> impl Iterator<Item = FaceBspNode> + '_ {
         (0u32..).take(self.tree.n_nodes()).filter_map(|node| {
             let (plane, children) = self.tree.parts(node);
             let mut faces: Vec<u32> = self.tree.own(node).iter().map(Fragment::face).collect();
             faces.dedup();
-            Some(BspNode { plane: plane?, children, faces })
+            Some(FaceBspNode { plane: plane?, children, faces })
         })
     }
 
@@ -176,7 +176,7 @@ impl Bsp {
     }
 }
 
-impl VisibleSurface for Bsp {
+impl VisibleSurface for FaceBsp {
     fn name(&self) -> &'static str {
         match self.order {
             Order::BackToFront => "bsp",

@@ -5,7 +5,7 @@ use crate::counters::Counters;
 use crate::face_mask::FaceMask;
 use crate::faces::Faces;
 use crate::fragment::Fragment;
-use crate::plane::Plane;
+use crate::plane::InputPlane;
 use sightlines_geometry::Point3;
 use std::ops::{ControlFlow, Range};
 
@@ -22,13 +22,13 @@ pub(crate) enum Child {
 }
 
 /// Where a node hangs; nothing for the root.
-pub(crate) type Place = Option<(u32, Child)>;
+pub(crate) type Slot = Option<(u32, Child)>;
 
 /// A node: a plane and what lies in it, or a leaf and what lies there.
 #[derive(Debug, Clone)]
 pub(crate) struct Node {
     /// None in a leaf.
-    plane: Option<Plane>,
+    plane: Option<InputPlane>,
     parent: u32,
     /// In front and behind.
     children: [u32; 2],
@@ -65,7 +65,12 @@ impl Walked {
 
 impl Tree {
     /// Hangs in a node. The fragments keep their order.
-    pub(crate) fn add(&mut self, place: Place, plane: Option<Plane>, own: impl IntoIterator<Item = Fragment>) -> u32 {
+    pub(crate) fn add(
+        &mut self,
+        place: Slot,
+        plane: Option<InputPlane>,
+        own: impl IntoIterator<Item = Fragment>,
+    ) -> u32 {
         let id = self.nodes.len() as u32;
         let start = self.fragments.len() as u32;
         self.fragments.extend(own);
@@ -119,7 +124,7 @@ impl Tree {
     }
 
     /// The plane of a node, and its children behind and in front of it.
-    pub(crate) fn parts(&self, node: u32) -> (Option<Plane>, [Option<u32>; 2]) {
+    pub(crate) fn parts(&self, node: u32) -> (Option<InputPlane>, [Option<u32>; 2]) {
         let Node { plane, children: [front, behind], .. } = &self.nodes[node as usize];
         (*plane, [*behind, *front].map(|child| (child != NONE).then_some(child)))
     }

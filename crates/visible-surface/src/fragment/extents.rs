@@ -1,7 +1,7 @@
 //! Between which pixels and depths a fragment lies.
 
 use super::{Fragment, corner};
-use crate::camera::{Camera, Place, U};
+use crate::camera::{Camera, ProjectedPoint, U};
 use crate::extents::Extents;
 use crate::faces::Faces;
 
@@ -16,7 +16,7 @@ impl Fragment {
         let edges = self.edges();
         let before = |k: usize| &edges[(k + edges.len() - 1) % edges.len()];
         let places = edges.iter().enumerate().map(|(k, edge)| mean(&corners, corner(before(k), edge)));
-        let Some(places) = places.collect::<Option<Vec<Place>>>() else { return whole };
+        let Some(places) = places.collect::<Option<Vec<ProjectedPoint>>>() else { return whole };
         let own = Extents::around(places);
         // Both hold.
         let both = |a: [f64; 2], b: [f64; 2]| [a[0].max(b[0]), a[1].min(b[1])];
@@ -25,13 +25,13 @@ impl Fragment {
 }
 
 /// The place of a point given by its barycentric coordinates; none if they are too rough to say.
-fn mean(corners: &[Place; 3], (weight, error): ([f64; 3], [f64; 3])) -> Option<Place> {
+fn mean(corners: &[ProjectedPoint; 3], (weight, error): ([f64; 3], [f64; 3])) -> Option<ProjectedPoint> {
     let sum: f64 = weight.iter().sum();
     let off: f64 = error.iter().sum::<f64>() + 4.0 * U * weight.iter().map(|w| w.abs()).sum::<f64>();
     if !(sum > 2.0 * off && sum.is_finite()) {
         return None;
     }
-    let mut place = Place { scaled: [0.0; 3], error: [0.0; 3], ..corners[0] };
+    let mut place = ProjectedPoint { scaled: [0.0; 3], error: [0.0; 3], ..corners[0] };
     for axis in 0..3 {
         let (mut value, mut bound) = (0.0, 0.0);
         for (c, (w, e)) in corners.iter().zip(weight.iter().zip(&error)) {

@@ -14,7 +14,7 @@ mod split;
 
 use crate::camera::Camera;
 use crate::faces::Faces;
-use crate::plane::{Approx, Plane};
+use crate::plane::{Approx, InputPlane};
 use crate::rows::spans;
 use crate::side::Side;
 use sightlines_exact::{Dyadic, vector as exact};
@@ -38,7 +38,7 @@ pub(crate) enum On {
     /// The edge of the face opposite to a corner.
     Face(u8),
     /// A plane that cut the face.
-    Plane(Plane),
+    Plane(InputPlane),
 }
 
 /// An edge: where a linear function of barycentric coordinates is 0; it is positive inside.
@@ -61,7 +61,7 @@ const fn whole(corner: u8, form: [f64; 3]) -> Edge {
 static WHOLE: [Edge; 3] = [whole(2, [0., 0., 1.]), whole(0, [1., 0., 0.]), whole(1, [0., 1., 0.])];
 
 impl Edge {
-    fn new(faces: &Faces, face: u32, plane: Plane, sign: i8) -> Self {
+    fn new(faces: &Faces, face: u32, plane: InputPlane, sign: i8) -> Self {
         let values = faces.of(face).map(|p| plane.at(faces, p));
         // Divided by a power of two, so that products of coefficients stay far from the ends of what doubles hold.
         let largest = values.iter().fold(0.0f64, |m, v| m.max(v.value.abs()));
@@ -126,7 +126,7 @@ impl Fragment {
     pub(crate) fn sides(&self, camera: &Camera, faces: &Faces) -> Vec<Side> {
         let corners = faces.of(self.face);
         let Some(sign) = facing(camera, faces, self.face) else { return Vec::new() };
-        let plane = Plane::of(faces, self.face);
+        let plane = InputPlane::of(faces, self.face);
         let eye = crate::side::eye_sign(camera, faces, &plane);
         let mut sides = Vec::with_capacity(self.n_edges() + 2);
         for edge in self.edges() {
@@ -159,7 +159,7 @@ pub(crate) fn facing(camera: &Camera, faces: &Faces, face: u32) -> Option<i32> {
 
 /// The determinant of three edge functions, of which the third may be that of any plane: its sign says on which side of that plane the
 /// corner lies in which the first two meet.
-fn corner_sign(faces: &Faces, face: u32, f: &Edge, g: &Edge, plane: &Plane, at: &[Approx; 3]) -> i32 {
+fn corner_sign(faces: &Faces, face: u32, f: &Edge, g: &Edge, plane: &InputPlane, at: &[Approx; 3]) -> i32 {
     // A plane that made one of the edges holds the corner.
     if [f, g].iter().any(|e| e.on == On::Plane(*plane)) {
         return 0;

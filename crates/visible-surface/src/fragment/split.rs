@@ -2,7 +2,7 @@
 
 use super::{Edge, Fragment, On, corner_sign};
 use crate::faces::Faces;
-use crate::plane::Plane;
+use crate::plane::InputPlane;
 
 /// How a fragment lies to a plane; touching it does not count.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,8 +30,8 @@ impl Relation {
 
 impl Fragment {
     /// For each corner on which side of a plane it lies, exactly. Corner k is where edge k begins.
-    fn signs(&self, faces: &Faces, plane: &Plane) -> Vec<i32> {
-        let own = Plane::of(faces, self.face);
+    fn signs(&self, faces: &Faces, plane: &InputPlane) -> Vec<i32> {
+        let own = InputPlane::of(faces, self.face);
         if own == *plane {
             return vec![0; self.n_edges()];
         }
@@ -42,7 +42,7 @@ impl Fragment {
     }
 
     /// How it lies to a plane, exactly.
-    pub fn relation(&self, faces: &Faces, plane: &Plane) -> Relation {
+    pub fn relation(&self, faces: &Faces, plane: &InputPlane) -> Relation {
         // All corners of the face on one side is the commonest case, and says it without the fragment's own.
         let at = faces.of(self.face).map(|p| plane.at(faces, p));
         if at.iter().all(|a| a.value > a.error) {
@@ -55,7 +55,7 @@ impl Fragment {
     }
 
     /// How it lies to a plane, and if it is on both sides its parts: in front (on the positive side), and behind.
-    pub fn split(&self, faces: &Faces, plane: &Plane) -> (Relation, Option<[Self; 2]>) {
+    pub fn split(&self, faces: &Faces, plane: &InputPlane) -> (Relation, Option<[Self; 2]>) {
         let relation = self.relation(faces, plane);
         if relation != Relation::Across {
             return (relation, None);
@@ -65,7 +65,7 @@ impl Fragment {
     }
 
     /// The part on one side of a plane that has corners on both.
-    fn part(&self, faces: &Faces, plane: &Plane, signs: &[i32], side: i8) -> Self {
+    fn part(&self, faces: &Faces, plane: &InputPlane, signs: &[i32], side: i8) -> Self {
         let edges = self.edges();
         let n = edges.len();
         // Edge k goes from corner k to the next. It has a part on this side if one of its ends is strictly there.
@@ -81,7 +81,7 @@ impl Fragment {
     }
 
     /// Whether an edge of it lies on a plane that cut it.
-    pub fn is_cut_by(&self, plane: &Plane) -> bool {
+    pub fn is_cut_by(&self, plane: &InputPlane) -> bool {
         self.edges().iter().any(|e| e.on == On::Plane(*plane))
     }
 }

@@ -95,13 +95,13 @@ fn cut_and_compare(point: impl Strategy<Value = Point3> + Clone) -> [u64; 5] {
         let mut fragment = Fragment::whole(0);
         let mut polygon: Vec<R3> = corners[0].map(rational).to_vec();
         for (face, front) in (1u32..).zip(ways) {
-            let plane = Plane::Face(face);
+            let plane = InputPlane::Face(face);
             let want = relation(&polygon, &corners[face as usize]);
             let (got, parts) = fragment.split(&faces, &plane);
             prop_assert_eq!(got, want);
             prop_assert_eq!(fragment.relation(&faces, &plane), want);
             // The form that planes across an axis share says the same, up to the side that it calls its front.
-            let shared = fragment.relation(&faces, &Plane::of(&faces, face));
+            let shared = fragment.relation(&faces, &InputPlane::of(&faces, face));
             let turned = match want {
                 Relation::Front => Relation::Behind,
                 Relation::Behind => Relation::Front,
@@ -142,8 +142,9 @@ fn parts_share_the_pixels() {
         }
         let mut parts = vec![Fragment::whole(0)];
         for face in 1..4 {
-            let cut =
-                |f: &Fragment| f.split(&faces, &Plane::of(&faces, face)).1.map_or_else(|| vec![f.clone()], Vec::from);
+            let cut = |f: &Fragment| {
+                f.split(&faces, &InputPlane::of(&faces, face)).1.map_or_else(|| vec![f.clone()], Vec::from)
+            };
             parts = parts.iter().flat_map(cut).collect();
         }
         let mut count = [0i32; 64];

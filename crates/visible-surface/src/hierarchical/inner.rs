@@ -11,7 +11,7 @@
 //! Where doubles are not sure the pixel stays open.
 
 use super::footprint::{nearness_above, nearness_below};
-use super::level::Level;
+use super::level::PyramidLevel;
 use super::neighbours::Neighbours;
 use super::sampled::Bounds;
 use crate::camera::Camera;
@@ -173,7 +173,13 @@ impl Sheet<'_> {
 }
 
 /// Writes for each pixel that faces cover wholly how near they are at least; of several in front of each other the nearest.
-pub(super) fn fill(faces: &Faces, neighbours: &Neighbours, camera: &Camera, chosen: &FaceMask, base: &mut Level) {
+pub(super) fn fill(
+    faces: &Faces,
+    neighbours: &Neighbours,
+    camera: &Camera,
+    chosen: &FaceMask,
+    base: &mut PyramidLevel,
+) {
     let mut shapes: Vec<Shape> = chosen.iter().filter_map(|f| Shape::of(camera, faces, f)).collect();
     // What is near first: then less of what is behind has to be looked at.
     shapes.sort_by(|a, b| b.range[1].total_cmp(&a.range[1]).then(a.face.cmp(&b.face)));

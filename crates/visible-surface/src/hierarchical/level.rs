@@ -2,12 +2,12 @@
 
 /// A level: each square stands for up to 2 by 2 of the level below. A pixel is a square of level 0.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Level {
+pub struct PyramidLevel {
     pub(super) size: [u32; 2],
     pub(super) nearness: Vec<f64>,
 }
 
-impl Level {
+impl PyramidLevel {
     /// Squares to the right and down.
     pub fn size(&self) -> [u32; 2] {
         self.size

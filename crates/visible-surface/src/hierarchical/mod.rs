@@ -22,7 +22,7 @@ mod neighbours;
 mod pyramid;
 mod sampled;
 
-pub use level::Level;
+pub use level::PyramidLevel;
 pub use neighbours::Neighbours;
 pub use pyramid::DepthPyramid;
 

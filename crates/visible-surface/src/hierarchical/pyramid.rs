@@ -1,7 +1,7 @@
 //! The pyramid itself, and asking it.
 
 use super::footprint::{Footprint, nearness_below};
-use super::level::Level;
+use super::level::PyramidLevel;
 use super::{Neighbours, Rays, inner, sampled};
 use crate::camera::Camera;
 use crate::cull::{corners_of, is_usable};
@@ -16,7 +16,7 @@ use sightlines_geometry::{Aabb, Point3};
 pub struct DepthPyramid {
     camera: Camera,
     rays: Rays,
-    levels: Vec<Level>,
+    levels: Vec<PyramidLevel>,
 }
 
 /// A footprint is first tested in at most this many squares along each side.
@@ -54,13 +54,13 @@ impl DepthPyramid {
     }
 
     /// Pixels that nothing covers: what is beyond the farthest depth is hidden all the same.
-    fn base(camera: &Camera) -> Level {
+    fn base(camera: &Camera) -> PyramidLevel {
         let size = camera.size();
-        Level { size, nearness: vec![nearness_below(camera.depths()[1]); size[0] as usize * size[1] as usize] }
+        PyramidLevel { size, nearness: vec![nearness_below(camera.depths()[1]); size[0] as usize * size[1] as usize] }
     }
 
     /// Puts levels above the lowest; `farthest` is the lesser of two numbers, but for a test that shows that it has to be.
-    fn of(camera: &Camera, rays: Rays, base: Level, farthest: fn(f64, f64) -> f64) -> Self {
+    fn of(camera: &Camera, rays: Rays, base: PyramidLevel, farthest: fn(f64, f64) -> f64) -> Self {
         let mut levels = vec![base];
         while let Some(last) = levels.last().filter(|l| l.size != [1, 1]) {
             let next = last.halved(farthest);
@@ -75,7 +75,7 @@ impl DepthPyramid {
     }
 
     /// The levels, from pixels up to a single square.
-    pub fn levels(&self) -> &[Level] {
+    pub fn levels(&self) -> &[PyramidLevel] {
         &self.levels
     }
 

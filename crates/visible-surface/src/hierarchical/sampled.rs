@@ -1,7 +1,7 @@
 //! The lowest level from a picture.
 
 use super::footprint::nearness_below;
-use super::level::Level;
+use super::level::PyramidLevel;
 use crate::camera::Camera;
 use crate::faces::{Faces, NOTHING};
 use crate::fragment::{Extents, facing};
@@ -28,7 +28,7 @@ impl Bounds {
 }
 
 /// Writes for each pixel that shows a face how near that is at the pixel's centre, or a little less.
-pub(super) fn fill(faces: &Faces, camera: &Camera, image: &Image, base: &mut Level) {
+pub(super) fn fill(faces: &Faces, camera: &Camera, image: &Image, base: &mut PyramidLevel) {
     let [width, height] = [0, 1].map(|k| camera.size()[k].min(image.size()[k]));
     // Neighbouring pixels mostly show one face.
     let mut last = (NOTHING, None);

@@ -11,7 +11,7 @@ use crate::camera::U;
 use crate::faces::NOTHING;
 use crate::fragment::{Edge, Fragment, On};
 use crate::method::RenderInput;
-use crate::plane::{Approx, LEAST, Plane};
+use crate::plane::{Approx, InputPlane, LEAST};
 use crate::side::depth_value;
 use crate::vector::{cross, cross_size, dot, sub};
 use sightlines_exact::{Dyadic, vector as exact};
@@ -25,7 +25,7 @@ enum Source {
     Edge(Point3, Point3),
     /// `w n - v m` for planes 0 and 1 with normals n and m, where v and w are `n · (p - eye)` for points p of plane 0,
     /// and the same for plane 1.
-    Cut(Plane, Plane),
+    Cut(InputPlane, InputPlane),
 }
 
 impl Source {
@@ -103,7 +103,7 @@ impl Line {
 
     /// The side of the line in which two planes meet: if `sign` is the product of those of the planes' distances, it
     /// holds the directions in which `first` is met before `second`, where both are met.
-    fn cut(sight: &Sight<'_>, first: Plane, second: Plane, sign: i32) -> Self {
+    fn cut(sight: &Sight<'_>, first: InputPlane, second: InputPlane, sign: i32) -> Self {
         let (faces, camera) = (sight.input.faces, sight.input.camera);
         let ((n, n_size), (m, m_size)) = (first.normal(faces), second.normal(faces));
         let ((v, v_size), (w, w_size)) = (depth_value(camera, faces, &first), depth_value(camera, faces, &second));
@@ -191,12 +191,12 @@ pub(super) struct Outline {
 
 impl Outline {
     /// Of a fragment whose plane the eye is not on; `eye` is 1 if it is in front of it, -1 if behind.
-    pub(super) fn new(sight: &Sight<'_>, fragment: &Fragment, plane: Plane, eye: i32) -> Self {
+    pub(super) fn new(sight: &Sight<'_>, fragment: &Fragment, plane: InputPlane, eye: i32) -> Self {
         let (faces, face) = (sight.input.faces, fragment.face());
         let corners = faces.of(face);
         // The sign of the product of the three ways from the eye to the corners: of a face that is seen from behind.
         // `plane` may be turned another way than the face.
-        let turn = -Plane::Face(face).side(faces, sight.input.camera.eye());
+        let turn = -InputPlane::Face(face).side(faces, sight.input.camera.eye());
         let line = |edge: &Edge| match edge.on {
             On::Face(k) => {
                 let [p, q] = [1, 2].map(|i| corners[(usize::from(k) + i) % 3]);
@@ -230,7 +230,7 @@ impl<'a> Common<'a> {
 
     /// Whether in some directions of the cone, and those around, `first` is met before `second`, of which the eye is on
     /// neither and which are not the same; in all directions of the cone both are met.
-    pub(super) fn is_nearer(&self, sight: &Sight<'_>, first: (Plane, i32), second: (Plane, i32)) -> bool {
+    pub(super) fn is_nearer(&self, sight: &Sight<'_>, first: (InputPlane, i32), second: (InputPlane, i32)) -> bool {
         let line = Line::cut(sight, first.0, second.0, first.1 * second.1);
         self.signs(sight, &line).contains(&1)
     }

@@ -5,7 +5,7 @@ use crate::camera::Camera;
 use crate::faces::Faces;
 use crate::fragment::{Extents, Fragment, Relation};
 use crate::method::RenderInput;
-use crate::plane::Plane;
+use crate::plane::InputPlane;
 use std::cell::{Cell, OnceCell};
 
 /// The tests, in the order in which they are made; the last is our own.
@@ -16,7 +16,7 @@ pub(super) const TESTS: [&str; 7] =
 #[derive(Debug)]
 pub(super) struct Item {
     pub(super) fragment: Fragment,
-    pub(super) plane: Plane,
+    pub(super) plane: InputPlane,
     /// 1 if the eye is in front of the plane, -1 if behind.
     eye: i32,
     /// Of what the camera may see of it.
@@ -47,7 +47,7 @@ impl Item {
     /// Nothing if the camera sees nothing of it.
     pub(super) fn new(input: &RenderInput<'_>, fragment: Fragment) -> Option<Self> {
         let RenderInput { faces, camera, .. } = *input;
-        let plane = Plane::of(faces, fragment.face());
+        let plane = InputPlane::of(faces, fragment.face());
         let eye = plane.side(faces, camera.eye());
         if eye == 0 {
             return None;

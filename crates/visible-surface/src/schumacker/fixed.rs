@@ -3,7 +3,7 @@
 use super::Copy;
 use crate::faces::Faces;
 use crate::fragment::{Fragment, Relation};
-use crate::plane::Plane;
+use crate::plane::InputPlane;
 use sightlines_geometry::{Adaptive, Orient2d, Point2, Point3};
 
 /// Convex clusters of more faces are cut like others: seeing that they are compares all pairs.
@@ -16,7 +16,7 @@ pub(super) enum Fixed {
     /// An order, farthest first.
     Order(Vec<Copy>),
     /// The planes of faces that can hide each other in a circle.
-    Cycle(Vec<Plane>),
+    Cycle(Vec<InputPlane>),
     /// Not sought: there are too many faces.
     TooLarge,
 }
@@ -35,7 +35,7 @@ pub(super) fn order(faces: &Faces, cluster: &[Fragment], max_faces: usize) -> Fi
             let mut fragments: Vec<usize> = cycle.into_iter().map(|c| c / 2).collect();
             fragments.sort_unstable();
             fragments.dedup();
-            Fixed::Cycle(fragments.into_iter().map(|k| Plane::of(faces, cluster[k].face())).collect())
+            Fixed::Cycle(fragments.into_iter().map(|k| InputPlane::of(faces, cluster[k].face())).collect())
         }
     }
 }
@@ -53,7 +53,7 @@ fn convex(faces: &Faces, cluster: &[Fragment]) -> Option<Vec<Copy>> {
     }
     let mut out = Vec::with_capacity(cluster.len());
     for fragment in cluster {
-        let plane = Plane::of(faces, fragment.face());
+        let plane = InputPlane::of(faces, fragment.face());
         let mut side = Relation::In;
         for other in cluster {
             match (other.relation(faces, &plane), side) {
@@ -84,7 +84,7 @@ fn flat(n: usize) -> Vec<Copy> {
 /// For each copy those that it can hide while both face the eye.
 fn hides(faces: &Faces, cluster: &[Fragment]) -> Vec<Vec<usize>> {
     let n = cluster.len();
-    let planes: Vec<Plane> = cluster.iter().map(|f| Plane::of(faces, f.face())).collect();
+    let planes: Vec<InputPlane> = cluster.iter().map(|f| InputPlane::of(faces, f.face())).collect();
     let relations: Vec<Relation> =
         cluster.iter().flat_map(|f| planes.iter().map(|plane| f.relation(faces, plane))).collect();
     // Whether a point of fragment i is on a side of the plane of k.
@@ -110,7 +110,7 @@ fn hides(faces: &Faces, cluster: &[Fragment]) -> Vec<Vec<usize>> {
             && let Some(is_same) = overlap(faces.of(cluster[i].face()), faces.of(cluster[k].face()))
         {
             // Planes across axes are turned alike whatever the faces.
-            let is_same = is_same || matches!(planes[i], Plane::Axis(..));
+            let is_same = is_same || matches!(planes[i], InputPlane::Axis(..));
             for back in [0, 1] {
                 out[2 * i + back].push(2 * k + if is_same { back } else { 1 - back });
             }

@@ -13,12 +13,12 @@
 mod fixed;
 mod separate;
 
-use crate::bsp::{self, BspOptions, Child, Emitted, Order, Parts, Place, Tree};
+use crate::bsp::{self, BspOptions, Child, Emitted, Order, Parts, Slot, Tree};
 use crate::counters::Counters;
 use crate::faces::Faces;
 use crate::fragment::Fragment;
 use crate::method::{RenderInput, RenderOutput, VisibleSurface};
-use crate::plane::Plane;
+use crate::plane::InputPlane;
 use fixed::Fixed;
 use std::ops::{ControlFlow, Range};
 
@@ -130,8 +130,8 @@ impl Schumacker {
                 let face = fragment.face();
                 if input.mask.has(face) {
                     n_copies += 1;
-                    let side =
-                        sides[face as usize].get_or_insert_with(|| Plane::of(input.faces, face).side(input.faces, eye));
+                    let side = sides[face as usize]
+                        .get_or_insert_with(|| InputPlane::of(input.faces, face).side(input.faces, eye));
                     if *side == if copy.is_front { 1 } else { -1 } {
                         out.push(fragment);
                     }
@@ -177,7 +177,7 @@ fn by_object(faces: &Faces) -> Vec<Vec<Fragment>> {
 
 /// What is to be put under a node, and the box in which it lies as far as planes across axes tell.
 struct Work {
-    place: Place,
+    place: Slot,
     clusters: Vec<Vec<Fragment>>,
     region: Region,
 }
@@ -211,7 +211,7 @@ impl Build<'_> {
     }
 
     /// Makes a leaf of a cluster if its faces have a fixed order, else cuts it.
-    fn leaf(&mut self, place: Place, cluster: &[Fragment]) -> Option<(Plane, Parts)> {
+    fn leaf(&mut self, place: Slot, cluster: &[Fragment]) -> Option<(InputPlane, Parts)> {
         let (copies, is_convex) = match fixed::order(self.faces, cluster, self.options.max_faces) {
             Fixed::Convex(copies) => (copies, true),
             Fixed::Order(copies) => (copies, false),
@@ -232,7 +232,7 @@ impl Build<'_> {
     }
 
     /// Parts several clusters.
-    fn part(&self, clusters: &[Vec<Fragment>], region: &Region) -> (Plane, ClusterParts) {
+    fn part(&self, clusters: &[Vec<Fragment>], region: &Region) -> (InputPlane, ClusterParts) {
         let plane = separate::plane(self.faces, clusters, region).unwrap_or_else(|| {
             let all: Vec<Fragment> = clusters.iter().flatten().cloned().collect();
             bsp::cut(self.faces, &all, &BspOptions::default(), self.tree.n_nodes() as u64).0
@@ -240,7 +240,7 @@ impl Build<'_> {
         (plane, ClusterParts::of(self.faces, clusters, &plane))
     }
 
-    fn hang(&mut self, work: &Work, (plane, parts): (Plane, ClusterParts), todo: &mut Vec<Work>) {
+    fn hang(&mut self, work: &Work, (plane, parts): (InputPlane, ClusterParts), todo: &mut Vec<Work>) {
         self.stats.planes += 1;
         self.stats.clean += usize::from(parts.n_cut == 0);
         self.stats.splits += parts.splits;
@@ -248,7 +248,7 @@ impl Build<'_> {
         within.sort_by_key(Fragment::face);
         let node = self.tree.add(work.place, Some(plane), within);
         let (mut front, mut behind) = (work.region, work.region);
-        if let Plane::Axis(axis, at) = plane {
+        if let InputPlane::Axis(axis, at) = plane {
             front[usize::from(axis)][0] = front[usize::from(axis)][0].max(at);
             behind[usize::from(axis)][1] = behind[usize::from(axis)][1].min(at);
         }
@@ -269,7 +269,7 @@ struct ClusterParts {
 }
 
 impl ClusterParts {
-    fn of(faces: &Faces, clusters: &[Vec<Fragment>], plane: &Plane) -> Self {
+    fn of(faces: &Faces, clusters: &[Vec<Fragment>], plane: &InputPlane) -> Self {
         let mut out = Self::default();
         clusters.iter().for_each(|cluster| out.add(Parts::of(faces, cluster, plane)));
         out

@@ -6,7 +6,7 @@
 
 use crate::camera::{Camera, U};
 use crate::faces::Faces;
-use crate::plane::{LEAST, Plane};
+use crate::plane::{InputPlane, LEAST};
 use crate::vector::{cross, cross_size, dot, dot_size, sub};
 use sightlines_exact::{Dyadic, vector as exact};
 use sightlines_geometry::Point3;
@@ -18,9 +18,9 @@ pub(crate) enum Source {
     /// Rays that pass the edge from p to q on the side of `(p - eye) × (q - eye)`.
     Edge(Point3, Point3),
     /// Rays that meet plane 0 before plane 1, or with opposite signs: see [`Side::cut`].
-    Cut(Plane, Plane),
+    Cut(InputPlane, InputPlane),
     /// Rays that meet the plane not before a depth, or with opposite signs.
-    Depth(Plane, f64),
+    Depth(InputPlane, f64),
 }
 
 /// The linear function of a line, and its sign for pixels.
@@ -52,7 +52,7 @@ impl Side {
 
     /// The line in which two planes meet: the sign says, times the product of the signs of the eye against both,
     /// whether rays meet `first` before `second`. Both must be met in front of the eye where this is used.
-    pub(crate) fn cut(camera: &Camera, faces: &Faces, first: Plane, second: Plane) -> Self {
+    pub(crate) fn cut(camera: &Camera, faces: &Faces, first: InputPlane, second: InputPlane) -> Self {
         let ((n, n_size), (m, m_size)) = (first.normal(faces), second.normal(faces));
         let ((v, v_size), (w, w_size)) = (depth_value(camera, faces, &first), depth_value(camera, faces, &second));
         // 1 / t = n · d / v for the first and m · d / w for the second; 1 / t is larger where it is nearer.
@@ -63,7 +63,7 @@ impl Side {
 
     /// The line where a plane reaches a depth: the sign says, times the sign of [`eye_sign`], whether rays meet it not
     /// before that depth.
-    pub(crate) fn depth(camera: &Camera, faces: &Faces, plane: Plane, depth: f64) -> Self {
+    pub(crate) fn depth(camera: &Camera, faces: &Faces, plane: InputPlane, depth: f64) -> Self {
         let (n, n_size) = plane.normal(faces);
         let (v, v_size) = depth_value(camera, faces, &plane);
         // t >= depth where v / (n · d) >= depth, so v - depth * n · d has the sign of v: the function of a direction has no
@@ -161,13 +161,13 @@ fn at(a: &Dyadic, b: &Dyadic, c: &Dyadic, x: u32, y: u32) -> Dyadic {
 }
 
 /// `n · (p - eye)` for points p of a plane, and what its rounding is measured by: the negative of the plane's function at the eye.
-pub(crate) fn depth_value(camera: &Camera, faces: &Faces, plane: &Plane) -> (f64, f64) {
+pub(crate) fn depth_value(camera: &Camera, faces: &Faces, plane: &InputPlane) -> (f64, f64) {
     match *plane {
-        Plane::Axis(k, at) => {
+        InputPlane::Axis(k, at) => {
             let v = at - camera.eye()[usize::from(k)];
             (v, v.abs())
         }
-        Plane::Face(face) => {
+        InputPlane::Face(face) => {
             let a = faces.of(face)[0];
             let (n, size) = plane.normal(faces);
             let way = sub(a, camera.eye());
@@ -177,7 +177,7 @@ pub(crate) fn depth_value(camera: &Camera, faces: &Faces, plane: &Plane) -> (f64
 }
 
 /// The sign of `n · (p - eye)`, exactly: 1 if the eye is behind the plane, -1 in front, 0 if on it.
-pub(crate) fn eye_sign(camera: &Camera, faces: &Faces, plane: &Plane) -> i32 {
+pub(crate) fn eye_sign(camera: &Camera, faces: &Faces, plane: &InputPlane) -> i32 {
     -plane.side(faces, camera.eye())
 }
 

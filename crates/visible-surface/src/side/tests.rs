@@ -82,7 +82,7 @@ fn signs_are_those_of_fractions() {
             return Ok(());
         }
         // Which plane is met first, and whether before a depth.
-        let [first, second] = [0, 1].map(|f| Plane::of(&faces, f));
+        let [first, second] = [0, 1].map(|f| InputPlane::of(&faces, f));
         let depth = |t: [Point3; 3]| {
             let [p, q, r] = t.map(rational);
             let (u, v) = (sub(&q, &p), sub(&r, &p));

@@ -3,14 +3,14 @@
 use proptest::prelude::*;
 use sightlines_geometry::Point3;
 use sightlines_visible_surface::{
-    Bsp, BspOptions, Camera, Comparison, DepthFormat, FaceMask, Faces, Newell, Painter, RayCaster, RenderInput,
+    BspOptions, Camera, Comparison, DepthFormat, FaceBsp, FaceMask, Faces, Newell, Painter, RayCaster, RenderInput,
     Schumacker, SchumackerOptions, VisibleSurface, ZBuffer, compare,
 };
 use std::cell::Cell;
 
 /// All methods that are right by their promise.
 fn exact_methods(faces: &Faces) -> Vec<Box<dyn VisibleSurface>> {
-    let bsp = Bsp::build(faces, &BspOptions::default());
+    let bsp = FaceBsp::build(faces, &BspOptions::default());
     vec![
         Box::new(ZBuffer::new(DepthFormat::Exact)),
         Box::new(RayCaster::build(faces)),

@@ -5,9 +5,9 @@ use crate::soups::{cameras, cube, cycle, triangles};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
-use sightlines_visible_surface::bsp::{Bsp, BspOptions, Heuristic};
+use sightlines_visible_surface::bsp::{BspOptions, FaceBsp, Heuristic};
 use sightlines_visible_surface::{
-    Camera, Counters, FaceMask, Faces, Fragment, Plane, Relation, RenderInput, RenderOutput, VisibleSurface,
+    Camera, Counters, FaceMask, Faces, Fragment, InputPlane, Relation, RenderInput, RenderOutput, VisibleSurface,
 };
 
 const SIDE: u32 = 16;
@@ -40,7 +40,7 @@ proptest! {
         keep in any::<u16>(),
     ) {
         let faces = Faces::new(soup).unwrap();
-        let bsp = Bsp::build(&faces, &options);
+        let bsp = FaceBsp::build(&faces, &options);
         let stats = bsp.stats();
         prop_assert_eq!(stats.fragments as u64, stats.faces as u64 + stats.splits);
         crate::oracle::check(&faces, &camera, |f| keep >> f & 1 == 1, &[&bsp, &bsp.clone().front_to_back()]);
@@ -56,7 +56,7 @@ proptest! {
         keep in any::<u16>(),
     ) {
         let faces = Faces::new(soup).unwrap();
-        let bsp = Bsp::build(&faces, &options);
+        let bsp = FaceBsp::build(&faces, &options);
         let all = FaceMask::all(&faces);
         let mut chosen = all.clone();
         chosen.retain(|f| keep >> f & 1 == 1);
@@ -75,7 +75,7 @@ proptest! {
         ids.sort_unstable();
         ids.dedup();
         let eye = camera.eye();
-        let faced = |f: u32| sightlines_visible_surface::Plane::of(&faces, f).side(&faces, eye) != 0;
+        let faced = |f: u32| sightlines_visible_surface::InputPlane::of(&faces, f).side(&faces, eye) != 0;
         prop_assert_eq!(ids, chosen.iter().filter(|&f| faced(f)).collect::<Vec<_>>());
         prop_assert!(counters.tests["nodes visited"] <= all_counters.tests["nodes visited"]);
         prop_assert_eq!(all_counters.tests["subtrees skipped"], 0);
@@ -92,7 +92,7 @@ fn few_pixels_are_in_doubt_and_swapped_children_are_caught() {
         let chosen = FaceMask::all(&faces);
         let truth = look(&faces, &camera, &chosen);
         let input = RenderInput { faces: &faces, camera: &camera, mask: &chosen };
-        let bsp = Bsp::build(&faces, &BspOptions::default());
+        let bsp = FaceBsp::build(&faces, &BspOptions::default());
         assert_eq!(truth.wrong(&bsp.picture(&input).0), []);
         let impostor = Swapped(bsp.front_to_back());
         n_caught += u32::from(!truth.wrong(&impostor.picture(&input).0).is_empty());
@@ -140,7 +140,7 @@ fn convex_objects_are_not_split() {
         let faces = Faces::new(soup).unwrap();
         for heuristic in all_heuristics() {
             let options = BspOptions { heuristic, axis_above: usize::MAX, ..BspOptions::default() };
-            let stats = Bsp::build(&faces, &options).stats();
+            let stats = FaceBsp::build(&faces, &options).stats();
             assert_eq!((stats.splits, stats.nodes), (0, n_planes), "{heuristic:?}");
         }
     }
@@ -150,7 +150,7 @@ fn convex_objects_are_not_split() {
 fn boxes_apart_are_parted_without_splits() {
     let soup = (0..4).flat_map(|x| (0..4).flat_map(move |y| cube([f64::from(x) * 3.0, f64::from(y) * 3.0, 0.0], 2.0)));
     let faces = Faces::new(soup.collect()).unwrap();
-    let stats = Bsp::build(&faces, &BspOptions::default()).stats();
+    let stats = FaceBsp::build(&faces, &BspOptions::default()).stats();
     assert_eq!((stats.faces, stats.splits), (192, 0));
 }
 
@@ -161,7 +161,7 @@ fn heuristics_do_what_they_are_named_for() {
     let faces = Faces::new(tee).unwrap();
     let splits = |faces: &Faces, heuristic| {
         let options = BspOptions { heuristic, axis_above: usize::MAX, ..BspOptions::default() };
-        Bsp::build(faces, &options).stats()
+        FaceBsp::build(faces, &options).stats()
     };
     assert_eq!(splits(&faces, Heuristic::FirstFace).splits, 1);
     assert_eq!(splits(&faces, Heuristic::FewestSplits).splits, 0);
@@ -174,7 +174,7 @@ fn heuristics_do_what_they_are_named_for() {
     assert!(splits(&stack(31), Heuristic::Balanced).depth <= 8);
     // Nothing recurses: as deep as there are faces.
     assert_eq!(splits(&stack(3000), Heuristic::FirstFace).depth, 3000);
-    let large = Bsp::build(&stack(3000), &BspOptions::default()).stats();
+    let large = FaceBsp::build(&stack(3000), &BspOptions::default()).stats();
     assert!(large.depth < 40 && large.splits == 0, "{large:?}");
 }
 
@@ -185,7 +185,7 @@ fn what_must_be_split_is_split_once() {
     for soup in [crossing, cycle([0.0; 3], 0, false)] {
         let faces = Faces::new(soup).unwrap();
         let options = BspOptions { heuristic: Heuristic::FewestSplits, ..BspOptions::default() };
-        assert_eq!(Bsp::build(&faces, &options).stats().splits, 1);
+        assert_eq!(FaceBsp::build(&faces, &options).stats().splits, 1);
     }
 }
 
@@ -195,7 +195,7 @@ fn of_faces_in_one_plane_the_lower_id_is_seen_from_both_sides() {
         (0..5).map(|k| [[0., 0., 1.], [4. - f64::from(k), 0., 1.], [0., 4., 1.]]).collect();
     let faces = Faces::new(soup.into_iter().rev().collect()).unwrap();
     let chosen = FaceMask::all(&faces);
-    let bsp = Bsp::build(&faces, &BspOptions::default());
+    let bsp = FaceBsp::build(&faces, &BspOptions::default());
     assert_eq!(bsp.stats().nodes, 1);
     for camera in [from_above(64), from_below()] {
         let input = RenderInput { faces: &faces, camera: &camera, mask: &chosen };
@@ -216,7 +216,7 @@ fn from_below() -> Camera {
 fn trees_of_nothing_draw_nothing() {
     for soup in [vec![], vec![[[0.0; 3]; 3]]] {
         let faces = Faces::new(soup).unwrap();
-        let bsp = Bsp::build(&faces, &BspOptions::default());
+        let bsp = FaceBsp::build(&faces, &BspOptions::default());
         assert_eq!(bsp.stats(), sightlines_visible_surface::bsp::BspStats::default());
         let chosen = FaceMask::all(&faces);
         let (image, counters) = bsp.picture(&RenderInput { faces: &faces, camera: &from_above(4), mask: &chosen });
@@ -227,7 +227,7 @@ fn trees_of_nothing_draw_nothing() {
 #[test]
 fn large_trees_are_cut_across_axes_and_show_what_rays_meet() {
     let faces = Faces::new(crate::soups::field(9, &mut TestRunner::deterministic())).unwrap();
-    let bsp = Bsp::build(&faces, &BspOptions::default());
+    let bsp = FaceBsp::build(&faces, &BspOptions::default());
     let stats = bsp.stats();
     assert!(stats.faces > 200 && stats.axis_nodes > 2, "{stats:?}");
     let chosen = FaceMask::all(&faces);
@@ -256,8 +256,8 @@ fn corners_beside_planes_at_both_ends_of_the_range() {
         [[x, y, e - s], [x, y, e + s], [x, e + s, e - s]],
     ])
     .unwrap();
-    let [_, behind] = Fragment::whole(2).split(&faces, &Plane::of(&faces, 0)).1.unwrap();
-    assert_eq!(behind.relation(&faces, &Plane::Axis(1, y)), Relation::Across);
+    let [_, behind] = Fragment::whole(2).split(&faces, &InputPlane::of(&faces, 0)).1.unwrap();
+    assert_eq!(behind.relation(&faces, &InputPlane::Axis(1, y)), Relation::Across);
     let eye = [0.0, e - p(-190), e - p(-150)];
     let corner = [1.0, 7.0 * p(-54) - 0.5, p(-11) - 0.5];
     let camera = Camera::new(eye, corner, [0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [1, 1]).unwrap();
@@ -266,7 +266,7 @@ fn corners_beside_planes_at_both_ends_of_the_range() {
     let truth = crate::oracle::look(&faces, &camera, &chosen);
     assert_eq!((truth.faces[0], truth.n_in_doubt()), (Some(3), 0));
     let options = BspOptions { heuristic: Heuristic::FirstFace, candidates: 1, axis_above: usize::MAX };
-    let tree = Bsp::build(&faces, &options);
+    let tree = FaceBsp::build(&faces, &options);
     for method in [&tree, &tree.clone().front_to_back()] {
         assert_eq!(truth.wrong(&method.picture(&input).0), []);
     }

@@ -6,8 +6,8 @@ use proptest::prelude::*;
 use sightlines_geometry::Point3;
 use sightlines_scenes::{SurfaceOptions, coplanar, cycles, interleaved, lattice, surfaces};
 use sightlines_visible_surface::{
-    AnyOrder, Bsp, BspOptions, Camera, DepthFormat, FaceMask, Faces, Image, Newell, Painter, RayCaster, RenderInput,
-    Schumacker, SchumackerOptions, VisibleSurface, ZBuffer, is_convex,
+    AnyOrder, BspOptions, Camera, DepthFormat, FaceBsp, FaceMask, Faces, Image, Newell, Painter, RayCaster,
+    RenderInput, Schumacker, SchumackerOptions, VisibleSurface, ZBuffer, is_convex,
 };
 
 fn picture(method: &dyn VisibleSurface, faces: &Faces, camera: &Camera) -> Image {
@@ -28,7 +28,7 @@ fn the_painter_is_wrong_where_mid_points_mislead_and_the_others_are_right() {
         let faces = Faces::of_scene(&scene.unwrap()).unwrap();
         let n = n_wrong(&Painter, &faces, &camera);
         assert!(n > 5, "{n} {}", faces.len());
-        let bsp = Bsp::build(&faces, &BspOptions::default());
+        let bsp = FaceBsp::build(&faces, &BspOptions::default());
         let schumacker = Schumacker::build(&faces, &SchumackerOptions::default());
         let (zbuffer, rays) = (ZBuffer::new(DepthFormat::Exact), RayCaster::build(&faces));
         let others: [&dyn VisibleSurface; 5] = [&Newell, &bsp, &schumacker, &zbuffer, &rays];
@@ -102,7 +102,7 @@ proptest! {
         let faces = Faces::new(object).unwrap();
         prop_assert!(is_convex(&faces, faces.ids()));
         let mut front = FaceMask::all(&faces);
-        front.retain(|f| sightlines_visible_surface::Plane::Face(f).side(&faces, camera.eye()) > 0);
+        front.retain(|f| sightlines_visible_surface::InputPlane::Face(f).side(&faces, camera.eye()) > 0);
         let truth = look(&faces, &camera, &front);
         prop_assert_eq!(truth.wrong(&picture(&AnyOrder, &faces, &camera)), vec![]);
         // One face fewer, or one the other way round, is no whole boundary.

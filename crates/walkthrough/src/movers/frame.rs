@@ -2,7 +2,7 @@
 
 use super::motion::{is_box, is_within};
 use super::{Broken, BrokenPromise, CellLocator, Mover, MoverError, MoverId, Movers, State, flat};
-use crate::walkthrough::{Answer, Frame};
+use crate::walkthrough::{AnswerKind, DrawList};
 use sightlines_eye_to_cell::VisibleSet;
 use sightlines_geometry::Aabb;
 use sightlines_pvs::CellId;
@@ -24,7 +24,7 @@ impl<P: CellLocator> Movers<P> {
     /// of a mover; it is called at most once for each mover, and not for sleeping ones. Outside every cell all movers
     /// are visible, and none is queried.
     ///
-    /// Errs towards visible. The frame must belong to the table that the movers are in. With [`Answer::Late`] more
+    /// Errs towards visible. The frame must belong to the table that the movers are in. With [`AnswerKind::Late`] more
     /// movers are visible, as with everything else. Movers seen in mirrors are not included; see [`Movers::also`].
     ///
     /// Positions are compared with the promise without any slack except for our own rounding: a caller that accumulates
@@ -35,7 +35,7 @@ impl<P: CellLocator> Movers<P> {
     pub fn frame(
         &mut self,
         now: f64,
-        frame: &Frame<'_>,
+        frame: &DrawList<'_>,
         place: &mut dyn FnMut(MoverId) -> Aabb<3>,
     ) -> Result<&[MoverId], MoverError> {
         self.check_time(now)?;
@@ -43,7 +43,7 @@ impl<P: CellLocator> Movers<P> {
         self.counters.frames += 1;
         self.broken.clear();
         self.seen.clear();
-        self.is_outside = frame.answer == Answer::Outside;
+        self.is_outside = frame.answer == AnswerKind::Outside;
         if self.is_outside {
             let all = (0u32..).zip(&self.slots).filter(|(_, slot)| slot.mover.is_some());
             self.seen.extend(all.map(|(slot, s)| MoverId { slot, generation: s.generation }));
@@ -205,13 +205,15 @@ impl<P: CellLocator> Movers<P> {
     }
 
     /// Whether a box (scene units) that is no mover is visible in a frame, by the same test as for movers.
-    pub fn sees(&mut self, frame: &Frame<'_>, bounds: &Aabb<3>) -> bool {
+    pub fn sees(&mut self, frame: &DrawList<'_>, bounds: &Aabb<3>) -> bool {
         let bounds = flat(*bounds, self.places.dimension());
-        frame.answer == Answer::Outside || !is_box(&bounds) || self.is_seen(&bounds, |cell| frame.seen.has_cell(cell))
+        frame.answer == AnswerKind::Outside
+            || !is_box(&bounds)
+            || self.is_seen(&bounds, |cell| frame.seen.has_cell(cell))
     }
 
     /// The movers visible in these cells at the time of the last frame, by ascending slot; for what is seen in a mirror
-    /// ([`sightlines_eye_to_cell::Image::cells`]). Movers queried in this frame are not queried again. None falls
+    /// ([`sightlines_eye_to_cell::MirrorImage::cells`]). Movers queried in this frame are not queried again. None falls
     /// asleep.
     ///
     /// An image that is not complete may show any mover.

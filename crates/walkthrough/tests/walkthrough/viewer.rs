@@ -3,7 +3,7 @@
 use crate::walk::hall_of_mirrors;
 use sightlines_bake::{BakeRequest, PlanBakeOptions, bake, bake_plan};
 use sightlines_eye_to_cell::{
-    Budget, Doors, Image, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph, follow_reflections,
+    Doors, Method, MirrorImage, Scratch, StepBudget, TableCells, View, VisibleSet, VisibleSubgraph, follow_reflections,
 };
 use sightlines_geometry::Aabb;
 use sightlines_pvs::{CellId, DoorId, ObjectId, PortalId, Table};
@@ -12,13 +12,13 @@ use sightlines_walkthrough::Viewer;
 use std::sync::Arc;
 
 /// What an eye sees: cells, objects, the method that answered, and what is seen in mirrors.
-type Seen = (Vec<CellId>, Vec<ObjectId>, Option<Method>, Vec<Image>);
+type Seen = (Vec<CellId>, Vec<ObjectId>, Option<Method>, Vec<MirrorImage>);
 
 /// A look, as one asks for it.
 struct Ask {
     view: View,
     method: Method,
-    budget: Budget,
+    budget: StepBudget,
     doors: Doors,
 }
 
@@ -86,7 +86,7 @@ fn ask(table: &Table, k: usize, state: &mut u64) -> Ask {
     for _ in 0..k % 3 * table.portals().len() / 8 {
         doors.close(PortalId((share() * table.portals().len() as f64) as u32));
     }
-    let budget = [Budget::steps(0), Budget::steps(40), Budget::FRAME, Budget::UNLIMITED][k / 5 % 4];
+    let budget = [StepBudget::steps(0), StepBudget::steps(40), StepBudget::FRAME, StepBudget::UNLIMITED][k / 5 % 4];
     Ask { view: view.unwrap(), method: Method::ALL[4 - k % 5], budget, doors }
 }
 
@@ -137,7 +137,7 @@ fn viewers_see_nothing_before_they_look() {
 #[cfg(feature = "packed")]
 mod packed {
     use super::*;
-    use sightlines_packed::{PackOptions, Packed, Source, pack};
+    use sightlines_packed::{ByteSource, PackOptions, Packed, pack};
     use sightlines_walkthrough::PackedCells;
     use std::io;
     use std::sync::atomic::{AtomicBool, Ordering};
@@ -145,9 +145,9 @@ mod packed {
     /// A file that can be read until its medium is gone.
     struct Medium(Vec<u8>, Arc<AtomicBool>);
 
-    impl Source for Medium {
+    impl ByteSource for Medium {
         fn len(&self) -> io::Result<u64> {
-            Source::len(&self.0)
+            ByteSource::len(&self.0)
         }
 
         fn read_at(&self, offset: u64, buf: &mut [u8]) -> io::Result<()> {

@@ -1,13 +1,13 @@
 //! A viewer walks along a row of rooms: with everything in memory, and with sources that are late, fail, or are gone.
 
-use sightlines_eye_to_cell::{Budget, CellSource, Method, MirrorPiece, PortalEdge, StabStep, TableCells, View};
+use sightlines_eye_to_cell::{CellSource, Method, MirrorPiece, PortalEdge, StabStep, StepBudget, TableCells, View};
 use sightlines_geometry::Aabb;
 use sightlines_pvs::{
     BitMatrix, CellId, CellRecord, DoorId, DoorRecord, Frame, Locator, MirrorId, MirrorRecord, ObjectId, ObjectRecord,
     PortalId, PortalRecord, Table, TableKind, TableParts,
 };
 use sightlines_walkthrough::{
-    Answer, MeasureError, Prefetcher, Prepare, WalkMeasure, WalkOptions, Walkthrough, usual_step,
+    AnswerKind, MeasureError, Prefetcher, Prepare, WalkMeasure, WalkOptions, Walkthrough, usual_step,
 };
 use std::collections::BTreeSet;
 use std::sync::{Arc, Condvar, Mutex};
@@ -142,7 +142,7 @@ fn walk(table: &Arc<Table>, source: Slow, options: WalkOptions) -> Walk {
 fn until_full(walk: &mut Walk, view: &View, method: Method) -> (BTreeSet<u32>, BTreeSet<u32>) {
     loop {
         let frame = walk.frame(view, method);
-        if frame.answer == Answer::Full {
+        if frame.answer == AnswerKind::Full {
             return (
                 frame.seen.cells().iter().map(|c| c.0).collect(),
                 frame.seen.objects().iter().map(|o| o.0).collect(),
@@ -166,7 +166,7 @@ fn frames_do_not_wait_for_a_source_that_never_comes() {
         let view = looking_right(0.5 + 0.038 * f64::from(k));
         let (cells, objects) = until_full(&mut twin, &view, Method::Exact);
         let frame = walk.frame(&view, Method::Exact);
-        assert_eq!(frame.answer, Answer::Late);
+        assert_eq!(frame.answer, AnswerKind::Late);
         assert!(cells.iter().all(|&c| frame.seen.has_cell(CellId(c))), "late, and less");
         assert!(objects.iter().all(|&o| frame.seen.has_object(ObjectId(o))));
         n += 1;
@@ -192,7 +192,7 @@ fn what_is_ahead_is_there_in_time() {
     let mut late = Vec::new();
     for k in 0..3000 {
         let view = looking_right(0.5 + 0.01 * f64::from(k));
-        if walk.frame(&view, Method::IncidentPortals).answer == Answer::Late {
+        if walk.frame(&view, Method::IncidentPortals).answer == AnswerKind::Late {
             late.push(k);
         }
         // The rest of the frame takes as long as its requests.
@@ -279,7 +279,7 @@ fn outside_sees_everything() {
     let mut walk = walk(&table, source, WalkOptions::default());
     let view = View::planar([0.5, 7.0], [1.0, 0.0], 0.1).unwrap();
     let frame = walk.frame(&view, Method::Exact);
-    assert_eq!(frame.answer, Answer::Outside);
+    assert_eq!(frame.answer, AnswerKind::Outside);
     assert_eq!((frame.seen.cells().len(), frame.seen.objects().len(), frame.at.len()), (4, 4, 0));
 }
 
@@ -291,7 +291,7 @@ fn failures_are_reported_and_frames_stay_right() {
     let mut walk = walk(&table, source, WalkOptions::default());
     let error = loop {
         let frame = walk.frame(&looking_right(0.5), Method::Exact);
-        assert_eq!(frame.answer, Answer::Late);
+        assert_eq!(frame.answer, AnswerKind::Late);
         assert_eq!(frame.seen.cells().len(), 3);
         if let Some(error) = walk.take_error() {
             break error;
@@ -401,7 +401,7 @@ fn mirrors_in_mirrors_come_in_time() {
     let mut walk = walk(&table, source, WalkOptions { bounces: 2, ..WalkOptions::default() });
     // Up and to the right: by the mirror of the first room, through the door, to the mirror of the second.
     let view = View::planar([0.5, 0.5], [1.0, 1.0], 0.5).unwrap();
-    assert_eq!(walk.frame(&view, Method::Exact).answer, Answer::Late);
+    assert_eq!(walk.frame(&view, Method::Exact).answer, AnswerKind::Late);
     gate.open();
     until_full(&mut walk, &view, Method::Exact);
     let frame = walk.frame(&view, Method::Exact);
@@ -443,12 +443,12 @@ fn frames_without_a_thread_prepare_what_they_request() {
     };
     let (answers, counters, prepared, error) = run();
     assert_eq!((answers.clone(), counters, prepared, error), run());
-    assert_eq!((error, answers[0].0), (Some(CellId(9)), Answer::Late));
+    assert_eq!((error, answers[0].0), (Some(CellId(9)), AnswerKind::Late));
     let (source, gate) = slow(&table, None);
     gate.open();
     let mut twin = walk(&table, source, WalkOptions::default());
     for (k, (answer, cells)) in (0..100).zip(&answers).skip(1).take_while(|(k, _)| 0.5 + 0.08 * f64::from(*k) < 9.0) {
-        assert_eq!(*answer, Answer::Full, "frame {k}");
+        assert_eq!(*answer, AnswerKind::Full, "frame {k}");
         let full = until_full(&mut twin, &looking_right(0.5 + 0.08 * f64::from(k)), Method::Exact);
         assert_eq!(cells.iter().copied().collect::<BTreeSet<u32>>(), full.0, "frame {k}");
     }
@@ -458,7 +458,7 @@ fn frames_without_a_thread_prepare_what_they_request() {
 #[test]
 fn frames_fall_back_and_say_so() {
     let table = rooms(12);
-    let frames = |steps: Budget, method: Method| {
+    let frames = |steps: StepBudget, method: Method| {
         let (source, gate) = slow(&table, None);
         gate.open();
         let options = WalkOptions { has_thread: false, steps, ..WalkOptions::default() };
@@ -468,21 +468,21 @@ fn frames_fall_back_and_say_so() {
             // Each view twice: the second time the answer is repeated.
             let view = looking_right(0.5 + 0.16 * f64::from(k / 2));
             let frame = walk.frame(&view, method);
-            if frame.answer == Answer::Full {
+            if frame.answer == AnswerKind::Full {
                 all.push((k, frame.method, frame.seen.cells().iter().map(|c| c.0).collect::<BTreeSet<u32>>()));
             }
         }
         (all, walk.counters())
     };
-    let (exact, counters) = frames(Budget::UNLIMITED, Method::Exact);
+    let (exact, counters) = frames(StepBudget::UNLIMITED, Method::Exact);
     assert!(exact.len() > 30 && exact.iter().all(|frame| frame.1 == Method::Exact) && counters.fell_back == 0);
-    assert_eq!(frames(Budget::FRAME, Method::Exact), (exact.clone(), counters));
-    let (coarser, counters) = frames(Budget::steps(0), Method::Exact);
+    assert_eq!(frames(StepBudget::FRAME, Method::Exact), (exact.clone(), counters));
+    let (coarser, counters) = frames(StepBudget::steps(0), Method::Exact);
     assert!(coarser.iter().all(|frame| frame.1 == Method::IncidentPortals));
     assert_eq!(counters.fell_back, coarser.len() as u64);
     assert!(counters.repeated >= 10, "{counters:?}");
     let cells = |list: &[(i32, Method, BTreeSet<u32>)]| list.iter().map(|f| (f.0, f.2.clone())).collect::<Vec<_>>();
-    let (incident, counters) = frames(Budget::steps(0), Method::IncidentPortals);
+    let (incident, counters) = frames(StepBudget::steps(0), Method::IncidentPortals);
     assert_eq!((cells(&coarser), counters.fell_back), (cells(&incident), 0));
     for ((_, _, fine), (_, _, wide)) in exact.iter().zip(&coarser) {
         assert!(fine.is_subset(wide));

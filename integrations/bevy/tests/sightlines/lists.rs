@@ -8,7 +8,7 @@ use bevy::math::{DAffine3, DMat4, DVec3};
 use bevy::prelude::*;
 use bevy_sightlines::pvs::{DoorRecord, ObjectId, PortalId, Table};
 use bevy_sightlines::{PvsCamera, PvsDoor, PvsMethod, PvsObject, PvsState, PvsTable};
-use sightlines_eye_to_cell::{Budget, Doors, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph};
+use sightlines_eye_to_cell::{Doors, Method, Scratch, StepBudget, TableCells, View, VisibleSet, VisibleSubgraph};
 use sightlines_pvs::{CellId, PlaceBuffer};
 use sightlines_walkthrough::{CameraPose, wander};
 use std::collections::{BTreeSet, HashMap};
@@ -34,7 +34,7 @@ impl Oracle {
         let mut buffer = PlaceBuffer::new();
         let at: Vec<CellId> = self.cells.table().cells_at(eye.to_array(), &mut buffer).inside()?.to_vec();
         let view = View::from_view_projection(eye.to_array(), clip_from_scene.to_cols_array_2d()).expect("a camera");
-        self.scratch.allow(Budget::FRAME);
+        self.scratch.allow(StepBudget::FRAME);
         self.seen.clear(self.cells.table().n_cells(), self.cells.table().objects().len());
         for cell in at {
             let cells = &self.cells;

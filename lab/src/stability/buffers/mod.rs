@@ -17,54 +17,58 @@ use super::predicates::cases::{Apart, Place};
 use super::predicates::powers_of_ten;
 use super::shader_float;
 use super::sweep::caught;
-use super::{Answer, Board, Kind, Method, Outcome, Sweep};
+use super::{Answer, Board, Kind, Outcome, Sweep, SweepMethod};
 use scene::{Gap, Scene, Sizes};
 use sightlines::geometry::Random;
 use sightlines::multifocal::mesh::{PatchOptions, patches};
-use sightlines::multifocal::{Buffer, Job, Measure, MultifocalBackend, Occluder};
+use sightlines::multifocal::{Buffer, BufferJob, Measure, MultifocalBackend, Occluder};
 use sightlines::multifocal_cpu::{Fast, Reference};
 use std::fmt::Debug;
 
 /// Fills the only buffer of a job.
-type Fill = fn(&Job<'_>) -> Buffer;
+type Fill = fn(&BufferJob<'_>) -> Buffer;
 
-fn render(backend: &mut dyn MultifocalBackend, job: &Job<'_>) -> Buffer {
+fn render(backend: &mut dyn MultifocalBackend, job: &BufferJob<'_>) -> Buffer {
     let mut out = Vec::new();
     backend.render(job, &mut out).expect("processors have no device to lose");
     out.swap_remove(0)
 }
 
-fn integers(job: &Job<'_>) -> Buffer {
+fn integers(job: &BufferJob<'_>) -> Buffer {
     render(&mut Fast::new(), job)
 }
 
-fn reference(job: &Job<'_>) -> Buffer {
+fn reference(job: &BufferJob<'_>) -> Buffer {
     render(&mut Reference, job)
 }
 
 /// What naive programs take for nothing.
 const EPSILON: f64 = 1e-6;
 
-const INTEGERS: (Method, Fill) = (Method { name: "buffer integers", kind: Kind::Shipped }, integers);
-const REFERENCE: (Method, Fill) = (Method { name: "buffer reference", kind: Kind::Reference }, reference);
-const FLOATS: (Method, Fill) = (Method { name: "buffer f32 margin", kind: Kind::Shipped }, |job| {
+const INTEGERS: (SweepMethod, Fill) = (SweepMethod { name: "buffer integers", kind: Kind::Shipped }, integers);
+const REFERENCE: (SweepMethod, Fill) = (SweepMethod { name: "buffer reference", kind: Kind::Reference }, reference);
+const FLOATS: (SweepMethod, Fill) = (SweepMethod { name: "buffer f32 margin", kind: Kind::Shipped }, |job| {
     shader_float::draw(job, &job.planes()[0], shader_float::MARGIN)
 });
-const NO_MARGIN: (Method, Fill) =
-    (Method { name: "buffer f32 no margin", kind: Kind::Naive }, |job| shader_float::draw(job, &job.planes()[0], 0.0));
-const DOUBLES: (Method, Fill) =
-    (Method { name: "buffer f64", kind: Kind::Naive }, |job| naive::doubles(job, &job.planes()[0], 0.0));
-const EPSILONS: (Method, Fill) =
-    (Method { name: "buffer f64 epsilon", kind: Kind::Naive }, |job| naive::doubles(job, &job.planes()[0], EPSILON));
-const NEAREST: (Method, Fill) =
-    (Method { name: "buffer nearest heights", kind: Kind::Naive }, |job| naive::nearest_heights(job, &job.planes()[0]));
-const CENTRES: (Method, Fill) =
-    (Method { name: "buffer texel centres", kind: Kind::Naive }, |job| naive::centres(job, &job.planes()[0]));
-const ONE_EYE: (Method, Fill) =
-    (Method { name: "buffer one eye", kind: Kind::Naive }, |job| naive::one_eye(job, &job.planes()[0]));
+const NO_MARGIN: (SweepMethod, Fill) = (SweepMethod { name: "buffer f32 no margin", kind: Kind::Naive }, |job| {
+    shader_float::draw(job, &job.planes()[0], 0.0)
+});
+const DOUBLES: (SweepMethod, Fill) =
+    (SweepMethod { name: "buffer f64", kind: Kind::Naive }, |job| naive::doubles(job, &job.planes()[0], 0.0));
+const EPSILONS: (SweepMethod, Fill) = (SweepMethod { name: "buffer f64 epsilon", kind: Kind::Naive }, |job| {
+    naive::doubles(job, &job.planes()[0], EPSILON)
+});
+const NEAREST: (SweepMethod, Fill) = (SweepMethod { name: "buffer nearest heights", kind: Kind::Naive }, |job| {
+    naive::nearest_heights(job, &job.planes()[0])
+});
+const CENTRES: (SweepMethod, Fill) =
+    (SweepMethod { name: "buffer texel centres", kind: Kind::Naive }, |job| naive::centres(job, &job.planes()[0]));
+const ONE_EYE: (SweepMethod, Fill) =
+    (SweepMethod { name: "buffer one eye", kind: Kind::Naive }, |job| naive::one_eye(job, &job.planes()[0]));
 
 /// The methods that run on all scenes.
-const ALL: [(Method, Fill); 9] = [INTEGERS, FLOATS, REFERENCE, NO_MARGIN, DOUBLES, EPSILONS, NEAREST, CENTRES, ONE_EYE];
+const ALL: [(SweepMethod, Fill); 9] =
+    [INTEGERS, FLOATS, REFERENCE, NO_MARGIN, DOUBLES, EPSILONS, NEAREST, CENTRES, ONE_EYE];
 
 /// Counts all texels of a buffer. `hidden`: the truth; `exact`: the values that must not be exceeded, if they count.
 fn compare(
@@ -98,7 +102,7 @@ struct Found<'a> {
 }
 
 /// What a method fills; nothing if it panics.
-fn filled(fill: Fill, job: &Job<'_>) -> Option<Buffer> {
+fn filled(fill: Fill, job: &BufferJob<'_>) -> Option<Buffer> {
     let mut out = None;
     let answer = caught(|| {
         out = Some(fill(job));
@@ -108,7 +112,7 @@ fn filled(fill: Fill, job: &Job<'_>) -> Option<Buffer> {
 }
 
 /// Asks methods about a scene with one occluder.
-fn ask(board: &mut Board, scene: &Scene, methods: &[(Method, Fill)], measure: Measure) {
+fn ask(board: &mut Board, scene: &Scene, methods: &[(SweepMethod, Fill)], measure: Measure) {
     let job = scene.job(measure);
     let (hidden, exact) = (truth::hidden(scene), reference(&job));
     for (k, (_, fill)) in methods.iter().enumerate() {
@@ -130,7 +134,7 @@ fn of_scenes(
     measure: Measure,
     make: fn(f64, &mut Random) -> Option<Scene>,
 ) -> Sweep {
-    let methods: Vec<(Method, Fill)> = match measure {
+    let methods: Vec<(SweepMethod, Fill)> = match measure {
         Measure::VertexHeight => ALL.to_vec(),
         _ => vec![INTEGERS, REFERENCE],
     };
@@ -254,8 +258,8 @@ fn resolutions(quick: bool) -> Sweep {
     }
 }
 
-const PATCHES: Method = Method { name: "buffer patches", kind: Kind::Shipped };
-const SNAPPED: Method = Method { name: "buffer patches snapped", kind: Kind::Naive };
+const PATCHES: SweepMethod = SweepMethod { name: "buffer patches", kind: Kind::Shipped };
+const SNAPPED: SweepMethod = SweepMethod { name: "buffer patches snapped", kind: Kind::Naive };
 
 /// What patches of triangles fill.
 fn of_patches(scene: &Scene, triangles: &[[sightlines::geometry::Point3; 3]]) -> Buffer {

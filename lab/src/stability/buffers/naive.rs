@@ -3,12 +3,12 @@
 use super::truth::grid_corners;
 use crate::stability::plain::{cross, dot, minus};
 use sightlines::geometry::{Point3, orient3d};
-use sightlines::multifocal::{Buffer, Job, Occluder, Plane};
+use sightlines::multifocal::{Buffer, BufferJob, BufferPlane, Occluder};
 
 /// Fills a buffer: `blocks` says for an occluder and a point whether all eyes are blocked there, `value` what is stored.
 fn fill(
-    job: &Job<'_>,
-    plane: &Plane,
+    job: &BufferJob<'_>,
+    plane: &BufferPlane,
     blocks: impl Fn(&Occluder, f64, Point3) -> bool,
     value: impl Fn(&Occluder) -> u32,
     at_centres: bool,
@@ -39,13 +39,13 @@ fn fill(
 }
 
 /// The height of the lowest corner, rounded to the nearest whole unit.
-fn nearest(job: &Job<'_>, plane: &Plane, o: &Occluder) -> u32 {
+fn nearest(job: &BufferJob<'_>, plane: &BufferPlane, o: &Occluder) -> u32 {
     let least = o.outline().iter().map(|&p| plane.height(p)).fold(f64::INFINITY, f64::min);
     (least / job.unit()).round().max(0.0) as u32 + 1
 }
 
 /// The same, rounded down.
-fn down(job: &Job<'_>, plane: &Plane, o: &Occluder) -> u32 {
+fn down(job: &BufferJob<'_>, plane: &BufferPlane, o: &Occluder) -> u32 {
     let least = o.outline().iter().map(|&p| plane.height(p)).fold(f64::INFINITY, f64::min);
     (least.next_down() / job.unit()).floor().max(0.0) as u32 + 1
 }
@@ -56,7 +56,7 @@ fn edges(o: &Occluder) -> impl Iterator<Item = [Point3; 2]> + '_ {
 }
 
 /// The whole box in plain doubles: a number that is at least `-epsilon` counts as inside.
-pub(super) fn doubles(job: &Job<'_>, plane: &Plane, epsilon: f64) -> Buffer {
+pub(super) fn doubles(job: &BufferJob<'_>, plane: &BufferPlane, epsilon: f64) -> Buffer {
     let b = *job.volume().bounds();
     let centre: Point3 = std::array::from_fn(|k| (b.min[k] + b.max[k]) / 2.0);
     let half: Point3 = std::array::from_fn(|k| (b.max[k] - b.min[k]) / 2.0);
@@ -77,20 +77,20 @@ fn exactly(o: &Occluder, sign: f64, eyes: &[Point3], t: Point3) -> bool {
 }
 
 /// Exact predicates, but asked at the middle of each texel alone.
-pub(super) fn centres(job: &Job<'_>, plane: &Plane) -> Buffer {
+pub(super) fn centres(job: &BufferJob<'_>, plane: &BufferPlane) -> Buffer {
     let eyes = job.volume().corners();
     fill(job, plane, |o, sign, t| exactly(o, sign, &eyes, t), |o| down(job, plane, o), true)
 }
 
 /// Exact predicates, but with the middle of the volume for all of it.
-pub(super) fn one_eye(job: &Job<'_>, plane: &Plane) -> Buffer {
+pub(super) fn one_eye(job: &BufferJob<'_>, plane: &BufferPlane) -> Buffer {
     let b = *job.volume().bounds();
     let centre = [std::array::from_fn(|k| (b.min[k] + b.max[k]) / 2.0)];
     fill(job, plane, |o, sign, t| exactly(o, sign, &centre, t), |o| down(job, plane, o), false)
 }
 
 /// Exact predicates, but heights rounded to nearest.
-pub(super) fn nearest_heights(job: &Job<'_>, plane: &Plane) -> Buffer {
+pub(super) fn nearest_heights(job: &BufferJob<'_>, plane: &BufferPlane) -> Buffer {
     let eyes = job.volume().corners();
     fill(job, plane, |o, sign, t| exactly(o, sign, &eyes, t), |o| nearest(job, plane, o), false)
 }

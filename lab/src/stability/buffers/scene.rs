@@ -2,19 +2,19 @@
 
 use crate::stability::predicates::cases::{Apart, Place};
 use sightlines::geometry::{Aabb, Point3, Random};
-use sightlines::multifocal::{Job, Measure, Occluder, Plane, Volume};
+use sightlines::multifocal::{BufferJob, BufferPlane, Measure, Occluder, Volume};
 
 /// What a job is made of, so that it can be printed.
 #[derive(Debug, Clone)]
 pub(crate) struct Scene {
     pub(crate) volume: Volume,
-    pub(crate) plane: Plane,
+    pub(crate) plane: BufferPlane,
     pub(crate) occluders: Vec<Occluder>,
 }
 
 impl Scene {
-    pub(crate) fn job(&self, measure: Measure) -> Job<'_> {
-        Job::new(self.volume, vec![self.plane], &self.occluders, measure, false)
+    pub(crate) fn job(&self, measure: Measure) -> BufferJob<'_> {
+        BufferJob::new(self.volume, vec![self.plane], &self.occluders, measure, false)
             .expect("the plane is in front of the volume")
     }
 }
@@ -59,10 +59,10 @@ impl Setting {
     }
 
     /// Nothing if the window is too small for its place.
-    fn plane(&self, half: [f64; 2], texels: [u32; 2]) -> Option<Plane> {
+    fn plane(&self, half: [f64; 2], texels: [u32; 2]) -> Option<BufferPlane> {
         let [low, high] = [-1.0, 1.0].map(|s| self.put(s * half[0], s * half[1], 0.0));
         let across = |p: Point3| [p[(self.axis + 1) % 3], p[(self.axis + 2) % 3]];
-        Plane::new(self.axis, self.positive, low[self.axis], across(low), across(high), texels).ok()
+        BufferPlane::new(self.axis, self.positive, low[self.axis], across(low), across(high), texels).ok()
     }
 
     /// A coordinate moved out or in.

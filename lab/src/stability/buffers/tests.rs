@@ -3,7 +3,7 @@
 use super::*;
 use crate::stability::predicates::sharp;
 use sightlines::geometry::{Aabb, Point3};
-use sightlines::multifocal::{Plane, Volume};
+use sightlines::multifocal::{BufferPlane, Volume};
 
 /// A scene with one rectangle: lower and upper corner of the volume; axis of the plane, whether viewers look along it, where it is, origin and
 /// step of its texels; the outline.
@@ -18,7 +18,7 @@ impl Kept {
         let volume = Volume::new(Aabb::around(self.volume)).expect("it is a box");
         let (axis, positive, at, origin, step) = self.plane;
         let end = [0, 1].map(|k| origin[k] + 16.0 * step[k]);
-        let plane = Plane::new(axis, positive, at, origin, end, [16, 16]).expect("it is a plane");
+        let plane = BufferPlane::new(axis, positive, at, origin, end, [16, 16]).expect("it is a plane");
         assert_eq!((plane.origin(), plane.step()), (origin, step), "the same texels as were found");
         let [p, q, r, s] = self.outline;
         let occluder = Occluder::patch(self.outline.to_vec(), &[[p, q, r], [p, r, s]]).expect("it has an area");
@@ -60,7 +60,7 @@ const NARROW: Kept = Kept {
 };
 
 /// Checks that a method stores too much at a texel of a scene, and that no shipped one does anywhere.
-fn check(kept: &Kept, (method, fill): (Method, Fill), [x, y]: [u32; 2]) {
+fn check(kept: &Kept, (method, fill): (SweepMethod, Fill), [x, y]: [u32; 2]) {
     let scene = kept.scene();
     let job = scene.job(Measure::VertexHeight);
     let (hidden, exact) = (truth::hidden(&scene), reference(&job));
@@ -91,7 +91,7 @@ fn a_gap_of_some_billionths_is_not_closed() {
     let quad = |from: f64, to: f64| [[low, h, from], [low, h, to], [high, h, to], [high, h, from]];
     let quads = |left: f64, right: f64| [quad(-4.2754092050779775, left), quad(right, 7.015157134862556)];
     let volume = Volume::new(Aabb { min: [2.2, 13.27, 0.29], max: [3.8, 14.47, 2.29] }).expect("it is a box");
-    let plane = Plane::new(1, false, -2.13, [-6.71, -5.0], [9.3, 11.0], [16, 16]).expect("it is a plane");
+    let plane = BufferPlane::new(1, false, -2.13, [-6.71, -5.0], [9.3, 11.0], [16, 16]).expect("it is a plane");
     let n_seen = |quads: [[Point3; 4]; 2], snap: bool| {
         let triangles: Vec<[Point3; 3]> = quads.iter().flat_map(|&[p, q, r, s]| [[p, q, r], [p, r, s]]).collect();
         let triangles = if snap { naive::snapped(&triangles, EPSILON) } else { triangles };

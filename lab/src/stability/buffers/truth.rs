@@ -3,7 +3,7 @@
 use super::scene::{Gap, Scene};
 use crate::stability::predicates::exact;
 use sightlines::geometry::Point3;
-use sightlines::multifocal::{Plane, Volume};
+use sightlines::multifocal::{BufferPlane, Volume};
 
 /// 1 or -1: the side of the plane of three corners on which all eyes are strictly; nothing if there is none.
 fn side_of(outline: &[Point3], volume: &Volume) -> Option<i32> {
@@ -13,7 +13,7 @@ fn side_of(outline: &[Point3], volume: &Volume) -> Option<i32> {
 }
 
 /// For each corner of the grid of texels whether all segments from eyes to it are blocked by a flat, convex occluder.
-fn blocked_corners(outline: &[Point3], volume: &Volume, plane: &Plane) -> Vec<bool> {
+fn blocked_corners(outline: &[Point3], volume: &Volume, plane: &BufferPlane) -> Vec<bool> {
     let [w, h] = plane.texels();
     let row = w + 1;
     let Some(sign) = side_of(outline, volume) else { return vec![false; (row * (h + 1)) as usize] };
@@ -36,7 +36,7 @@ pub(crate) fn grid_corners(texel: usize, width: usize) -> [usize; 4] {
     [at, at + 1, at + width + 1, at + width + 2]
 }
 
-fn texels(corners: &[bool], plane: &Plane) -> Vec<bool> {
+fn texels(corners: &[bool], plane: &BufferPlane) -> Vec<bool> {
     let [w, h] = plane.texels().map(|n| n as usize);
     (0..w * h).map(|i| grid_corners(i, w).iter().all(|&k| corners[k])).collect()
 }

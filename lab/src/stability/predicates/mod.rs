@@ -11,7 +11,7 @@ pub(crate) mod sharp;
 mod tests;
 mod ways;
 
-use super::{Decide, Kind, Method, Sweep};
+use super::{Decide, Kind, Sweep, SweepMethod};
 use cases::corners;
 use cases::{Apart, Case, Place};
 use sightlines::geometry::{Point3, Random};
@@ -26,12 +26,12 @@ struct Ask {
     methods: Vec<Decide<Case>>,
 }
 
-const fn shipped(name: &'static str) -> Method {
-    Method { name, kind: Kind::Shipped }
+const fn shipped(name: &'static str) -> SweepMethod {
+    SweepMethod { name, kind: Kind::Shipped }
 }
 
-const fn naive(name: &'static str) -> Method {
-    Method { name, kind: Kind::Naive }
+const fn naive(name: &'static str) -> SweepMethod {
+    SweepMethod { name, kind: Kind::Naive }
 }
 
 fn points<const N: usize>(case: &[Point3]) -> [Point3; N] {

@@ -4,15 +4,15 @@ use crate::stability::plain::{self, Float, Kept, cross, dot, minus, rounded};
 use crate::stability::predicates::cases::{self, Apart, Place};
 use crate::stability::predicates::exact;
 use crate::stability::predicates::powers_of_ten;
-use crate::stability::{Answer, Decide, Kind, Method, Sweep};
+use crate::stability::{Answer, Decide, Kind, Sweep, SweepMethod};
 use sightlines::geometry::{Point3, Random};
 use sightlines::visible_surface::Camera;
 use sightlines::visible_surface::cull::{Cover, Facing, Frustum, facing};
 
 const EPSILON: f64 = 1e-9;
 
-const fn naive(name: &'static str) -> Method {
-    Method { name, kind: Kind::Naive }
+const fn naive(name: &'static str) -> SweepMethod {
+    SweepMethod { name, kind: Kind::Naive }
 }
 
 fn answer(hidden: bool) -> Answer {
@@ -52,7 +52,7 @@ pub(super) fn is_front(case: &[Point3]) -> bool {
 /// Who culls backs.
 pub(super) fn back_methods() -> Vec<Decide<Face>> {
     vec![
-        (Method { name: "backface exact", kind: Kind::Shipped }, back_exact),
+        (SweepMethod { name: "backface exact", kind: Kind::Shipped }, back_exact),
         (naive("backface f64"), back_plain::<f64>),
         (naive("backface f64 epsilon"), back_epsilon),
         (naive("backface f64 kept"), back_kept::<f64>),
@@ -177,7 +177,7 @@ pub(super) fn is_open(camera: &Camera, face: &[Point3; 3]) -> Option<bool> {
 /// Who culls what is outside of the picture.
 pub(super) fn edge_methods() -> Vec<Decide<Edge>> {
     vec![
-        (Method { name: "view volume", kind: Kind::Shipped }, outside_exact),
+        (SweepMethod { name: "view volume", kind: Kind::Shipped }, outside_exact),
         (naive("view volume f64"), outside_plain::<f64>),
         (naive("view volume f64 kept"), outside_kept::<f64>),
         (naive("view volume f32"), outside_plain::<f32>),

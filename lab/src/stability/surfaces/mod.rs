@@ -14,12 +14,12 @@ mod truth;
 use super::predicates::cases::Apart;
 use super::predicates::powers_of_ten;
 use super::sweep::caught;
-use super::{Answer, Board, Kind, Method, Outcome, Sweep};
+use super::{Answer, Board, Kind, Outcome, Sweep, SweepMethod};
 use naive::Ordered;
 use scene::{PIXELS, Setting, View};
 use sightlines::geometry::Random;
 use sightlines::visible_surface::{
-    Bsp, BspOptions, DepthFormat, FaceMask, NOTHING, Newell, Painter, RayCaster, RenderInput, Schumacker,
+    BspOptions, DepthFormat, FaceBsp, FaceMask, NOTHING, Newell, Painter, RayCaster, RenderInput, Schumacker,
     SchumackerOptions, VisibleSurface, ZBuffer,
 };
 use std::fmt::Debug;
@@ -33,17 +33,17 @@ fn drawn(view: &View, method: &dyn VisibleSurface) -> Vec<u32> {
     method.picture(&shot).0.faces().to_vec()
 }
 
-const fn method(name: &'static str, kind: Kind) -> Method {
-    Method { name, kind }
+const fn method(name: &'static str, kind: Kind) -> SweepMethod {
+    SweepMethod { name, kind }
 }
 
 /// What naive programs take for "on the plane".
 const EPSILON: f64 = 1e-6;
 
-const METHODS: [(Method, Draw); 16] = [
+const METHODS: [(SweepMethod, Draw); 16] = [
     (method("newell", Kind::Shipped), |v| drawn(v, &Newell)),
     (method("schumacker", Kind::Shipped), |v| drawn(v, &Schumacker::build(&v.faces, &SchumackerOptions::default()))),
-    (method("bsp", Kind::Shipped), |v| drawn(v, &Bsp::build(&v.faces, &BspOptions::default()))),
+    (method("bsp", Kind::Shipped), |v| drawn(v, &FaceBsp::build(&v.faces, &BspOptions::default()))),
     (method("zbuffer", Kind::Shipped), |v| drawn(v, &ZBuffer::new(DepthFormat::Exact))),
     (method("raycast", Kind::Reference), |v| drawn(v, &RayCaster::build(&v.faces))),
     (method("painter", Kind::Naive), |v| drawn(v, &Painter)),

@@ -1,7 +1,7 @@
 //! Asking all methods, and comparing their answers.
 
 use sightlines::eye_to_cell::{
-    Budget, Doors, Image, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph, follow_reflections,
+    Doors, Method, MirrorImage, Scratch, StepBudget, TableCells, View, VisibleSet, VisibleSubgraph, follow_reflections,
 };
 use sightlines::pvs::{CellId, Table};
 use std::collections::{BTreeMap, BTreeSet};
@@ -47,13 +47,13 @@ impl<'t> Asker<'t> {
 
     /// What a method says of a viewer in the cells `roots`, as it says it: cells, objects, what is seen in mirrors.
     pub(crate) fn ask(&mut self, roots: &[CellId], view: &View, doors: &Doors, method: Method) -> VisibleSet {
-        self.ask_within(Budget::UNLIMITED, roots, view, doors, method)
+        self.ask_within(StepBudget::UNLIMITED, roots, view, doors, method)
     }
 
     /// The same with a bound on the work.
     fn ask_within(
         &mut self,
-        budget: Budget,
+        budget: StepBudget,
         roots: &[CellId],
         view: &View,
         doors: &Doors,
@@ -75,7 +75,7 @@ impl<'t> Asker<'t> {
     /// If the bounded answer has something that the incident portals do not lead to.
     pub(crate) fn all(&mut self, roots: &[CellId], view: &View, doors: &Doors) -> Answers {
         let answers = Method::ALL.map(|method| answer(&self.ask(roots, view, doors, method)));
-        let budget = Budget::steps(STEPS[self.n_asked as usize % STEPS.len()]);
+        let budget = StepBudget::steps(STEPS[self.n_asked as usize % STEPS.len()]);
         self.n_asked += 1;
         let bounded = answer(&self.ask_within(budget, roots, view, doors, Method::Exact));
         let [.., coarser, exact] = &answers;
@@ -87,23 +87,23 @@ impl<'t> Asker<'t> {
     }
 
     /// What a method says of a viewer and of mirrors, of three in a row at most.
-    pub(crate) fn images(&mut self, roots: &[CellId], view: &View, doors: &Doors, method: Method) -> Vec<Image> {
-        self.images_within(Budget::UNLIMITED, roots, view, doors, method)
+    pub(crate) fn images(&mut self, roots: &[CellId], view: &View, doors: &Doors, method: Method) -> Vec<MirrorImage> {
+        self.images_within(StepBudget::UNLIMITED, roots, view, doors, method)
     }
 
     /// What the exact method says of mirrors with bounds on the work: one answer for each.
-    pub(crate) fn bounded_images(&mut self, roots: &[CellId], view: &View, doors: &Doors) -> [Vec<Image>; 6] {
-        STEPS.map(|steps| self.images_within(Budget::steps(steps), roots, view, doors, Method::Exact))
+    pub(crate) fn bounded_images(&mut self, roots: &[CellId], view: &View, doors: &Doors) -> [Vec<MirrorImage>; 6] {
+        STEPS.map(|steps| self.images_within(StepBudget::steps(steps), roots, view, doors, Method::Exact))
     }
 
     fn images_within(
         &mut self,
-        budget: Budget,
+        budget: StepBudget,
         roots: &[CellId],
         view: &View,
         doors: &Doors,
         method: Method,
-    ) -> Vec<Image> {
+    ) -> Vec<MirrorImage> {
         let first = self.ask_within(budget, roots, view, doors, method);
         let sizes = [self.cells.table().n_cells(), self.cells.table().objects().len()];
         let Self { cells, subgraphs, scratch, .. } = self;
@@ -156,7 +156,7 @@ pub(crate) type Shown = BTreeMap<Vec<u32>, BTreeSet<u32>>;
 
 /// The first mirrors and cell that rays reach and the images do not show. Where the images of a row of mirrors are not
 /// complete, anything may be seen in it and in all rows that begin with it.
-pub(crate) fn missed_in_mirrors(images: &[Image], reached: &Shown) -> Option<String> {
+pub(crate) fn missed_in_mirrors(images: &[MirrorImage], reached: &Shown) -> Option<String> {
     let image = |mirrors: &[u32]| {
         images.iter().find(|image| image.mirrors.iter().map(|mirror| mirror.0).eq(mirrors.iter().copied()))
     };
@@ -169,6 +169,6 @@ pub(crate) fn missed_in_mirrors(images: &[Image], reached: &Shown) -> Option<Str
 }
 
 /// The numbers of the mirrors of an image, in the order in which a line from the eye meets them.
-pub(crate) fn word_of(image: &Image) -> Vec<u32> {
+pub(crate) fn word_of(image: &MirrorImage) -> Vec<u32> {
     image.mirrors.iter().map(|mirror| mirror.0).collect()
 }

@@ -3,7 +3,7 @@
 use crate::from_region::common::triangles;
 use proptest::prelude::*;
 use sightlines::geometry::{Aabb, Point3};
-use sightlines::multifocal::{Carry, Footprint, Job, Measure, Plane, Volume};
+use sightlines::multifocal::{BufferJob, BufferPlane, Carry, Footprint, Measure, Volume};
 use sightlines::scenes::occlusion::{Occlusion, OcclusionOptions, occlusion};
 
 fn boxed(min: [i32; 3], size: [i32; 3]) -> Aabb<3> {
@@ -17,7 +17,7 @@ fn at(b: &Aabb<3>, part: [u32; 3]) -> Point3 {
 }
 
 /// Where the line from `v` through `e` meets a plane, in texels.
-fn meets(plane: &Plane, v: Point3, e: Point3) -> [f64; 2] {
+fn meets(plane: &BufferPlane, v: Point3, e: Point3) -> [f64; 2] {
     let (hv, he) = (plane.height(v), plane.height(e));
     let r = hv / (hv - he);
     let across = plane.across();
@@ -38,7 +38,7 @@ proptest! {
     ) {
         let (v, e) = (boxed(volume.0, volume.1), boxed(target.0, target.1));
         let side = if positive { 6.5 } else { -6.5 };
-        let plane = Plane::new(axis, positive, side, [-9.3, -7.1], [8.7, 9.9], texels).unwrap();
+        let plane = BufferPlane::new(axis, positive, side, [-9.3, -7.1], [8.7, 9.9], texels).unwrap();
         let corners: Vec<Point3> = (0..8u32).map(|i| at(&e, [(i & 1) * 16, (i >> 1 & 1) * 16, (i >> 2) * 16])).collect();
         let volume = Volume::new(v).unwrap();
         let footprint = if as_points {
@@ -81,9 +81,9 @@ proptest! {
     ) {
         let v = boxed(volume.0, volume.1);
         let side = |at: f64| if positive { at } else { -at };
-        let plane = |at: f64, window: f64, n: [u32; 2]| Plane::new(axis, positive, side(at), [-window; 2], [window; 2], n).unwrap();
+        let plane = |at: f64, window: f64, n: [u32; 2]| BufferPlane::new(axis, positive, side(at), [-window; 2], [window; 2], n).unwrap();
         let (before, after) = (plane(6.0, 7.0, [texels[0], texels[1]]), plane(8.3, 9.0, [texels[2], texels[3]]));
-        let job = Job::new(Volume::new(v).unwrap(), vec![before, after], [], Measure::SectionHeight, true).unwrap();
+        let job = BufferJob::new(Volume::new(v).unwrap(), vec![before, after], [], Measure::SectionHeight, true).unwrap();
         let carry = Carry::of(&job, 1);
         prop_assert!(f64::from(carry.rise) * job.unit() <= 8.3 - 6.0);
         prop_assert!(f64::from(carry.rise + 2) * job.unit() >= 8.3 - 6.0);

@@ -1,7 +1,7 @@
 //! The frame in which a scene is baked, what it brought, and what became of cells that stand along other axes.
 
 use crate::output::{JsonSchema, Serialize, percent};
-use sightlines::bake::{Along, Framed, Prepared};
+use sightlines::bake::{Along, Framed, PreparedBake};
 use sightlines::report::FrameFacts;
 use std::fmt;
 
@@ -21,7 +21,7 @@ pub(super) struct Placed {
 
 impl Placed {
     /// How what was prepared stands.
-    pub(super) fn of(prepared: &Prepared<'_>) -> Self {
+    pub(super) fn of(prepared: &PreparedBake<'_>) -> Self {
         let growth = prepared.decisions().cells_growth;
         Self { frame: prepared.framed().map(Taken::new), cells_growth: (growth > TOLD).then_some(growth) }
     }

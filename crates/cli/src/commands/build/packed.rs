@@ -10,7 +10,7 @@ use crate::kept::Kept;
 use crate::output::{self, JsonSchema, Serialize, count};
 use crate::progress::Bar;
 use sightlines::bake::region::PackRegionsError;
-use sightlines::bake::{BakeError, Bakeable, Prepared, Recipe, RegionReport, Runtime, SceneMethod};
+use sightlines::bake::{BakeError, Bakeable, PreparedBake, Recipe, RegionReport, Runtime, SceneMethod};
 use sightlines::formats::SceneFile;
 use sightlines::packed::format::MAX_SMALL_CELLS;
 use sightlines::packed::{PackOptions, PackReport, SizeClass, pack};
@@ -50,7 +50,7 @@ pub(super) fn of_rows<'s>(
 pub(super) fn write_rows(
     path: &Path,
     file: &SceneFile,
-    (prepared, runtime): (&Prepared<'_>, &Runtime<'_>),
+    (prepared, runtime): (&PreparedBake<'_>, &Runtime<'_>),
     plan: announce::Plan,
     (out, show_progress): (&Path, bool),
     kept: &Kept<'_>,

@@ -10,7 +10,7 @@ use crate::map_portals::{portal_file, portals_for};
 use crate::output;
 use crate::progress::Bar;
 use crate::refuse::meaningless;
-use sightlines::bake::{BakeError, BakeInput, BakeRequest, Bakeable, Baked, Prepared, Report, Runtime};
+use sightlines::bake::{BakeError, BakeInput, BakeRequest, Bakeable, Baked, PreparedBake, Report, Runtime};
 use sightlines::checkpoint::Identity;
 use sightlines::formats::{Input, SceneFile};
 use std::path::{Path, PathBuf};
@@ -88,7 +88,7 @@ pub(crate) fn bake_visibly<'i>(
 /// The same of what was prepared; says before what is going to be done.
 pub(super) fn bake_announced(
     path: &Path,
-    prepared: &Prepared<'_>,
+    prepared: &PreparedBake<'_>,
     runtime: &Runtime<'_>,
     plan: Plan,
     show_progress: bool,

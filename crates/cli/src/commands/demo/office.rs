@@ -9,7 +9,7 @@ use crate::picture::{PictureKind, draw_plan, save_picture};
 use sightlines::bake::{BakeRequest, Report};
 use sightlines::formats::geojson;
 use sightlines::pvs::Table;
-use sightlines::report::{DrawOptions, View, cells_by_seen_floor};
+use sightlines::report::{DrawOptions, PictureSubject, cells_by_seen_floor};
 use sightlines::scenes::{OfficeOptions, office};
 use sightlines::viewer::Figure;
 use std::fmt;
@@ -49,11 +49,11 @@ pub(super) fn run(args: &DemoArgs, Verbosity { show_progress, .. }: Verbosity) -
 }
 
 /// The pictures: the plan, and what is seen from a cell that sees much, a typical one, and a secluded one.
-fn views(table: &Table) -> Vec<(&'static str, View)> {
-    let mut views = vec![("plan", View::Plan)];
+fn views(table: &Table) -> Vec<(&'static str, PictureSubject)> {
+    let mut views = vec![("plan", PictureSubject::Plan)];
     let ranked = cells_by_seen_floor(table);
     if let Some(last) = ranked.len().checked_sub(1) {
-        let at = |share: usize| View::Cell(ranked[last * share / 100]);
+        let at = |share: usize| PictureSubject::Cell(ranked[last * share / 100]);
         views.extend([("seen-much", at(100)), ("seen-typical", at(50)), ("seen-little", at(5))]);
     }
     views

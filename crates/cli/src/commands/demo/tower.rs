@@ -10,7 +10,7 @@ use crate::picture::{self, PictureKind, save_picture};
 use sightlines::bake::{BakeRequest, Report};
 use sightlines::formats::scene::read_scene;
 use sightlines::pvs::Table;
-use sightlines::report::{IsometricOptions, SliceOptions, View, isometric_svg, secluded_cell, slice_svg};
+use sightlines::report::{IsometricOptions, PictureSubject, SliceOptions, isometric_svg, secluded_cell, slice_svg};
 use sightlines::scenes::{TowerOptions, tower};
 use sightlines::viewer::Figure;
 use std::fmt;
@@ -51,10 +51,12 @@ pub(super) fn run(args: &DemoArgs, Verbosity { show_progress, .. }: Verbosity) -
 fn pictures(path: &Path, table: &Table) -> Result<Vec<(&'static str, String)>> {
     let up = picture::up_of(table);
     let viewer = secluded_cell(table);
-    let view = viewer.map_or(View::Plan, View::Cell);
+    let view = viewer.map_or(PictureSubject::Plan, PictureSubject::Cell);
     let below = |view| IsometricOptions { view, up, ..IsometricOptions::default() };
-    let mut drawn =
-        vec![("cells", isometric_svg(table, &below(View::Plan))), ("seen", isometric_svg(table, &below(view)))];
+    let mut drawn = vec![
+        ("cells", isometric_svg(table, &below(PictureSubject::Plan))),
+        ("seen", isometric_svg(table, &below(view))),
+    ];
     if let Some(cell) = viewer {
         let height = picture::middle(table, cell, up);
         drawn.push(("floor", slice_svg(table, &SliceOptions { view, up, height, ..SliceOptions::default() })));

@@ -13,7 +13,7 @@ use crate::sight::SightArgs;
 use crate::{input, output};
 use sightlines::geometry::{Point2, check_coordinate};
 use sightlines::pvs::Table;
-use sightlines::report::{DrawError, DrawOptions, Drawing, MAX_SIZE, MIN_SIZE, Surfaces, View, plan_drawing};
+use sightlines::report::{DrawError, DrawOptions, Drawing, MAX_SIZE, MIN_SIZE, PictureSubject, Surfaces, plan_drawing};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use viewer::{Shown, Viewer};
@@ -133,9 +133,9 @@ fn picture(
 
 fn plan(args: &DrawArgs, table: &Table, shown: Option<&Shown<'_>>, legend: bool) -> Result<Drawing> {
     let view = match (args.cell, &args.eye) {
-        (Some(id), _) => View::Cell(place::cell(id, table, &args.table)?),
-        (None, Some(eye)) => View::Eye(eye.planar(table, &args.table)?),
-        (None, None) => View::Plan,
+        (Some(id), _) => PictureSubject::Cell(place::cell(id, table, &args.table)?),
+        (None, Some(eye)) => PictureSubject::Eye(eye.planar(table, &args.table)?),
+        (None, None) => PictureSubject::Plan,
     };
     let sight = shown.map(|shown| shown.sight(|[x, y, _]| Point2::new(x, y)));
     let options = DrawOptions { view, sight, size: args.size, legend, ..DrawOptions::default() };

@@ -8,7 +8,7 @@ use crate::place;
 use crate::view;
 use sightlines::pvs::Table;
 use sightlines::report::{
-    Drawing, IsometricOptions, SliceOptions, Surfaces, Up, View, isometric_drawing, slice_drawing,
+    Drawing, IsometricOptions, PictureSubject, SliceOptions, Surfaces, Up, isometric_drawing, slice_drawing,
 };
 
 /// The axis that points up: the one that was given, if it is an axis, else that of the table.
@@ -32,9 +32,9 @@ pub(super) fn draw(
     let path = &args.table;
     let up = up(args, table);
     let view = match (args.cell, &args.eye) {
-        (Some(id), _) => View::Cell(place::cell(id, table, path)?),
-        (None, Some(eye)) => View::Eye(eye.spatial(table, path)?),
-        (None, None) => View::Plan,
+        (Some(id), _) => PictureSubject::Cell(place::cell(id, table, path)?),
+        (None, Some(eye)) => PictureSubject::Eye(eye.spatial(table, path)?),
+        (None, None) => PictureSubject::Plan,
     };
     let sight = shown.map(|shown| shown.sight(|p| p));
     let drawn = if args.isometric {
@@ -61,11 +61,11 @@ pub(super) fn draw(
 }
 
 /// The height of the eye.
-fn height_of(table: &Table, view: View<[f64; 3]>, up: Up) -> Option<f64> {
+fn height_of(table: &Table, view: PictureSubject<[f64; 3]>, up: Up) -> Option<f64> {
     match view {
-        View::Plan => None,
-        View::Cell(id) => Some(middle(table, id, up)),
-        View::Eye(eye) => Some(table.frame().map_or(eye, |frame| frame.to_frame(eye))[up.axis()]),
+        PictureSubject::Plan => None,
+        PictureSubject::Cell(id) => Some(middle(table, id, up)),
+        PictureSubject::Eye(eye) => Some(table.frame().map_or(eye, |frame| frame.to_frame(eye))[up.axis()]),
     }
 }
 

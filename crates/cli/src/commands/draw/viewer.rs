@@ -7,7 +7,7 @@ use crate::place::Point;
 use crate::sight::{self, Sight, without_direction};
 use crate::tables::Cells;
 use crate::view::{Methods, lifted};
-use sightlines::eye_to_cell::{Budget, Method, VisibleSet};
+use sightlines::eye_to_cell::{Method, StepBudget, VisibleSet};
 use sightlines::pvs::Table;
 use sightlines::{report, walkthrough};
 use std::sync::Arc;
@@ -46,7 +46,7 @@ impl Viewer {
         let is_outside = table.place_at(lifted(eye)).is_outside();
         let sight = args.sight.sight(&*cells, path, eye)?;
         *looks.doors_mut() = args.sight.doors(&*cells, path)?;
-        looks.set_budget(Budget::UNLIMITED);
+        looks.set_budget(StepBudget::UNLIMITED);
         let methods = args.sight.method.unwrap_or(Methods::One(Method::Exact));
         Ok(Self { looks, is_outside, sight, methods })
     }
@@ -87,8 +87,8 @@ impl Shown<'_> {
     }
 
     /// The same for the crate that draws; `point` makes a direction of three coordinates one of the picture's.
-    pub(super) fn sight<P>(&self, point: impl Fn([f64; 3]) -> P) -> report::Sight<'_, P> {
+    pub(super) fn sight<P>(&self, point: impl Fn([f64; 3]) -> P) -> report::SeenFromEye<'_, P> {
         let looks = self.sight.looks.as_ref().map(|(dir, fov)| (point(lifted(dir)), fov.to_radians()));
-        report::Sight { cells: self.seen.cells(), objects: self.seen.objects(), looks }
+        report::SeenFromEye { cells: self.seen.cells(), objects: self.seen.objects(), looks }
     }
 }

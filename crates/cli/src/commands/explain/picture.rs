@@ -8,7 +8,7 @@ use sightlines::cells::PortalId;
 use sightlines::geometry::Point2;
 use sightlines::pvs::{CellId, Table};
 use sightlines::report::{
-    DrawOptions, Drawing, IsometricOptions, SliceOptions, Up, View, isometric_drawing, slice_drawing,
+    DrawOptions, Drawing, IsometricOptions, PictureSubject, SliceOptions, Up, isometric_drawing, slice_drawing,
 };
 use std::path::Path;
 
@@ -33,7 +33,7 @@ fn in_plan([a, b]: [CellId; 2], answer: &Answer) -> DrawOptions<'static> {
         _ => (None, &[][..]),
     };
     DrawOptions {
-        view: View::Cell(a),
+        view: PictureSubject::Cell(a),
         target: Some(b),
         marked_portals: portals.iter().map(|p| p.idx()).collect(),
         line: ends.map(|ends| ends.map(|[x, y, _]| Point2::new(x, y))),
@@ -58,7 +58,7 @@ fn in_space(path: &Path, table: &Table, [a, b]: [CellId; 2], explanation: &Expla
         }
         _ => Vec::new(),
     };
-    let view = View::Cell(a);
+    let view = PictureSubject::Cell(a);
     let options = SliceOptions {
         view,
         up,

@@ -15,7 +15,7 @@ use sightlines::formats::points::read_points;
 use sightlines::formats::scene::SceneReadOptions;
 use sightlines::formats::{Input, InputKind};
 use sightlines::geometry::{Point2, Segment2};
-use sightlines::isovist::{Boundary, Isovist, LimitError, Limits, Measures, Sector, Viewer, WallMesh};
+use sightlines::isovist::{Boundary, Isovist, IsovistFinder, LimitError, Limits, Measures, Sector, WallMesh};
 use sightlines::report::{Area, AreaEdge, MAX_SIZE, MIN_SIZE, areas_csv, areas_geojson, areas_png, areas_svg};
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -207,7 +207,7 @@ fn eyes(args: &IsovistArgs) -> Result<Vec<Eye>> {
 }
 
 fn areas(mesh: &WallMesh, eyes: &[Eye], limits: &Limits) -> Result<Vec<Area>> {
-    let mut viewer = Viewer::new(mesh);
+    let mut viewer = IsovistFinder::new(mesh);
     let mut isovist = Isovist::default();
     let is_limited = *limits != Limits::default();
     let mut area = |eye: &Eye| {

@@ -7,7 +7,7 @@ use crate::command::{Answer, Done, JsonArg, Verbosity};
 use crate::error::Result;
 use crate::interrupt;
 use crate::kept::Keeping;
-use sightlines::checkpoint::{Identity, Job, JobSlot, JobStore, Outcome, Role, ShardState};
+use sightlines::checkpoint::{Identity, Job, JobProgress, JobRole, JobSlot, JobStore, ShardState};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -50,14 +50,14 @@ pub(super) fn merge(
     verbose: bool,
 ) -> Result<Progress> {
     let adjust = |task: Task| task.with_threads(threads).with_output(output);
-    through((folder, Role::Merge, Duration::ZERO), adjust, show_progress, verbose)
+    through((folder, JobRole::Merge, Duration::ZERO), adjust, show_progress, verbose)
 }
 
 /// Goes through all of a job in a role that is not told its shards.
 ///
 /// * The time is how long results are only in memory.
 pub(super) fn through(
-    (folder, role, after): (&Path, Role, Duration),
+    (folder, role, after): (&Path, JobRole, Duration),
     adjust: impl FnOnce(Task) -> Task,
     show_progress: bool,
     verbose: bool,
@@ -75,9 +75,9 @@ pub(super) fn through(
         return Err(stopped());
     }
     match slot.store().and_then(|store| Some((store.outcome()?, store.job()))) {
-        Some((Outcome::Planned { phase, .. }, job)) => Ok(Progress::Planned(job, phase)),
-        Some((Outcome::Missing { phase, shards }, job)) => Ok(Progress::Missing { job, phase, shards }),
-        Some((Outcome::Done, _)) => Ok(Progress::Shared(task.output().to_owned())),
+        Some((JobProgress::Planned { phase, .. }, job)) => Ok(Progress::Planned(job, phase)),
+        Some((JobProgress::Missing { phase, shards }, job)) => Ok(Progress::Missing { job, phase, shards }),
+        Some((JobProgress::Done, _)) => Ok(Progress::Shared(task.output().to_owned())),
         _ => Err(made),
     }
 }

@@ -6,7 +6,7 @@ use super::task::Task;
 use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::Result;
 use crate::kept::{Keeping, PROGRAM};
-use sightlines::checkpoint::{Identity, Job, JobSlot, JobStore, Manifest, Outcome, Role};
+use sightlines::checkpoint::{Identity, Job, JobProgress, JobRole, JobSlot, JobStore, Manifest};
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -49,13 +49,13 @@ pub(crate) fn run(args: &PlanArgs, Verbosity { show_progress, .. }: Verbosity) -
             let here = here.display().to_string();
             let mut manifest = Manifest::new(PROGRAM, identity.key(), args.command.clone(), here, args.shards);
             manifest.inputs.clone_from(&identity.inputs);
-            JobStore::new(Job::create(&folder, manifest)?, Role::Merge, Duration::ZERO)
+            JobStore::new(Job::create(&folder, manifest)?, JobRole::Merge, Duration::ZERO)
         })?)
     };
     let made = task.make(Keeping::Job(&open), show_progress, false);
     let job = args.output.display().to_string();
     let planned = match (slot.store().and_then(JobStore::outcome), slot.store()) {
-        (Some(Outcome::Planned { phase, .. } | Outcome::Missing { phase, .. }), Some(store)) => {
+        (Some(JobProgress::Planned { phase, .. } | JobProgress::Missing { phase, .. }), Some(store)) => {
             Planned::new(job, &store.job(), Some(phase), None)
         }
         (_, Some(store)) => {

@@ -8,7 +8,7 @@ use crate::error::{Result, anyhow};
 use crate::interrupt;
 use crate::kept::Keeping;
 use crate::memory::MemoryArgs;
-use sightlines::checkpoint::{Identity, Job, JobSlot, JobStore, Outcome, Role, ShardRun, ShardState, in_words};
+use sightlines::checkpoint::{Identity, Job, JobProgress, JobRole, JobSlot, JobStore, ShardRun, ShardState, in_words};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -69,12 +69,12 @@ fn compute(job: &Job, name: &Path, shards: Vec<usize>, args: &ShardArgs, show_pr
     let slot = JobSlot::default();
     let after = Duration::from_secs(args.save_after);
     let open = |identity: &Identity| {
-        Ok(slot.open(identity, || JobStore::new(job.clone(), Role::Shards(shards.clone()), after))?)
+        Ok(slot.open(identity, || JobStore::new(job.clone(), JobRole::Shards(shards.clone()), after))?)
     };
     let made = task.make(Keeping::Job(&open), show_progress, false);
     match slot.store().and_then(JobStore::outcome) {
-        Some(Outcome::Done) => Ok(()),
-        Some(Outcome::Missing { shards: missing, phase }) => {
+        Some(JobProgress::Done) => Ok(()),
+        Some(JobProgress::Missing { shards: missing, phase }) => {
             let missing: Vec<usize> = missing.iter().map(|(shard, _)| *shard).collect();
             let phase = &job.manifest().phases[phase].name;
             let verb = if shards.len() == 1 { "needs" } else { "need" };

@@ -7,7 +7,7 @@ use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::Result;
 use crate::interrupt;
 use crate::memory::MemoryArgs;
-use sightlines::checkpoint::Role;
+use sightlines::checkpoint::JobRole;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -37,7 +37,7 @@ pub(crate) struct WorkArgs {
 
 pub(crate) fn run(args: &WorkArgs, Verbosity { verbose, .. }: Verbosity) -> Result<Done> {
     let (folder, out) = (absolute(&args.job)?, args.output.as_deref().map(absolute).transpose()?);
-    let role = Role::Worker { n_workers: args.workers as usize, stop: interrupt::requested };
+    let role = JobRole::Worker { n_workers: args.workers as usize, stop: interrupt::requested };
     let after = Duration::from_secs(args.save_after);
     let _watch = interrupt::watch();
     let adjust =

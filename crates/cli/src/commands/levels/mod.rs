@@ -17,7 +17,7 @@ use sightlines::formats::{FolderError, GltfSource, NewFolder, SceneFile};
 use sightlines::multifocal::FromRegion;
 use sightlines::progress::memory::{MemorySize, Needs};
 use sightlines::simplify::{
-    Effort, HiddenBy, LevelOptions, Levels, MakeMethod, SimplifyError, SimplifyOptions, levels_with,
+    HiddenBy, LevelOptions, Levels, MakeMethod, SimplifyError, SimplifyOptions, WorkOptions, levels_with,
 };
 use std::path::PathBuf;
 use std::time::Instant;
@@ -101,7 +101,7 @@ pub(crate) fn run(args: &LevelsArgs, Verbosity { show_progress, .. }: Verbosity)
     let start = Instant::now();
     let kept = Kept::open(keeping, &inputs, &[&args.output], || args.identity(&inputs, &options, &file))?;
     let bar = Bar::new("levels", show_progress);
-    let effort = Effort { observer: Some(&bar), units: kept.units() };
+    let effort = WorkOptions { observer: Some(&bar), units: kept.units() };
     let made = levels_with(scene, table, &by, &options, &effort).map_err(|source| {
         let of_table = matches!(source, SimplifyError::OtherScene(_) | SimplifyError::Views(_));
         let path = if of_table { &args.table } else { &args.scene };

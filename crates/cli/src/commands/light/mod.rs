@@ -16,7 +16,7 @@ use crate::surfaces::{self, SurfaceArgs};
 use crate::view::Up;
 use method::{UmbraMethod, union};
 use outcome::Outcome;
-use sightlines::area_light::{Options, Shade, Shadows, Sides, shown};
+use sightlines::area_light::{LightOptions, Shade, Shadows, Sides, shown};
 use sightlines::multifocal::{FromRegion, Volume};
 use sightlines::report::{LightPixel, light_png};
 use sightlines::visible_surface::{DepthFormat, FaceMask, Faces, RenderInput, VisibleSurface, ZBuffer};
@@ -97,7 +97,7 @@ pub(crate) fn run(args: &LightArgs, _: Verbosity) -> Result<Done> {
     let start = Instant::now();
     let mut method =
         union(&args.method, &file.scene.opaque_part()).map_err(|error| method_failed(&args.scene, error))?;
-    let options = Options { sides: Sides::Towards(camera.eye()), max_depth: args.depth, min_size: args.min_size };
+    let options = LightOptions { sides: Sides::Towards(camera.eye()), max_depth: args.depth, min_size: args.min_size };
     let shadows = Shadows::new(&faces);
     let lighting = shadows.classify(&chosen, &light, &mut method, &options).in_file(&args.scene)?;
     let decided = start.elapsed();

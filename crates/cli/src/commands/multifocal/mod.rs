@@ -16,8 +16,10 @@ use outcome::{FieldInfo, Outcome};
 use sightlines::bake::methods::{Backend, NotBuiltIn};
 use sightlines::geometry::Point3;
 use sightlines::multifocal::mesh::{PatchOptions, patches};
-use sightlines::multifocal::{Buffer, Job, Measure, Occluder, Plane, PlaneChoice, Texels, Volume, render_by_first};
-use sightlines::multifocal_cpu::fields::{Features, Field};
+use sightlines::multifocal::{
+    Buffer, BufferJob, BufferPlane, Measure, Occluder, PlaneChoice, Texels, Volume, render_by_first,
+};
+use sightlines::multifocal_cpu::fields::{Features, NearestField};
 use sightlines::report::{PngError, buffer_png, distance_png, voronoi_png};
 use std::path::{Path, PathBuf};
 
@@ -85,7 +87,7 @@ pub(crate) fn run(args: &MultifocalArgs, _: Verbosity) -> Result<Done> {
     let about = format!("--plane {}", args.plane);
     let plane = args.plane.plane(&volume, &scene.bounds(), args.texels).about(&about)?;
     let occluders = occluders(&triangles, args.triangles);
-    let job = Job::new(volume, vec![plane], &occluders, args.measure, false).about(&about)?;
+    let job = BufferJob::new(volume, vec![plane], &occluders, args.measure, false).about(&about)?;
     let failed = |error: NotBuiltIn| method_failed(&args.scene, error.into());
     let chain = args.backend.open(|text| tracing::warn!("{text}")).map_err(failed)?.chain();
     let (mut buffers, taken_over) = (Vec::new(), |error| tracing::warn!("{error}; the next one takes over"));
@@ -93,7 +95,7 @@ pub(crate) fn run(args: &MultifocalArgs, _: Verbosity) -> Result<Done> {
     let buffer = buffers.pop().expect("a backend fills a buffer for each plane, and there is one");
     let fields = (args.voronoi.is_some() || args.distance.is_some()).then(|| {
         let features = Features::new(triangles.iter().copied());
-        let field = Field::new(&features, &plane);
+        let field = NearestField::new(&features, &plane);
         (features, field)
     });
     let white = white(&buffer);
@@ -156,7 +158,12 @@ fn white(buffer: &Buffer) -> u32 {
 }
 
 /// Draws all pictures, then writes them.
-fn write(args: &MultifocalArgs, plane: &Plane, buffer: &Buffer, fields: Option<&(Features, Field)>) -> Result<()> {
+fn write(
+    args: &MultifocalArgs,
+    plane: &BufferPlane,
+    buffer: &Buffer,
+    fields: Option<&(Features, NearestField)>,
+) -> Result<()> {
     let texels = plane.texels();
     let mut pictures: Vec<(&Path, Result<Vec<u8>, PngError>)> =
         vec![(&args.output, buffer_png(texels, buffer.values(), white(buffer)))];

@@ -1,7 +1,7 @@
 //! What was drawn.
 
 use crate::output::{JsonSchema, Serialize, count, percent};
-use sightlines::multifocal_cpu::fields::{Features, Field};
+use sightlines::multifocal_cpu::fields::{Features, NearestField};
 use std::fmt;
 
 /// A multifocal buffer.
@@ -55,7 +55,7 @@ pub(super) struct FieldInfo {
 }
 
 impl FieldInfo {
-    pub(super) fn new(features: &Features, field: &Field) -> Self {
+    pub(super) fn new(features: &Features, field: &NearestField) -> Self {
         let (edges, faces) = (features.first_edge(), features.first_face());
         let n_faces = u32::try_from(features.len()).expect("fewer features than 2^32") - faces;
         Self { n_vertices: edges, n_edges: faces - edges, n_faces, farthest: field.farthest() }

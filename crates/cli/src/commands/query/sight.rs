@@ -6,7 +6,7 @@ use crate::output::{JsonSchema, Serialize, count};
 use crate::sight::{Sight, SightArgs, without_direction};
 use crate::tables::Cells;
 use crate::view::Methods;
-use sightlines::eye_to_cell::{Budget, Method, View};
+use sightlines::eye_to_cell::{Method, StepBudget, View};
 use sightlines::pvs::CellId;
 use sightlines::walkthrough::Viewer;
 use std::fmt;
@@ -42,7 +42,7 @@ pub(super) fn look<C: Cells>(cells: &C, path: &Path, eye: &[f64], at: &[CellId],
         return Err(without_direction("--fov, --aspect and --up"));
     }
     let mut viewer = Viewer::of(cells.clone());
-    viewer.set_budget(Budget::UNLIMITED);
+    viewer.set_budget(StepBudget::UNLIMITED);
     viewer.set_memory(usize::MAX);
     *viewer.doors_mut() = args.doors(cells, path)?;
     let all = args.method == Some(Methods::All);

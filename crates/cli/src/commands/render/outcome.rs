@@ -3,7 +3,7 @@
 use super::cull::Gone;
 use crate::output::{JsonSchema, Serialize, count, percent, seconds_of};
 use sightlines::geometry::Point3;
-use sightlines::visible_surface::{Comparison, Image, Prepared, RenderInput};
+use sightlines::visible_surface::{Comparison, Image, PreparedMethod, RenderInput};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::time::Instant;
@@ -78,7 +78,10 @@ pub(super) struct Row {
 
 impl Row {
     /// Draws, and counts what that took.
-    pub(super) fn draw(Prepared { method, time, splits }: &Prepared, shot: &RenderInput<'_>) -> (Image, Self) {
+    pub(super) fn draw(
+        PreparedMethod { method, time, splits }: &PreparedMethod,
+        shot: &RenderInput<'_>,
+    ) -> (Image, Self) {
         let start = Instant::now();
         let (image, counters) = method.picture(shot);
         let row = Self {

@@ -7,7 +7,7 @@ use crate::simplification::{Rounded, SingleSided, Written};
 use sightlines::cells::Scene;
 use sightlines::geometry::Point3;
 use sightlines::simplify::estimate::interval;
-use sightlines::simplify::{Estimate, Measured, Simplified, SimplifyError, SimplifyOptions, Views};
+use sightlines::simplify::{HitEstimate, Measured, Simplified, SimplifyError, SimplifyOptions, Views};
 use sightlines::visible_surface::Faces;
 use std::fmt;
 use std::time::Duration;
@@ -97,7 +97,7 @@ impl Report {
         options: &SimplifyOptions,
     ) -> Result<Self, SimplifyError> {
         let faces = Faces::of_scene(scene)?;
-        let estimate = Estimate::new(&faces, views, options.n_rays);
+        let estimate = HitEstimate::new(&faces, views, options.n_rays);
         let (mut first, mut hits) = (0, 0);
         for (o, origin) in scene.objects().iter().zip(&simplified.origin) {
             let mut kept = vec![false; o.triangles.len()];

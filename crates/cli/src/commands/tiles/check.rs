@@ -4,7 +4,7 @@ use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::Result;
 use crate::output::{JsonSchema, Serialize, bytes, count};
 use crate::progress::Bar;
-use sightlines::tiles::{TileTables, World};
+use sightlines::tiles::{TileTables, TiledWorld};
 use std::fmt;
 use std::path::PathBuf;
 
@@ -34,7 +34,7 @@ pub(crate) struct Checked {
 }
 
 pub(super) fn run(args: &TilesCheckArgs, Verbosity { show_progress, .. }: Verbosity) -> Result<Done> {
-    let world = World::open(&args.world)?;
+    let world = TiledWorld::open(&args.world)?;
     let n_tiles = world.index().tiles.len();
     let mut checked =
         Checked { world: args.world.display().to_string(), n_tiles, n_cells: 0, n_objects: 0, n_resident_bytes: 0 };

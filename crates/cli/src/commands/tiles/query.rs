@@ -4,7 +4,7 @@ use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::Result;
 use crate::output::{JsonSchema, Serialize, count};
 use crate::place::Point;
-use sightlines::tiles::{Seen, TileId, TileScratch, TileTables, World};
+use sightlines::tiles::{Seen, TileId, TileScratch, TileTables, TiledWorld};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::path::PathBuf;
@@ -50,7 +50,7 @@ pub(crate) struct Found {
 }
 
 pub(super) fn run(args: &TilesQueryArgs, _: Verbosity) -> Result<Done> {
-    let world = World::open(&args.world)?;
+    let world = TiledWorld::open(&args.world)?;
     let eye = args.eye.coordinates(3, &args.world)?;
     let eye = [eye[0], eye[1], eye[2]];
     let (mut at, mut inside, mut seen, mut scratch) = (Vec::new(), Vec::new(), Seen::default(), TileScratch::default());

@@ -5,7 +5,7 @@ use crate::picture::up_of;
 use crate::picture::{draw_plan, save_picture};
 use sightlines::geometry::Point2;
 use sightlines::pvs::Table;
-use sightlines::report::{DrawOptions, SliceOptions, View, slice_svg};
+use sightlines::report::{DrawOptions, PictureSubject, SliceOptions, slice_svg};
 use sightlines::verify::{Findings, Violation};
 use std::path::{Path, PathBuf};
 
@@ -18,12 +18,12 @@ pub(super) fn draw(source: &Path, table: &Table, findings: &Findings, out: &Path
     let svg = if table.dimension() == 2 {
         let target = if let Violation::HiddenCell { cells: [_, to], .. } = violation { Some(*to) } else { None };
         let line = Some(segment.map(|[x, y, _]| Point2::new(x, y)));
-        let options = DrawOptions { view: View::Cell(cells[0]), target, line, ..DrawOptions::default() };
+        let options = DrawOptions { view: PictureSubject::Cell(cells[0]), target, line, ..DrawOptions::default() };
         draw_plan(source, table, &options)?
     } else {
         let up = up_of(table);
         let options = SliceOptions {
-            view: View::Cell(cells[0]),
+            view: PictureSubject::Cell(cells[0]),
             up,
             height: segment[0][up.axis()],
             line: Some(segment),

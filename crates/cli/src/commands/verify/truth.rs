@@ -10,7 +10,7 @@ use sightlines::formats::quake::visibility::check_portals;
 use sightlines::formats::scene::SceneReadOptions;
 use sightlines::formats::{Input, PlanReadOptions};
 use sightlines::pvs::Table;
-use sightlines::verify::{Truth, VerifyError, WorldTree, along_frame};
+use sightlines::verify::{MapTree, Truth, VerifyError, along_frame};
 use std::path::Path;
 
 /// A scene that was read.
@@ -18,7 +18,7 @@ pub(super) enum Real {
     Plan(Plan),
     Scene(Scene),
     Portals(CellGraph<Convex>),
-    Map(CellGraph<Convex>, WorldTree),
+    Map(CellGraph<Convex>, MapTree),
 }
 
 impl Real {
@@ -45,7 +45,7 @@ impl Real {
             Bakeable::Map(bsp, portals) => {
                 let file = file.unwrap_or_default();
                 check_portals(&bsp, &portals).map_err(|source| do_not_fit(&file, path, &source))?;
-                Self::Map(graph_of_prt(&portals), WorldTree::of_map(&bsp, &portals).in_file(path)?)
+                Self::Map(graph_of_prt(&portals), MapTree::of_map(&bsp, &portals).in_file(path)?)
             }
         })
     }
@@ -58,7 +58,7 @@ impl Real {
             }
             Self::Map(graph, tree) => {
                 let listed = vec![Vec::new(); tree.listed.len()];
-                Self::Map(graph, WorldTree { faces: Vec::new(), listed, ..tree })
+                Self::Map(graph, MapTree { faces: Vec::new(), listed, ..tree })
             }
             other => other,
         }

@@ -26,7 +26,7 @@ use sightlines::isovist::{Touch, WallMesh};
 use sightlines::progress::memory::{self, Needs};
 use sightlines::report::{Field, MAX_SIZE, MIN_SIZE, PointColumn, field_png, field_svg, points_csv, points_geojson};
 use sightlines::visibility_graph::{
-    Analysis, AnalysisOptions, Effort, Group, Measure, MeasureSet, Points, Turns, UNDEFINED, VisibilityGraph,
+    Analysis, AnalysisOptions, Group, Measure, MeasureSet, Points, Turns, UNDEFINED, VisibilityGraph, WorkOptions,
 };
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -214,7 +214,7 @@ fn analyse(
 ) -> Result<Analysed> {
     let bar = Bar::new("visibility graph", show_progress);
     let units = kept.units();
-    let effort = Effort { threads, observer: Some(&bar), units };
+    let effort = WorkOptions { threads, observer: Some(&bar), units };
     let start = Instant::now();
     let graph = graph(args, plan, points, &effort)?;
     let graph_seconds = start.elapsed().as_secs_f64();
@@ -303,7 +303,7 @@ fn shown(args: &VgaArgs, measures: &[Measure]) -> Measure {
 }
 
 /// What sees what, decided on a mesh of the walls.
-fn graph(args: &VgaArgs, plan: &Plan, points: &Points, effort: &Effort<'_>) -> Result<VisibilityGraph> {
+fn graph(args: &VgaArgs, plan: &Plan, points: &Points, effort: &WorkOptions<'_>) -> Result<VisibilityGraph> {
     let at = points.coordinates();
     let mesh = WallMesh::around(plan, at.iter().copied()).in_file(&args.plan)?;
     let from = args.points.as_ref().unwrap_or(&args.plan);

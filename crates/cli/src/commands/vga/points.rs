@@ -5,17 +5,17 @@ use crate::output::count;
 use sightlines::cells::Plan;
 use sightlines::formats::points::read_points;
 use sightlines::geometry::Point2;
-use sightlines::visibility_graph::{Grid, GridError, Interior, Points};
+use sightlines::visibility_graph::{GridError, InteriorPoints, PixelGrid, Points};
 use std::path::Path;
 
 /// The points of a grid over a plan: those that seeds reach or, without seeds, the interior; and the grid's columns and rows.
 pub(super) fn of_grid(path: &Path, plan: &Plan, spacing: f64, seeds: &[Point2]) -> Result<(Points, [usize; 2])> {
     let failed = |source: GridError| anyhow!("{}: {source}", path.display());
-    let grid = Grid::over(plan, spacing).map_err(failed)?;
+    let grid = PixelGrid::over(plan, spacing).map_err(failed)?;
     if !seeds.is_empty() {
         return Ok((grid.fill(seeds).map_err(failed)?, grid.size()));
     }
-    let Interior { points, is_enclosed } = grid.interior().map_err(failed)?;
+    let InteriorPoints { points, is_enclosed } = grid.interior().map_err(failed)?;
     if !is_enclosed {
         let n = count(points.len() as u64, "point");
         tracing::warn!(

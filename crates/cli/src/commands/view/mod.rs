@@ -9,7 +9,7 @@ use crate::plans::PlanArgs;
 use crate::reasons::reasons;
 use crate::surfaces::SurfaceArgs;
 use crate::{tables, walk_path};
-use sightlines::viewer::{Frame, Page};
+use sightlines::viewer::{Page, WalkerPose};
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -98,9 +98,9 @@ pub(crate) fn run(args: &ViewArgs, Verbosity { show_progress, .. }: Verbosity) -
     Ok(done.then(show))
 }
 
-fn frames(path: &Path, dimension: u8) -> Result<Vec<Frame>> {
+fn frames(path: &Path, dimension: u8) -> Result<Vec<WalkerPose>> {
     let poses = walk_path::read(path, dimension)?;
-    Ok(poses.into_iter().map(|pose| Frame { eye: pose.eye, dir: pose.dir }).collect())
+    Ok(poses.into_iter().map(|pose| WalkerPose { eye: pose.eye, dir: pose.dir }).collect())
 }
 
 /// Lets the system show a file, and does not wait for it.

@@ -11,7 +11,7 @@ use crate::tables::{self, Cells, Opened};
 use crate::view::{LensArgs, Methods, method_help};
 use crate::walk_path;
 use outcome::Outcome;
-use sightlines::eye_to_cell::{Budget, CellSource, Method, View};
+use sightlines::eye_to_cell::{CellSource, Method, StepBudget, View};
 use sightlines::report::walk_svg;
 use sightlines::walkthrough::{CameraPose, MeasureError, WalkMeasure, WalkOptions, usual_step, wander};
 use std::path::{Path, PathBuf};
@@ -53,7 +53,7 @@ pub(crate) struct WalkArgs {
     /// then exact near the eye only, and farther away shows what incident-portals finds, which is never less. frame is 4096, none is
     /// no bound
     #[arg(long, help_heading = "Method", value_name = "STEPS", default_value = "frame", value_parser = steps)]
-    steps: Budget,
+    steps: StepBudget,
     /// Also follow reflections in mirrors, up to this many in a row
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::view::bounces)]
     bounces: usize,
@@ -73,11 +73,11 @@ pub(crate) struct WalkArgs {
     json: JsonArg,
 }
 
-fn steps(text: &str) -> Result<Budget, String> {
+fn steps(text: &str) -> Result<StepBudget, String> {
     match text {
-        "none" => Ok(Budget::UNLIMITED),
-        "frame" => Ok(Budget::FRAME),
-        _ => text.parse().map(Budget::steps).map_err(|_| "neither a number of steps, frame, nor none".to_owned()),
+        "none" => Ok(StepBudget::UNLIMITED),
+        "frame" => Ok(StepBudget::FRAME),
+        _ => text.parse().map(StepBudget::steps).map_err(|_| "neither a number of steps, frame, nor none".to_owned()),
     }
 }
 

@@ -4,7 +4,7 @@ use super::WalkArgs;
 use super::levels::Drawn;
 use crate::output::{JsonSchema, Serialize, bytes, count, share};
 use crate::tables::Cells;
-use sightlines::eye_to_cell::Budget;
+use sightlines::eye_to_cell::StepBudget;
 use sightlines::report::WalkBar;
 use sightlines::walkthrough::{LeftToDraw, MethodSums, WalkMeasured};
 use std::fmt;
@@ -147,7 +147,7 @@ impl Outcome {
             n_outside: *n_outside,
             n_starved: *n_starved,
             budget: args.budget,
-            steps: (args.steps != Budget::UNLIMITED).then(|| args.steps.n_steps()),
+            steps: (args.steps != StepBudget::UNLIMITED).then(|| args.steps.n_steps()),
             most_bytes_kept: *most_bytes,
             n_prepared: *n_prepared,
             n_dropped: *n_dropped,

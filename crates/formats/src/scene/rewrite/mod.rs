@@ -11,7 +11,7 @@ mod variants;
 
 pub use error::RewriteError;
 
-use super::Simplified;
+use super::Simplification;
 use super::buffers::Buffers;
 use super::gltf::split;
 use super::json::{Document, Node};
@@ -52,7 +52,7 @@ impl GltfSource {
     pub fn rewrite(
         &self,
         triangles: &[Option<Vec<[u32; 3]>>],
-        simplified: Option<Simplified>,
+        simplified: Option<Simplification>,
     ) -> Result<Vec<u8>, RewriteError> {
         check(self, triangles)?;
         let (text, binary) = split(&self.bytes).expect("the source was read before");

@@ -4,7 +4,7 @@
 
 use proptest::prelude::*;
 use sightlines_geometry::Aabb;
-use sightlines_kdtree::{AxialCell, AxialFace, AxialPortal, AxialTree, Options, subdivide};
+use sightlines_kdtree::{AxialCell, AxialFace, AxialPortal, AxialTree, KdOptions, subdivide};
 
 /// Side of the square that planar scenes are in.
 pub(crate) const SIDE_2D: u32 = 6;
@@ -44,7 +44,7 @@ pub(crate) fn grid<const D: usize>(n: u32) -> Aabb<D> {
 
 /// The subdivision of a scene on the grid.
 pub(crate) fn cut<const D: usize>(faces: &[AxialFace<D>], n: u32, tau: f64) -> AxialTree<D> {
-    subdivide(faces, grid(n), &Options { tau, ..Options::default() }).expect("the scene is good")
+    subdivide(faces, grid(n), &KdOptions { tau, ..KdOptions::default() }).expect("the scene is good")
 }
 
 /// Centres of all unit cubes of the grid.

@@ -4,7 +4,7 @@ use num_rational::BigRational;
 use num_traits::Zero;
 use proptest::prelude::*;
 use sightlines_geometry::{Aabb, Point3};
-use sightlines_multifocal::{Buffer, Job, Measure, Occluder, Plane, Volume};
+use sightlines_multifocal::{Buffer, BufferJob, BufferPlane, Measure, Occluder, Volume};
 
 /// A point in whole numbers, in a frame that looks along z.
 pub(crate) type Grid3 = [i64; 3];
@@ -47,20 +47,20 @@ impl GridScene {
         self.surfaces.iter().map(|s| occluder(s).expect("triangles have areas")).collect()
     }
 
-    pub(crate) fn job<'a>(&self, occluders: &'a [Occluder], measure: Measure) -> Job<'a> {
+    pub(crate) fn job<'a>(&self, occluders: &'a [Occluder], measure: Measure) -> BufferJob<'a> {
         let volume = Volume::new(Aabb::around(self.eyes.map(|p| point(self, p)))).expect("eyes are in a box");
         let [low, high] = [[0, 0], self.texels].map(|[x, y]| {
             [self.low[0] + i64::from(x) * self.step[0], self.low[1] + i64::from(y) * self.step[1]].map(|x| x as f64)
         });
         let plane = |&z: &i64| {
             let at = if self.positive { z } else { -z } as f64;
-            let plane = Plane::new(self.axis, self.positive, at, low, high, self.texels).expect("a window");
+            let plane = BufferPlane::new(self.axis, self.positive, at, low, high, self.texels).expect("a window");
             assert_eq!(plane.origin(), low, "whole numbers make exact grids");
             assert_eq!(plane.end(), high, "whole numbers make exact grids");
             plane
         };
         let planes = self.planes.iter().map(plane).collect();
-        Job::new(volume, planes, occluders, measure, measure.is_height()).expect("a job")
+        BufferJob::new(volume, planes, occluders, measure, measure.is_height()).expect("a job")
     }
 
     pub(crate) fn eye_corners(&self) -> [Grid3; 8] {

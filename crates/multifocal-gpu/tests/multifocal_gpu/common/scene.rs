@@ -2,7 +2,7 @@
 
 use crate::common::Chance;
 use sightlines_geometry::{Aabb, Point3};
-use sightlines_multifocal::{Job, Measure, Occluder, Plane, Volume};
+use sightlines_multifocal::{BufferJob, BufferPlane, Measure, Occluder, Volume};
 
 /// Rectangles and triangles between a volume and a plane at 20, some of them tilted, and some that cut either.
 pub(crate) fn occluders(chance: &mut Chance, n: usize) -> Vec<Occluder> {
@@ -24,9 +24,9 @@ pub(crate) fn occluders(chance: &mut Chance, n: usize) -> Vec<Occluder> {
 }
 
 /// A job on one plane, or on four of them one behind the other.
-pub(crate) fn job<'a>(occluders: &'a [Occluder], measure: Measure, texels: [u32; 2], sweep: bool) -> Job<'a> {
+pub(crate) fn job<'a>(occluders: &'a [Occluder], measure: Measure, texels: [u32; 2], sweep: bool) -> BufferJob<'a> {
     let volume = Volume::new(Aabb { min: [-1.0, -0.5, -1.0], max: [0.5, 0.5, 1.0] }).expect("it is a box");
     let at: &[f64] = if sweep { &[8.0, 12.0, 16.0, 20.0] } else { &[20.0] };
-    let plane = |&at: &f64| Plane::new(2, true, at, [-at; 2], [at; 2], texels).expect("it is a plane");
-    Job::new(volume, at.iter().map(plane).collect(), occluders, measure, sweep).expect("it can be done")
+    let plane = |&at: &f64| BufferPlane::new(2, true, at, [-at; 2], [at; 2], texels).expect("it is a plane");
+    BufferJob::new(volume, at.iter().map(plane).collect(), occluders, measure, sweep).expect("it can be done")
 }

@@ -17,7 +17,7 @@ use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 use sightlines_geometry::Aabb;
 
-use super::Target;
+use super::BoxTarget;
 
 /// A way past a rectangle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -111,7 +111,7 @@ impl BlockedProof {
     /// `rectangles` in between. Exact; shares no code with the solver.
     ///
     /// * `rectangles`: those that the proof names by index; boxes that are flat along one axis.
-    pub fn holds(&self, from: &Aabb<3>, to: &Aabb<3>, target: Target, rectangles: &[Aabb<3>]) -> bool {
+    pub fn holds(&self, from: &Aabb<3>, to: &Aabb<3>, target: BoxTarget, rectangles: &[Aabb<3>]) -> bool {
         (0..8u8).all(|bits| {
             let forward = [0, 1, 2].map(|axis| bits >> axis & 1 == 1);
             let mut lines = Lines { from, to, target, rectangles, forward, path: Vec::new() };
@@ -202,7 +202,7 @@ struct Passage<'a> {
 struct Lines<'a> {
     from: &'a Aabb<3>,
     to: &'a Aabb<3>,
-    target: Target,
+    target: BoxTarget,
     rectangles: &'a [Aabb<3>],
     forward: [bool; 3],
     path: Vec<Passage<'a>>,
@@ -253,7 +253,7 @@ impl<'a> Lines<'a> {
             }
             Bypass::After => {
                 let enters = self.enters(self.to, own);
-                let on_surface = self.target == Target::Surface && plane.1 == enters.1;
+                let on_surface = self.target == BoxTarget::Surface && plane.1 == enters.1;
                 let may = on_surface || self.is_before(enters, plane);
                 may.then(|| others.map(|k| [self.enters(self.to, k), plane]).to_vec())
             }

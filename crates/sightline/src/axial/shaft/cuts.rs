@@ -1,7 +1,7 @@
 //! The ways past a rectangle, as sets of rows.
 
 use super::super::rows::{Octant, Row, first_and_last, others, sign};
-use super::Target;
+use super::BoxTarget;
 use sightlines_geometry::{Aabb, Point2, orient2d};
 
 /// One row, or two that have to hold together.
@@ -32,7 +32,7 @@ impl BypassRows {
 pub(super) struct Ends<'a> {
     pub(super) from: &'a Aabb<3>,
     pub(super) to: &'a Aabb<3>,
-    pub(super) target: Target,
+    pub(super) target: BoxTarget,
     pub(super) octant: Octant,
 }
 
@@ -100,8 +100,8 @@ impl Ends<'_> {
             take(BypassRows { rows: [before(b), before(c)], n_rows: 2 });
         }
         let beyond = match self.target {
-            Target::Inside => turn * at > turn * enters(axis),
-            Target::Surface => turn * at >= turn * enters(axis),
+            BoxTarget::Inside => turn * at > turn * enters(axis),
+            BoxTarget::Surface => turn * at >= turn * enters(axis),
         };
         if beyond {
             let after = |k: usize| Row { early: k, late: axis, from: enters(k), to: at };

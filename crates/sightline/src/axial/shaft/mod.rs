@@ -48,7 +48,7 @@ use sightlines_geometry::{Aabb, AxialDoor};
 
 /// What has to be reached.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Target {
+pub enum BoxTarget {
     /// The inside of the box: a rectangle on its surface is in the way.
     Inside,
     /// The closed box: a rectangle on its surface is not in the way.
@@ -214,7 +214,7 @@ impl<'a> Shaft<'a> {
     ///
     /// Exact, except for [`Verdict::Undecided`], which errs on neither side. Rectangles inside of the boxes
     /// count only for lines that have to pass them between leaving the first and entering the second.
-    pub fn decide(&mut self, from: &Aabb<3>, to: &Aabb<3>, target: Target, budget: u32) -> ShaftVerdict {
+    pub fn decide(&mut self, from: &Aabb<3>, to: &Aabb<3>, target: BoxTarget, budget: u32) -> ShaftVerdict {
         self.counters.n_asked += 1;
         self.left = budget;
         self.middle_blockers(from, to, target);
@@ -252,7 +252,7 @@ impl<'a> Shaft<'a> {
     }
 
     /// What stands between the middles of two boxes.
-    fn middle_blockers(&mut self, from: &Aabb<3>, to: &Aabb<3>, target: Target) -> Option<()> {
+    fn middle_blockers(&mut self, from: &Aabb<3>, to: &Aabb<3>, target: BoxTarget) -> Option<()> {
         self.hits.clear();
         let middle = |b: &Aabb<3>| [0, 1, 2].map(|k| b.min[k] + (b.max[k] - b.min[k]) / 2.0);
         let (a, mut b) = (middle(from), middle(to));
@@ -273,7 +273,7 @@ impl<'a> Shaft<'a> {
     }
 
     /// Collects the rectangles that a ray meets between two times.
-    fn look(&mut self, ray: &Ray, times: [f64; 2], target: Target) {
+    fn look(&mut self, ray: &Ray, times: [f64; 2], target: BoxTarget) {
         self.hits.clear();
         let hits = &mut self.hits;
         let blockers = self.blockers;
@@ -281,7 +281,7 @@ impl<'a> Shaft<'a> {
             let rectangle = blockers.rectangle(i);
             let axis = blockers.axis(i);
             let at = ray.time(axis, rectangle.min[axis]);
-            if target == Target::Inside || at < times[1] {
+            if target == BoxTarget::Inside || at < times[1] {
                 hits.push(i);
             }
         });

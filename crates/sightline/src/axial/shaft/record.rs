@@ -5,7 +5,7 @@ use super::super::rows::{Row, first_and_last, others};
 use super::certificate::{BlockedProof, Branch, BranchRow, Bypass, Contradiction};
 use super::cuts::{BypassRows, Ends};
 use super::ray::Ray;
-use super::{CLEAR_MARGIN, Closer, DEEPEST, Frame, Next, Shaft, Tableau, Target};
+use super::{BoxTarget, CLEAR_MARGIN, Closer, DEEPEST, Frame, Next, Shaft, Tableau};
 use sightlines_geometry::Aabb;
 
 impl Shaft<'_> {
@@ -15,7 +15,7 @@ impl Shaft<'_> {
     ///
     /// `None` if some do, or if the budget does not suffice. What [`Shaft::decide`] finds blocked with some budget is
     /// proven with the same budget. Slower: every contradiction is expressed in integers, small ones first.
-    pub fn certify(&mut self, from: &Aabb<3>, to: &Aabb<3>, target: Target, budget: u32) -> Option<BlockedProof> {
+    pub fn certify(&mut self, from: &Aabb<3>, to: &Aabb<3>, target: BoxTarget, budget: u32) -> Option<BlockedProof> {
         self.left = budget;
         self.middle_blockers(from, to, target);
         let guesses = std::mem::take(&mut self.hits);

@@ -22,7 +22,7 @@ use sightlines_cells::{Axial, CellGraph};
 use sightlines_geometry::Aabb;
 use sightlines_progress::{Allowance, Counter, Halt, Phase, Shares, Units, shares_of};
 use sightlines_pvs::BitMatrix;
-use sightlines_sightline::{Blockers, Shaft, ShaftCounters, ShaftLine, Target, Verdict};
+use sightlines_sightline::{Blockers, BoxTarget, Shaft, ShaftCounters, ShaftLine, Verdict};
 use std::collections::VecDeque;
 use targets::{CellLocator, Targets};
 
@@ -90,8 +90,8 @@ pub fn box_visibility(
     let blockers = Blockers::new(opaque_rectangles(graph, solid));
     let places = CellLocator::new(graph);
     let thick: Vec<Aabb<3>> = boxes.iter().map(|b| places.thickened(b)).collect();
-    let of_boxes = Targets::new(&thick, boxes, Target::Inside, &places);
-    let of_objects = Targets::new(objects, objects, Target::Surface, &places);
+    let of_boxes = Targets::new(&thick, boxes, BoxTarget::Inside, &places);
+    let of_objects = Targets::new(objects, objects, BoxTarget::Surface, &places);
     let known = FoundVisible {
         boxes: AtomicBitMatrix::new(boxes.len(), boxes.len()),
         objects: AtomicBitMatrix::new(boxes.len(), objects.len()),

@@ -6,7 +6,7 @@ use super::super::slivers::THIN;
 use rayon::prelude::*;
 use sightlines_cells::{Axial, CellGraph};
 use sightlines_geometry::{Aabb, BoxTree};
-use sightlines_sightline::Target;
+use sightlines_sightline::BoxTarget;
 
 /// Locates boxes among the cells.
 pub(super) struct CellLocator {
@@ -67,7 +67,7 @@ pub(super) struct Targets<'a> {
     pub(super) boxes: &'a [Aabb<3>],
     /// Boxes that are visible if they are touched.
     pub(super) own: &'a [Aabb<3>],
-    pub(super) target: Target,
+    pub(super) target: BoxTarget,
     pub(super) tree: BoxTree<3>,
     pub(super) components: Vec<Vec<u32>>,
     /// Whether each extends beyond the cells.
@@ -75,7 +75,7 @@ pub(super) struct Targets<'a> {
 }
 
 impl<'a> Targets<'a> {
-    pub(super) fn new(boxes: &'a [Aabb<3>], own: &'a [Aabb<3>], target: Target, places: &CellLocator) -> Self {
+    pub(super) fn new(boxes: &'a [Aabb<3>], own: &'a [Aabb<3>], target: BoxTarget, places: &CellLocator) -> Self {
         Self {
             boxes,
             own,

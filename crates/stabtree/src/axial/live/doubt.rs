@@ -10,7 +10,7 @@ use super::LiveAxial;
 use super::matching::Matching;
 use sightlines_geometry::{Aabb, BoxTree};
 use sightlines_pvs::BitMatrix;
-use sightlines_sightline::Target;
+use sightlines_sightline::BoxTarget;
 use std::cell::Cell;
 
 impl PairsInDoubt {
@@ -205,7 +205,7 @@ impl AxialSearch<'_> {
             }
             let budget = if node.is_leaf() { CELL_BUDGET } else { GROUP_BUDGET };
             let sees = touch(&node.bounds, target)
-                || worker.shaft.decide(&node.bounds, target, Target::Surface, budget).may_be_visible();
+                || worker.shaft.decide(&node.bounds, target, BoxTarget::Surface, budget).may_be_visible();
             match (sees, node.is_leaf()) {
                 (false, _) => {}
                 (true, true) => found.push(node.start as usize),

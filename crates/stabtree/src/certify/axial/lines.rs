@@ -5,7 +5,7 @@ use super::Search;
 use sightlines_cells::{Axial, CellGraph};
 use sightlines_certificates::axial::{AxialLine, AxialMaker, AxialNetwork, AxialProofs};
 use sightlines_geometry::{Aabb, Random, check_coordinate};
-use sightlines_sightline::{Shaft, ShaftLine, Target, Verdict};
+use sightlines_sightline::{BoxTarget, Shaft, ShaftLine, Verdict};
 
 /// Linear programs spent on a line between two cells. A pair that takes more is left open, which hides nothing; most
 /// such pairs are only assumed visible.
@@ -94,7 +94,7 @@ impl<'a, 's> LineSteps<'a, 's> {
         if !apart {
             return;
         }
-        let found = self.shaft.decide(&a, &b, Target::Inside, self.search.budgets[1]);
+        let found = self.shaft.decide(&a, &b, BoxTarget::Inside, self.search.budgets[1]);
         let Verdict::Visible(ShaftLine::Free(line)) = found else { return };
         let [p, q] = line.points();
         // A free line may pass the common edge of two portals; lines next to it do not.

@@ -14,7 +14,7 @@ use sightlines_certificates::axial::{
 use sightlines_geometry::{Aabb, BoxTree};
 use sightlines_progress::{Counter, Halt, Phase};
 use sightlines_pvs::{BitMatrix, ObjectId};
-use sightlines_sightline::{BlockedProof, Blockers, Shaft, Target};
+use sightlines_sightline::{BlockedProof, Blockers, BoxTarget, Shaft};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use terms::translated;
 
@@ -389,8 +389,8 @@ impl<'a> Search<'a> {
             if apart && !self.seen_from.any(rows, places) {
                 let budget = if is_leaf { self.budgets[0] } else { GROUP_BUDGET.min(self.budgets[0]) };
                 // As for groups of cells.
-                let worth_it = is_leaf || shaft.decide(a, target, Target::Surface, budget).is_hidden();
-                if let Some(proof) = worth_it.then(|| shaft.certify(a, target, Target::Surface, budget)).flatten() {
+                let worth_it = is_leaf || shaft.decide(a, target, BoxTarget::Surface, budget).is_hidden();
+                if let Some(proof) = worth_it.then(|| shaft.certify(a, target, BoxTarget::Surface, budget)).flatten() {
                     found.extend(maker.check_object(&corners(a), object, translated(&proof)));
                     continue;
                 }
@@ -412,7 +412,7 @@ impl<'a> Search<'a> {
     ) -> Option<BlockedProof> {
         let apart = (0..3).any(|k| a.max[k] <= b.min[k] || b.max[k] <= a.min[k]);
         // Single cells are known to be hidden. For groups this is unknown, and deciding is quicker than proving.
-        let worth_it = apart && (is_leaf || shaft.decide(a, b, Target::Inside, budget).is_hidden());
-        if worth_it { shaft.certify(a, b, Target::Inside, budget) } else { None }
+        let worth_it = apart && (is_leaf || shaft.decide(a, b, BoxTarget::Inside, budget).is_hidden());
+        if worth_it { shaft.certify(a, b, BoxTarget::Inside, budget) } else { None }
     }
 }

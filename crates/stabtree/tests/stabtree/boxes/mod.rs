@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use sightlines_cells::{Axial, BoxCell, CellGraph, CellId, Portal};
 use sightlines_geometry::{Aabb, AxialDoor};
-use sightlines_kdtree::{AxialFace, AxialPortal, Options, subdivide};
+use sightlines_kdtree::{AxialFace, AxialPortal, KdOptions, subdivide};
 
 /// Side of the cube that scenes are in.
 pub(crate) const SIDE: i32 = 4;
@@ -37,7 +37,7 @@ pub(crate) fn cut(faces: &[AxialFace<3>], out: &[bool]) -> (CellGraph<Axial>, Ve
 
 /// The same in any box.
 pub(crate) fn cut_box(faces: &[AxialFace<3>], bounds: Aabb<3>, out: &[bool]) -> (CellGraph<Axial>, Vec<Aabb<3>>) {
-    let tree = subdivide(faces, bounds, &Options::default()).expect("the scene is good");
+    let tree = subdivide(faces, bounds, &KdOptions::default()).expect("the scene is good");
     let is_out = |cell: CellId| out[cell.idx() % out.len()];
     let (mut cells, mut solid, mut ids) = (Vec::new(), Vec::new(), Vec::new());
     for (id, cell) in (0u32..).map(CellId).zip(tree.cells()) {

@@ -1,10 +1,10 @@
 //! Whole jobs: sound, complete, repeatable.
 
 use super::{Clause, Pair, Violation};
-use sightlines_multifocal::{BackendError, Buffer, Job};
+use sightlines_multifocal::{BackendError, Buffer, BufferJob};
 
 /// The previous content of a buffer: of the right size, or of any other size and number.
-fn used(job: &Job<'_>, right_size: bool) -> Vec<Buffer> {
+fn used(job: &BufferJob<'_>, right_size: bool) -> Vec<Buffer> {
     let full = |texels: [u32; 2], value: u32| {
         let mut buffer = Buffer::default();
         buffer.reset(texels);

@@ -2,7 +2,7 @@
 
 use crate::conformance::Impostor;
 use sightlines_geometry::{Aabb, Point3};
-use sightlines_multifocal::{BackendError, Buffer, Job, Measure, MultifocalBackend, Plane, Volume};
+use sightlines_multifocal::{BackendError, Buffer, BufferJob, BufferPlane, Measure, MultifocalBackend, Volume};
 
 faults! {
     /// What a wrong backend does.
@@ -37,7 +37,7 @@ faults! {
 }
 
 impl<B: MultifocalBackend> Impostor<B, BackendFault> {
-    fn corners(&mut self, job: &Job<'_>, out: &mut [Buffer]) -> Result<(), BackendError> {
+    fn corners(&mut self, job: &BufferJob<'_>, out: &mut [Buffer]) -> Result<(), BackendError> {
         let mut least: Vec<Vec<u32>> = out.iter().map(|buffer| vec![u32::MAX; buffer.values().len()]).collect();
         for corner in job.volume().corners() {
             let part = with(job, point(corner), job.carry());
@@ -60,8 +60,8 @@ fn point(p: Point3) -> Volume {
     Volume::new(Aabb { min: p, max: p }).expect("a corner of a volume is a volume")
 }
 
-fn with<'a>(job: &Job<'a>, volume: Volume, carry: bool) -> Job<'a> {
-    Job::new(volume, job.planes().to_vec(), job.occluders().iter().copied(), job.measure(), carry)
+fn with<'a>(job: &BufferJob<'a>, volume: Volume, carry: bool) -> BufferJob<'a> {
+    BufferJob::new(volume, job.planes().to_vec(), job.occluders().iter().copied(), job.measure(), carry)
         .expect("a part of the volume makes a job, too")
 }
 
@@ -74,7 +74,7 @@ impl<B: MultifocalBackend> MultifocalBackend for Impostor<B, BackendFault> {
         self.inner.supports(measure)
     }
 
-    fn render(&mut self, job: &Job<'_>, out: &mut Vec<Buffer>) -> Result<(), BackendError> {
+    fn render(&mut self, job: &BufferJob<'_>, out: &mut Vec<Buffer>) -> Result<(), BackendError> {
         let is_odd = self.call().is_multiple_of(2);
         let before = out.clone();
         match self.fault {
@@ -127,7 +127,7 @@ fn spoil(fault: BackendFault, is_odd: bool, before: Option<&Buffer>, buffer: &mu
     }
 }
 
-fn carry_middles(job: &Job<'_>, [nearer, plane]: [&Plane; 2], known: &Buffer, stored: &mut Buffer) {
+fn carry_middles(job: &BufferJob<'_>, [nearer, plane]: [&BufferPlane; 2], known: &Buffer, stored: &mut Buffer) {
     let b = job.volume().bounds();
     let eye: Point3 = [0, 1, 2].map(|k| b.min[k] + (b.max[k] - b.min[k]) / 2.0);
     let between = plane.height(nearer.corner(0, 0));

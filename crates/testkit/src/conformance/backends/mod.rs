@@ -18,7 +18,7 @@ mod tight;
 use super::{Clause, Random, Report, Suite, Violation};
 pub use impostor::BackendFault;
 use scene::{FAMILIES, Scene};
-use sightlines_multifocal::{BackendError, Buffer, Job, Measure, MultifocalBackend};
+use sightlines_multifocal::{BackendError, Buffer, BufferJob, Measure, MultifocalBackend};
 use std::fmt::Display;
 
 /// How much a backend may miss of the reference, on the safe side. There are no other tolerances.
@@ -137,20 +137,20 @@ impl Pair<'_> {
     }
 
     /// The buffers of the backend.
-    fn own(&mut self, job: &Job<'_>, mut out: Vec<Buffer>) -> Result<Vec<Buffer>, Violation> {
+    fn own(&mut self, job: &BufferJob<'_>, mut out: Vec<Buffer>) -> Result<Vec<Buffer>, Violation> {
         let done = self.backend.render(job, &mut out);
         self.done(job, done.map(|()| out))
     }
 
     /// Those of the reference.
-    fn exact(&mut self, job: &Job<'_>) -> Result<Vec<Buffer>, Violation> {
+    fn exact(&mut self, job: &BufferJob<'_>) -> Result<Vec<Buffer>, Violation> {
         let mut out = Vec::new();
         let done = self.reference.render(job, &mut out);
         self.done(job, done.map(|()| out))
     }
 
     /// Buffers, checked for their shapes.
-    fn done(&self, job: &Job<'_>, out: Result<Vec<Buffer>, BackendError>) -> Result<Vec<Buffer>, Violation> {
+    fn done(&self, job: &BufferJob<'_>, out: Result<Vec<Buffer>, BackendError>) -> Result<Vec<Buffer>, Violation> {
         let out = out.map_err(|error| self.broken(Clause::Done, [0; 2], "buffers", error))?;
         let shapes: Vec<[u32; 2]> = out.iter().map(Buffer::texels).collect();
         let wanted: Vec<[u32; 2]> = job.planes().iter().map(|plane| plane.texels()).collect();

@@ -3,7 +3,7 @@
 use super::Random;
 use super::shapes::{self, Shape};
 use sightlines_geometry::{Aabb, Point3};
-use sightlines_multifocal::{Job, Measure, Occluder, Plane, Volume};
+use sightlines_multifocal::{BufferJob, BufferPlane, Measure, Occluder, Volume};
 
 /// Kinds of scenes.
 pub(super) const FAMILIES: [Family; 17] = [
@@ -51,7 +51,7 @@ pub(super) struct Scene {
     pub(super) seed: u64,
     pub(super) round: u32,
     pub(super) volume: Volume,
-    pub(super) planes: Vec<Plane>,
+    pub(super) planes: Vec<BufferPlane>,
     pub(super) occluders: Vec<Occluder>,
     carry: bool,
 }
@@ -79,9 +79,9 @@ impl Scene {
     }
 
     /// The job of the whole scene; planes are carried over only if the measure allows it.
-    pub(super) fn job(&self, measure: Measure) -> Job<'_> {
+    pub(super) fn job(&self, measure: Measure) -> BufferJob<'_> {
         let carry = self.carry && measure.is_height();
-        Job::new(self.volume, self.planes.clone(), &self.occluders, measure, carry).expect("scenes make jobs")
+        BufferJob::new(self.volume, self.planes.clone(), &self.occluders, measure, carry).expect("scenes make jobs")
     }
 }
 
@@ -112,12 +112,12 @@ impl Frame {
         Aabb::around([self.place(b.min), self.place(b.max)])
     }
 
-    fn plane(&self, z: f64, grid: Grid) -> Plane {
+    fn plane(&self, z: f64, grid: Grid) -> BufferPlane {
         let [w, h] = grid.texels.map(f64::from);
         let place = |x: f64, y: f64| self.place([x * grid.step[0], y * grid.step[1], z]);
         let (low, high) = (place(-(w / 2.0).floor(), -(h / 2.0).floor()), place((w / 2.0).ceil(), (h / 2.0).ceil()));
         let across = |p: Point3| [p[(self.axis + 1) % 3], p[(self.axis + 2) % 3]];
-        let plane = Plane::new(self.axis, self.positive, low[self.axis], across(low), across(high), grid.texels);
+        let plane = BufferPlane::new(self.axis, self.positive, low[self.axis], across(low), across(high), grid.texels);
         plane.expect("a window with texels")
     }
 }

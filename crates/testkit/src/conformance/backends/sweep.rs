@@ -1,14 +1,14 @@
 //! Carried planes.
 
 use super::{Pair, Violation};
-use sightlines_multifocal::{Buffer, Job, Plane};
+use sightlines_multifocal::{Buffer, BufferJob, BufferPlane};
 
 impl Pair<'_> {
     /// Clause 2 for carrying: a backend is compared with its own buffers. If everything that a texel's lines cross on the
     /// previous plane is blocked there, the texel must be blocked too.
-    pub(super) fn compare_carried(&mut self, job: &Job<'_>, got: &[Buffer]) -> Result<(), Violation> {
+    pub(super) fn compare_carried(&mut self, job: &BufferJob<'_>, got: &[Buffer]) -> Result<(), Violation> {
         let scene = self.scene;
-        let apart = Job::new(*job.volume(), job.planes().to_vec(), &scene.occluders, job.measure(), false)
+        let apart = BufferJob::new(*job.volume(), job.planes().to_vec(), &scene.occluders, job.measure(), false)
             .expect("planes that are carried over can be left apart");
         let alone = self.exact(&apart)?;
         for (idx, (planes, buffers)) in job.planes().windows(2).zip(got.windows(2)).enumerate() {
@@ -37,7 +37,7 @@ impl Pair<'_> {
 
 /// For each texel of a plane along axis `k`, a superset of the texels of the nearer plane that lines to it cross:
 /// enlarged by the slack, and by 2^-20 texels for the rounding of doubles. `None` where they leave the window.
-fn footprints(job: &Job<'_>, [nearer, plane]: [&Plane; 2], k: usize, slack: f64) -> Vec<Option<[u32; 2]>> {
+fn footprints(job: &BufferJob<'_>, [nearer, plane]: [&BufferPlane; 2], k: usize, slack: f64) -> Vec<Option<[u32; 2]>> {
     let between = plane.height(nearer.corner(0, 0));
     let eyes = job.volume().corners();
     let crossing = |i: u32| {

@@ -1,7 +1,7 @@
 //! Single occluders: what they block with room to spare must be found.
 
 use super::{Pair, Violation};
-use sightlines_multifocal::{Buffer, Job, Measure, Occluder, Plane};
+use sightlines_multifocal::{Buffer, BufferJob, BufferPlane, Measure, Occluder};
 
 impl Pair<'_> {
     /// Clause 2, for each of a few occluders of the scene alone, on its nearest plane.
@@ -10,8 +10,8 @@ impl Pair<'_> {
         scene.occluders.iter().take(2).try_for_each(|one| self.compare_one(one))
     }
 
-    fn alone<'a>(&self, plane: Plane, one: &'a Occluder, measure: Measure) -> Job<'a> {
-        Job::new(self.scene.volume, vec![plane], [one], measure, false).expect("part of a scene makes a job")
+    fn alone<'a>(&self, plane: BufferPlane, one: &'a Occluder, measure: Measure) -> BufferJob<'a> {
+        BufferJob::new(self.scene.volume, vec![plane], [one], measure, false).expect("part of a scene makes a job")
     }
 
     fn compare_one(&mut self, one: &Occluder) -> Result<(), Violation> {
@@ -67,18 +67,18 @@ fn only(buffers: Vec<Buffer>) -> [Buffer; 1] {
 
 /// The plane with its window moved by so many texels, and towards the viewers by so many of their longer sides. `None`
 /// if the grid would change.
-fn moved(plane: &Plane, by: [f64; 3]) -> Option<Plane> {
+fn moved(plane: &BufferPlane, by: [f64; 3]) -> Option<BufferPlane> {
     let ([u, v], [a, b]) = (plane.origin(), plane.step());
     let low = [u + by[0] * a, v + by[1] * b];
     let [w, h] = plane.texels().map(f64::from);
     let high = [low[0] + w * a, low[1] + h * b];
     let nearer = by[2] * a.max(b);
     let at = if plane.positive() { plane.at() - nearer } else { plane.at() + nearer };
-    let moved = Plane::new(plane.axis(), plane.positive(), at, low, high, plane.texels()).ok()?;
+    let moved = BufferPlane::new(plane.axis(), plane.positive(), at, low, high, plane.texels()).ok()?;
     (moved.origin() == low && moved.step() == plane.step()).then_some(moved)
 }
 
-fn is_parallel(occluder: &Occluder, plane: &Plane) -> bool {
+fn is_parallel(occluder: &Occluder, plane: &BufferPlane) -> bool {
     let b = occluder.bounds();
     b.min[plane.axis()] == b.max[plane.axis()]
 }

@@ -16,7 +16,7 @@ use sightlines_scenes::{
     OfficeOptions, QuakeLikeOptions, TowerOptions, World, doom_like, maze, office, quake_like, tower,
     turned_pillared_hall,
 };
-use sightlines_verify::{Findings, Truth, VerifyOptions, WorldChild, WorldNode, WorldTree, verify};
+use sightlines_verify::{Findings, MapChild, MapNode, MapTree, Truth, VerifyOptions, verify};
 use std::ops::Deref;
 use std::sync::{Arc, LazyLock};
 
@@ -25,7 +25,7 @@ pub(crate) enum Real {
     Plan(Plan),
     Scene(Scene),
     Portals(CellGraph<Convex>),
-    Map(CellGraph<Convex>, WorldTree),
+    Map(CellGraph<Convex>, MapTree),
 }
 
 impl Real {
@@ -141,10 +141,10 @@ pub(crate) fn map_case() -> Case {
     let Real::Portals(graph) = real else { panic!("portals") };
     let world = a_world();
     let child = |c: Child| match c {
-        Child::Node(node) => WorldChild::Node(node as u32),
-        Child::Leaf(leaf) => world.leafs[leaf].cell.map_or(WorldChild::Solid, |cell| WorldChild::Cluster(cell.0)),
+        Child::Node(node) => MapChild::Node(node as u32),
+        Child::Leaf(leaf) => world.leafs[leaf].cell.map_or(MapChild::Solid, |cell| MapChild::Cluster(cell.0)),
     };
-    let node = |n: &sightlines_scenes::world::WorldNode| WorldNode {
+    let node = |n: &sightlines_scenes::world::WorldNode| MapNode {
         normal: world.planes[n.plane].normal.map(f64::from),
         distance: world.planes[n.plane].offset,
         children: n.children.map(child),
@@ -159,7 +159,7 @@ pub(crate) fn map_case() -> Case {
     parts.locator = Locator::build(&parts.cell_bounds(), 3);
     let table = Table::new(parts).expect("boxes around leafs");
     let listed = vec![Vec::new(); table.n_cells()];
-    let tree = WorldTree { nodes, faces: Vec::new(), listed };
+    let tree = MapTree { nodes, faces: Vec::new(), listed };
     Case { name: "map", table, real: Real::Map(graph, tree), least_caught: [0.75, 1.0] }
 }
 

@@ -8,7 +8,7 @@ use sightlines_pvs::{
     BitMatrix, CellId, CellRecord, Locator, PlaneChild, PlaneNode, PlaneTree, PortalRecord, Table, TableKind,
     TableParts,
 };
-use sightlines_walkthrough::{Answer, Frame};
+use sightlines_walkthrough::{AnswerKind, DrawList};
 use std::sync::Arc;
 
 /// Quarters of a unit: all coordinates of the tests are integers in this unit.
@@ -248,6 +248,6 @@ pub(crate) fn see(seen: &mut VisibleSet, n_cells: usize, cells: impl IntoIterato
     seen.add_cells(cells.into_iter().map(CellId));
 }
 
-pub(crate) fn frame<'a>(seen: &'a VisibleSet, answer: Answer) -> Frame<'a> {
-    Frame { seen, at: &[], answer, method: sightlines_eye_to_cell::Method::Exact, images: &[], ahead: &[] }
+pub(crate) fn frame<'a>(seen: &'a VisibleSet, answer: AnswerKind) -> DrawList<'a> {
+    DrawList { seen, at: &[], answer, method: sightlines_eye_to_cell::Method::Exact, images: &[], ahead: &[] }
 }

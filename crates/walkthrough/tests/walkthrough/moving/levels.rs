@@ -1,7 +1,7 @@
 //! Levels that are read while the original is drawn.
 
 use sightlines_pvs::CellId;
-use sightlines_walkthrough::{Draw, LevelError, LevelIndex, LevelSize, Levels, LoadLevel};
+use sightlines_walkthrough::{Draw, LevelError, LevelIndex, LevelPrefetcher, LevelSize, LoadLevel};
 use std::sync::{Arc, Mutex};
 
 /// Returns the number of a level while it is allowed to, and records the requests.
@@ -36,7 +36,7 @@ fn cells(ids: &[u32]) -> Vec<CellId> {
 }
 
 /// Runs frames until all requested levels have arrived; returns the last one.
-fn settle(levels: &mut Levels<Loader>, at: &[u32], ahead: &[u32]) -> Draw<String> {
+fn settle(levels: &mut LevelPrefetcher<Loader>, at: &[u32], ahead: &[u32]) -> Draw<String> {
     levels.frame(&cells(at), &cells(ahead));
     while !levels.is_idle() {
         std::thread::yield_now();
@@ -65,7 +65,7 @@ fn levels_are_for_all_cells_that_the_eye_is_in() {
 fn originals_are_drawn_until_a_level_comes() {
     let loader = Loader::default();
     *loader.is_shut.lock().unwrap() = true;
-    let mut levels = Levels::new(index(), loader.clone(), 1000);
+    let mut levels = LevelPrefetcher::new(index(), loader.clone(), 1000);
     // The loader is blocked: if a frame waited, this would never end.
     for _ in 0..1000 {
         assert_eq!(levels.frame(&cells(&[0]), &cells(&[2])), Draw::Original);
@@ -89,7 +89,7 @@ fn originals_are_drawn_until_a_level_comes() {
 #[test]
 fn budget_of_levels_is_kept() {
     let loader = Loader::default();
-    let mut levels = Levels::new(index(), loader.clone(), 150);
+    let mut levels = LevelPrefetcher::new(index(), loader.clone(), 150);
     for k in 0..20 {
         let (here, ahead) = if k % 2 == 0 { (0, 2) } else { (2, 0) };
         assert_eq!(settle(&mut levels, &[here], &[ahead, 5]), level(k % 2));
@@ -100,14 +100,14 @@ fn budget_of_levels_is_kept() {
     assert_eq!(settle(&mut levels, &[5], &[]), Draw::Original);
     assert_eq!(levels.counters().late, n_late);
     assert!(!loader.asked.lock().unwrap().contains(&2));
-    let mut rich = Levels::new(index(), loader, 5200);
+    let mut rich = LevelPrefetcher::new(index(), loader, 5200);
     assert_eq!(settle(&mut rich, &[5], &[0, 2]), level(2));
     assert_eq!(rich.kept(), (5200, 3));
 }
 
 #[test]
 fn failures_are_reported_and_the_original_is_drawn() {
-    let mut levels = Levels::new(index(), Loader { fails: Some(1), ..Loader::default() }, 1000);
+    let mut levels = LevelPrefetcher::new(index(), Loader { fails: Some(1), ..Loader::default() }, 1000);
     let error = loop {
         assert_eq!(levels.frame(&cells(&[3]), &[]), Draw::Original);
         if let Some(error) = levels.take_error() {
@@ -120,7 +120,7 @@ fn failures_are_reported_and_the_original_is_drawn() {
 
 #[test]
 fn forgotten_cells_draw_the_original() {
-    let mut levels = Levels::new(index(), Loader::default(), 1000);
+    let mut levels = LevelPrefetcher::new(index(), Loader::default(), 1000);
     assert_eq!(settle(&mut levels, &[0], &[]), level(0));
     levels.forget(cells(&[0, 77]));
     assert_eq!(settle(&mut levels, &[0], &[]), Draw::Original);
@@ -128,7 +128,7 @@ fn forgotten_cells_draw_the_original() {
     assert_eq!(settle(&mut levels, &[1], &[]), level(0));
     assert_eq!(levels.index().level_of(CellId(0)), None);
     // An index from which a level was removed earlier.
-    let mut levels = Levels::new(levels.index().clone(), Loader::default(), 1000);
+    let mut levels = LevelPrefetcher::new(levels.index().clone(), Loader::default(), 1000);
     assert_eq!(settle(&mut levels, &[1], &[0, 2]), level(0));
     assert_eq!(levels.read(), (2, 0));
 }

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use sightlines_eye_to_cell::{TableCells, VisibleSet};
 use sightlines_geometry::Aabb;
 use sightlines_pvs::{CellId, Table};
-use sightlines_walkthrough::{Answer, CellBoxes, Motion, MoverId, MoverOptions, Movers};
+use sightlines_walkthrough::{AnswerKind, CellBoxes, Motion, MoverId, MoverOptions, Movers};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -150,8 +150,8 @@ impl Game {
         for thing in self.things.values_mut() {
             thing.go(quarters, &mut self.chance);
         }
-        let answer = if self.chance.one_in(20) { Answer::Outside } else { Answer::Full };
-        if answer == Answer::Outside {
+        let answer = if self.chance.one_in(20) { AnswerKind::Outside } else { AnswerKind::Full };
+        if answer == AnswerKind::Outside {
             let n = self.grid.n_cells();
             see(&mut self.seen, n, 0..n as u32);
         } else if self.chance.one_in(3) {
@@ -161,7 +161,7 @@ impl Game {
         let (grid, things) = (&self.grid, &self.things);
         let reported = self.movers.frame(now, &frame(&self.seen, answer), &mut |id| float(&things[&id].at)).unwrap();
         let reported = reported.to_vec();
-        let outside = answer == Answer::Outside;
+        let outside = answer == AnswerKind::Outside;
         let plain = things.iter().filter(|(_, thing)| outside || grid.sees(&self.seen, &thing.at));
         let plain: Vec<MoverId> = plain.map(|(&id, _)| id).collect();
         self.n_reported += reported.len();
@@ -201,7 +201,7 @@ proptest! {
             let mut asked = Vec::new();
             let things = &game.things;
             let mut place = |id: MoverId| { asked.push(id); float(&things[&id].at) };
-            game.movers.frame(now, &frame(&game.seen, Answer::Full), &mut place).unwrap();
+            game.movers.frame(now, &frame(&game.seen, AnswerKind::Full), &mut place).unwrap();
             for turn in 0..3u32 {
                 let n = game.grid.n_cells() as u32;
                 let cells: Vec<CellId> = (0..n).filter(|cell| (cell + turn) % 3 == 0).map(CellId).collect();
@@ -279,7 +279,7 @@ fn asked_in_frames(n_movers: usize, n_frames: usize, motion: impl Fn(usize) -> M
     for k in 0..n_frames {
         let before = movers.counters();
         let place = &mut |id: MoverId| if id == seen_by { in_room(1) } else { in_room(8 + id.slot() % 56) };
-        let reported = movers.frame(k as f64 / 60.0, &frame(&seen, Answer::Full), place).unwrap();
+        let reported = movers.frame(k as f64 / 60.0, &frame(&seen, AnswerKind::Full), place).unwrap();
         assert_eq!(reported, [seen_by]);
         let after = movers.counters();
         asked.push(after.asked - before.asked);
@@ -314,7 +314,9 @@ fn frames_without_movers_look_at_nothing() {
     let mut seen = VisibleSet::new();
     see(&mut seen, 64, 0..64);
     for k in 0..100 {
-        assert!(movers.frame(f64::from(k), &frame(&seen, Answer::Full), &mut |_| unreachable!()).unwrap().is_empty());
+        assert!(
+            movers.frame(f64::from(k), &frame(&seen, AnswerKind::Full), &mut |_| unreachable!()).unwrap().is_empty()
+        );
     }
     assert_eq!((movers.counters().cells, movers.is_empty(), movers.n_entries()), (0, true, 0));
 }
@@ -332,7 +334,8 @@ fn volumes_shrink_when_they_come_into_view_for_nothing() {
     for k in 0..2400 {
         let at = (k / 120).min(17) as u32;
         see(&mut seen, 64, [at, at + 1]);
-        let reported = movers.frame(f64::from(k) / 60.0, &frame(&seen, Answer::Full), &mut |_| in_room(20)).unwrap();
+        let reported =
+            movers.frame(f64::from(k) / 60.0, &frame(&seen, AnswerKind::Full), &mut |_| in_room(20)).unwrap();
         assert!(reported.is_empty());
         let volume = movers.sleeps_in(id);
         widths.push(volume.map_or(0.0, |v| v.max[0] - v.min[0]));
@@ -358,20 +361,20 @@ fn regions_of_a_plane_say_nothing_in_space() {
     let n = space.table.n_cells();
     see(&mut seen, plane.table.n_cells(), [0]);
     for k in 0..10 {
-        assert!(movers.frame(f64::from(k), &frame(&seen, Answer::Full), &mut |_| at(0.0)).unwrap().is_empty());
+        assert!(movers.frame(f64::from(k), &frame(&seen, AnswerKind::Full), &mut |_| at(0.0)).unwrap().is_empty());
     }
     assert!(movers.sleeps_in(id).is_some());
     movers.replace(space.cells());
     see(&mut seen, n, [0]);
     for k in 10..20 {
-        assert!(movers.frame(f64::from(k), &frame(&seen, Answer::Full), &mut |_| at(0.0)).unwrap().is_empty());
+        assert!(movers.frame(f64::from(k), &frame(&seen, AnswerKind::Full), &mut |_| at(0.0)).unwrap().is_empty());
     }
     // The topmost cell of its column comes into view, and the mover is there.
     see(&mut seen, n, [n as u32 - 1]);
-    assert_eq!(movers.frame(20.0, &frame(&seen, Answer::Full), &mut |_| at(2.5)).unwrap(), [id]);
+    assert_eq!(movers.frame(20.0, &frame(&seen, AnswerKind::Full), &mut |_| at(2.5)).unwrap(), [id]);
     assert!(movers.broken().is_empty());
     // From outside everything is seen, including movers added after the frame.
-    movers.frame(21.0, &frame(&seen, Answer::Outside), &mut |_| at(2.5)).unwrap();
+    movers.frame(21.0, &frame(&seen, AnswerKind::Outside), &mut |_| at(2.5)).unwrap();
     let new = movers.add(at(0.0), Motion::ANY, 21.0).unwrap();
     assert_eq!(movers.also(&[], &mut |_| unreachable!()), [id, new]);
     movers.remove(id);

@@ -4,7 +4,7 @@ use crate::moving::grid::{frame, see};
 use crate::moving::movers::row;
 use sightlines_eye_to_cell::VisibleSet;
 use sightlines_geometry::Aabb;
-use sightlines_walkthrough::{Answer, Broken, BrokenPromise, Motion, MoverError, MoverId, MoverOptions, Movers};
+use sightlines_walkthrough::{AnswerKind, Broken, BrokenPromise, Motion, MoverError, MoverId, MoverOptions, Movers};
 
 fn at(x: f64) -> Aabb<3> {
     Aabb { min: [x, 0.25, 0.25], max: [x + 0.25, 0.75, 0.75] }
@@ -23,7 +23,7 @@ fn missed(promised: f64) -> (usize, Vec<Broken>) {
     for k in 0..6000 {
         let now = f64::from(k) / 60.0;
         let here = at((30.0 - now).max(0.5));
-        let reported = movers.frame(now, &frame(&seen, Answer::Full), &mut |_| here).unwrap();
+        let reported = movers.frame(now, &frame(&seen, AnswerKind::Full), &mut |_| here).unwrap();
         n_missed += usize::from(here.min[0] <= 4.0 && reported.is_empty());
         broken.extend_from_slice(movers.broken());
     }
@@ -53,7 +53,7 @@ fn broken_promises_are_reported_and_survived() {
     see(&mut seen, 8, [0]);
     let step =
         |movers: &mut Movers<_>, now: f64, seen: &VisibleSet, here: Aabb<3>| -> (Vec<MoverId>, Vec<BrokenPromise>) {
-            let reported = movers.frame(now, &frame(seen, Answer::Full), &mut |_| here).unwrap().to_vec();
+            let reported = movers.frame(now, &frame(seen, AnswerKind::Full), &mut |_| here).unwrap().to_vec();
             (reported, movers.broken().iter().map(|b| b.promise).collect())
         };
     assert_eq!(step(&mut movers, 1.0, &seen, at(5.25)), (vec![], vec![]));
@@ -87,7 +87,7 @@ fn nonsense_is_refused() {
     let id = movers.add(at(1.0), Motion::ANY, 3.0).unwrap();
     let mut seen = VisibleSet::new();
     see(&mut seen, 8, [1]);
-    let early = movers.frame(2.0, &frame(&seen, Answer::Full), &mut |_| unreachable!()).unwrap_err();
+    let early = movers.frame(2.0, &frame(&seen, AnswerKind::Full), &mut |_| unreachable!()).unwrap_err();
     assert_eq!(early.to_string(), "the time 2 is not finite, or before 3");
     assert_eq!(
         movers.moved(id, Aabb::EMPTY, 3.0).unwrap_err().to_string(),
@@ -108,7 +108,7 @@ fn what_reaches_beyond_all_cells_is_seen() {
     let id = movers.add(at(7.9), Motion::speed(0.0).unwrap(), 0.0).unwrap();
     let mut seen = VisibleSet::new();
     see(&mut seen, 8, [0]);
-    let view = frame(&seen, Answer::Full);
+    let view = frame(&seen, AnswerKind::Full);
     assert_eq!(movers.frame(0.0, &view, &mut |_| at(7.9)).unwrap(), [id]);
     assert!(movers.sees(&view, &at(7.9)) && !movers.sees(&view, &at(7.5)) && movers.sees(&view, &at(0.5)));
     // With a larger solid region it is not.

@@ -4,7 +4,7 @@ use crate::moving::grid::{Grid, Kind, grid};
 use sightlines_eye_to_cell::{Method, TableCells, View};
 use sightlines_geometry::Aabb;
 use sightlines_pvs::{CellId, PortalId, Table};
-use sightlines_walkthrough::{Answer, Motion, MoverOptions, Movers, WalkOptions, Walkthrough, same_portals};
+use sightlines_walkthrough::{AnswerKind, Motion, MoverOptions, Movers, WalkOptions, Walkthrough, same_portals};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -18,7 +18,7 @@ fn squares(solid: impl Fn(usize) -> bool) -> Grid {
 fn until_full(walk: &mut Walk, view: &View) -> BTreeSet<u32> {
     loop {
         let frame = walk.frame(view, Method::Exact);
-        if frame.answer == Answer::Full {
+        if frame.answer == AnswerKind::Full {
             return frame.seen.cells().iter().map(|cell| cell.0).collect();
         }
         std::thread::yield_now();
@@ -103,7 +103,10 @@ fn movers_follow_into_another_table() {
     let mut seen = sightlines_eye_to_cell::VisibleSet::new();
     crate::moving::grid::see(&mut seen, open.n_cells(), [0]);
     let place = |id: sightlines_walkthrough::MoverId| if id == ids[0] { at(5.5) } else { at(3.5) };
-    assert_eq!(movers.frame(0.0, &crate::moving::grid::frame(&seen, Answer::Full), &mut |id| place(id)).unwrap(), []);
+    assert_eq!(
+        movers.frame(0.0, &crate::moving::grid::frame(&seen, AnswerKind::Full), &mut |id| place(id)).unwrap(),
+        []
+    );
     assert_eq!((movers.n_awake(), movers.n_entries()), (0, 2));
     movers.replace(walled.cells());
     assert_eq!((movers.n_awake(), movers.n_entries(), movers.counters().asked), (0, 1, 2));
@@ -112,7 +115,7 @@ fn movers_follow_into_another_table() {
     assert_ne!(open.table.in_dimension().unwrap().at([5.5, 0.5]).cells()[0], cell);
     crate::moving::grid::see(&mut seen, walled.n_cells(), [cell.0]);
     assert_eq!(
-        movers.frame(0.01, &crate::moving::grid::frame(&seen, Answer::Full), &mut |id| place(id)).unwrap(),
+        movers.frame(0.01, &crate::moving::grid::frame(&seen, AnswerKind::Full), &mut |id| place(id)).unwrap(),
         [ids[0]]
     );
     // A table of another dimension wakes all.

@@ -1,6 +1,6 @@
 //! Proofs that boxes are hidden from each other: they hold, and changed ones do not.
 
-use super::super::{BlockedProof, Blockers, Branch, Shaft, ShaftVerdict, Target, Verdict};
+use super::super::{BlockedProof, Blockers, BoxTarget, Branch, Shaft, ShaftVerdict, Verdict};
 use super::BUDGET;
 use super::oracle::{Case, any_case, any_place, more, nudged};
 use proptest::prelude::*;
@@ -83,7 +83,7 @@ proptest! {
             rectangle.max[axis] += f64::from(by);
         }
         if surface {
-            other.target = Target::Surface;
+            other.target = BoxTarget::Surface;
         }
         prop_assert!(!other.obeys(&proof) || !other.is_open(), "{:?} of {:?}", proof, other);
     }

@@ -3,7 +3,7 @@
 mod certificates;
 mod oracle;
 
-use super::{Blockers, Shaft, ShaftLine, Target, Verdict};
+use super::{Blockers, BoxTarget, Shaft, ShaftLine, Verdict};
 use oracle::{Case, any_case, any_place, nudged};
 use proptest::prelude::*;
 use sightlines_geometry::Aabb;
@@ -118,7 +118,7 @@ fn boxes_see_each_other_through_slits_of_some_units() {
             let case = Case {
                 from: boxed([0.0, 1.0], [0.0, 2.0], [0.0, 1.0]),
                 to: boxed([5.0, 6.0], [0.0, 2.0], [0.5, 1.5]),
-                target: Target::Inside,
+                target: BoxTarget::Inside,
                 rectangles: walls.concat(),
             };
             let blockers = Blockers::new(case.rectangles.iter().copied());

@@ -9,7 +9,7 @@
 use super::super::super::exact::{self, Exact};
 use super::super::super::rows::Row;
 use super::super::super::witness::AxialWitness;
-use super::super::{ShaftLine, Target};
+use super::super::{BoxTarget, ShaftLine};
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};
@@ -21,7 +21,7 @@ use sightlines_geometry::Aabb;
 pub(super) struct Case {
     pub(super) from: Aabb<3>,
     pub(super) to: Aabb<3>,
-    pub(super) target: Target,
+    pub(super) target: BoxTarget,
     pub(super) rectangles: Vec<Aabb<3>>,
 }
 
@@ -73,7 +73,7 @@ impl Case {
             ways.push(others.iter().map(row).collect());
         }
         let entry = first_last(&self.to, forward, axis).0;
-        if ahead(forward[axis], entry, at) || (self.target == Target::Surface && entry == at) {
+        if ahead(forward[axis], entry, at) || (self.target == BoxTarget::Surface && entry == at) {
             let row = |&k: &usize| Row { early: k, late: axis, from: first_last(&self.to, forward, k).0, to: at };
             ways.push(others.iter().map(row).collect());
         }
@@ -150,7 +150,7 @@ impl Case {
             };
             (0..3).all(|k| k == axis || within(k))
                 && leave <= t
-                && (t < enter || (t == enter && self.target == Target::Inside))
+                && (t < enter || (t == enter && self.target == BoxTarget::Inside))
         };
         leave <= enter && !self.rectangles.iter().any(meets)
     }
@@ -218,7 +218,7 @@ pub(super) fn any_case() -> impl Strategy<Value = Case> {
         if surface && flat {
             to.max[axis] = to.min[axis];
         }
-        let target = if surface { Target::Surface } else { Target::Inside };
+        let target = if surface { BoxTarget::Surface } else { BoxTarget::Inside };
         let turned = |b: &Aabb<3>| {
             let turned = |p: [f64; 3]| [0, 1, 2].map(|k| p[(k + turn) % 3]);
             Aabb { min: turned(b.min), max: turned(b.max) }

@@ -6,7 +6,7 @@ use crate::borders::{middles, pairs};
 use crate::exact::{
     segment_and_polygon_apart, segment_and_triangle_apart, segment_crosses_polygon, segment_crosses_triangle, snapped,
 };
-use crate::sight::{Sight, Target};
+use crate::sight::{SightSegment, Target};
 use sightlines_cells::{CellId, Scene};
 use sightlines_geometry::{Aabb, BoxTree, Point3, Random};
 use sightlines_pvs::{PortalRecord, Table};
@@ -196,8 +196,8 @@ impl SolidWorld {
             })
     }
 
-    fn sight(from: u32, target: Target, segment: [Point3; 2]) -> Sight {
-        Sight { from: CellId(from), target, segment: segment.map(snapped) }
+    fn sight(from: u32, target: Target, segment: [Point3; 2]) -> SightSegment {
+        SightSegment { from: CellId(from), target, segment: segment.map(snapped) }
     }
 
     /// From a point to just behind where a ray meets something.
@@ -232,7 +232,7 @@ impl SolidWorld {
     }
 
     /// The sight along a ray to a point of an object, if nothing else is met before.
-    fn sight_of_object(&self, from: u32, object: u32, p: Point3, q: Point3) -> Option<Sight> {
+    fn sight_of_object(&self, from: u32, object: u32, p: Point3, q: Point3) -> Option<SightSegment> {
         let d = sub(q, p);
         // What is see-through is no obstacle, but may be the aim.
         let counts = |i: u32| self.stops_sight(i, p) || self.object_of[i as usize] == object && self.shows(i, p);
@@ -265,7 +265,7 @@ impl SolidWorld {
         Some(std::array::from_fn(|k| a[k] + (b[k] - a[k]) * u + (c[k] - a[k]) * v))
     }
 
-    fn aim_at_object(&self, from: u32, object: u32, tries: u32, random: &mut Random) -> Option<Sight> {
+    fn aim_at_object(&self, from: u32, object: u32, tries: u32, random: &mut Random) -> Option<SightSegment> {
         let extent = self.extent(object);
         for k in 0..tries {
             // What moves is aimed at where it may be, and every other time where it is at rest.
@@ -287,7 +287,7 @@ impl SolidWorld {
         None
     }
 
-    fn aim_at_cell(&self, table: &Table, from: u32, to: u32, tries: u32, random: &mut Random) -> Option<Sight> {
+    fn aim_at_cell(&self, table: &Table, from: u32, to: u32, tries: u32, random: &mut Random) -> Option<SightSegment> {
         let boxes = [&self.cells[from as usize], &self.cells[to as usize]];
         let is_good = |segment| self.proves(&Self::sight(from, Target::Cell(CellId(to)), segment));
         // A few beginnings, each moved for a while.
@@ -340,7 +340,7 @@ fn meet(p: Point3, d: Point3, [a, b, c]: &[Point3; 3]) -> Option<f64> {
 impl RayOracle for SolidWorld {
     const CELLS_ARE_CONVEX: bool = true;
 
-    fn shoot(&self, from: u32, random: &mut Random, visit: &mut dyn FnMut(Sight)) -> Option<()> {
+    fn shoot(&self, from: u32, random: &mut Random, visit: &mut dyn FnMut(SightSegment)) -> Option<()> {
         let p = self.place(from, random)?;
         let d = random.direction();
         let (far, first) = self.hit(p, d, 2.0 * self.size);
@@ -386,7 +386,7 @@ impl RayOracle for SolidWorld {
         Some(())
     }
 
-    fn proves(&self, sight: &Sight) -> bool {
+    fn proves(&self, sight: &SightSegment) -> bool {
         let [p, q] = sight.segment;
         if p == q || !self.is_inside(sight.from.0, p) || !self.is_in_air(p) {
             return false;
@@ -400,7 +400,7 @@ impl RayOracle for SolidWorld {
         }
     }
 
-    fn aim(&self, table: &Table, from: u32, target: Target, tries: u32, random: &mut Random) -> Option<Sight> {
+    fn aim(&self, table: &Table, from: u32, target: Target, tries: u32, random: &mut Random) -> Option<SightSegment> {
         match target {
             Target::Cell(to) => self.aim_at_cell(table, from, to.0, tries, random),
             Target::Object(object) => self.aim_at_object(from, object, tries, random),
@@ -409,7 +409,13 @@ impl RayOracle for SolidWorld {
 
     const SAMPLES: [bool; 2] = [true, true];
 
-    fn sample(&self, from: u32, target: Target, random: &mut Random, may_lead: &dyn Fn(&Sight) -> bool) -> Sample {
+    fn sample(
+        &self,
+        from: u32,
+        target: Target,
+        random: &mut Random,
+        may_lead: &dyn Fn(&SightSegment) -> bool,
+    ) -> Sample {
         let Some(p) = self.any_place(from, random) else { return Sample::Nowhere };
         let end = match target {
             Target::Cell(to) => self.any_place(to.0, random),
@@ -449,7 +455,7 @@ impl RayOracle for SolidWorld {
         segment_crosses_polygon(p, q, &portal.points)
     }
 
-    fn through_borders(&self, from: u32, portals: &[&PortalRecord]) -> Vec<Sight> {
+    fn through_borders(&self, from: u32, portals: &[&PortalRecord]) -> Vec<SightSegment> {
         let own = &self.cells[from as usize];
         let touches = |b: &Aabb<3>| (0..3).all(|k| b.min[k] <= own.max[k] && own.min[k] <= b.max[k]);
         let (mut found, mut near) = (Vec::new(), Vec::new());
@@ -466,7 +472,7 @@ impl RayOracle for SolidWorld {
 
 impl SolidWorld {
     /// Segments through the border of two boxes, of which the second lies beyond the first along an axis.
-    fn through_border(&self, [from, to]: [u32; 2], axis: usize, portals: &[&PortalRecord]) -> Vec<Sight> {
+    fn through_border(&self, [from, to]: [u32; 2], axis: usize, portals: &[&PortalRecord]) -> Vec<SightSegment> {
         let [a, b] = [from, to].map(|cell| &self.cells[cell as usize]);
         let place = a.max[axis];
         let across = [(axis + 1) % 3, (axis + 2) % 3];

@@ -2,7 +2,7 @@
 
 use super::{RayOracle, Sample, at, dot, extreme, length, scale_of, sub};
 use crate::exact::{segment_crosses_polygon, snapped};
-use crate::sight::{Sight, Target};
+use crate::sight::{SightSegment, Target};
 use sightlines_cells::{CellGraph, CellId, Convex};
 use sightlines_geometry::{Point3, Portal3, Random, orient3d};
 use sightlines_pvs::{PortalRecord, Table};
@@ -147,21 +147,21 @@ fn of_portal(shape: &Portal3, random: &mut Random) -> Point3 {
 impl RayOracle for PortalWorld {
     const CELLS_ARE_CONVEX: bool = false;
 
-    fn shoot(&self, from: u32, random: &mut Random, visit: &mut dyn FnMut(Sight)) -> Option<()> {
+    fn shoot(&self, from: u32, random: &mut Random, visit: &mut dyn FnMut(SightSegment)) -> Option<()> {
         let [p, q] = self.line(from, random)?;
         let d = sub(q, p);
         self.follow(from, p, d, |cell, enters, leaves| {
             if cell != from {
                 let t = leaves.map_or(enters + 1.0, |leaves| 0.5 * (enters + leaves));
                 let segment = [p, at(p, d, t)].map(snapped);
-                visit(Sight { from: CellId(from), target: Target::Cell(CellId(cell)), segment });
+                visit(SightSegment { from: CellId(from), target: Target::Cell(CellId(cell)), segment });
             }
             true
         });
         Some(())
     }
 
-    fn proves(&self, sight: &Sight) -> bool {
+    fn proves(&self, sight: &SightSegment) -> bool {
         let ([p, q], Target::Cell(to)) = (sight.segment, sight.target) else { return false };
         let mut arrives = false;
         self.follow(sight.from.0, p, sub(q, p), |cell, enters, _| {
@@ -172,7 +172,7 @@ impl RayOracle for PortalWorld {
     }
 
     /// Lines through a gate out of the one cell and a gate into the other, of which the farthest is moved on.
-    fn aim(&self, table: &Table, from: u32, target: Target, tries: u32, random: &mut Random) -> Option<Sight> {
+    fn aim(&self, table: &Table, from: u32, target: Target, tries: u32, random: &mut Random) -> Option<SightSegment> {
         let Target::Cell(to) = target else { return None };
         let leads = |cell: u32, other: CellId| {
             let list = self.gates[cell as usize].iter();
@@ -210,7 +210,7 @@ impl RayOracle for PortalWorld {
             });
             if let Some(t) = there {
                 let segment = [p, at(p, sub(q, p), t)].map(snapped);
-                let sight = Sight { from: CellId(from), target, segment };
+                let sight = SightSegment { from: CellId(from), target, segment };
                 if self.proves(&sight) {
                     return Some(sight);
                 }
@@ -225,7 +225,7 @@ impl RayOracle for PortalWorld {
     const SAMPLES: [bool; 2] = [false, false];
 
     /// Nothing: clusters that are known by their portals have no places.
-    fn sample(&self, _: u32, _: Target, _: &mut Random, _: &dyn Fn(&Sight) -> bool) -> Sample {
+    fn sample(&self, _: u32, _: Target, _: &mut Random, _: &dyn Fn(&SightSegment) -> bool) -> Sample {
         Sample::Nowhere
     }
 

@@ -3,8 +3,8 @@
 use super::convex::PortalWorld;
 use super::{RayOracle, Sample, at, clip, dot, extreme, length, scale_of, sub};
 use crate::exact::snapped;
-use crate::sight::{Sight, Target};
-use crate::truth::{WorldChild, WorldFace, WorldTree};
+use crate::sight::{SightSegment, Target};
+use crate::truth::{MapChild, MapFace, MapTree};
 use sightlines_cells::{CellGraph, CellId, Convex};
 use sightlines_geometry::{Aabb, BoxTree, Point3, Random};
 use sightlines_pvs::{PortalRecord, Table};
@@ -13,7 +13,7 @@ use sightlines_pvs::{PortalRecord, Table};
 #[derive(Debug)]
 pub(crate) struct MapWorld<'a> {
     portals: PortalWorld,
-    tree: &'a WorldTree,
+    tree: &'a MapTree,
     cells: Vec<Aabb<3>>,
     faces: BoxTree<3>,
     size: f64,
@@ -43,9 +43,9 @@ struct Stay {
 }
 
 impl<'a> MapWorld<'a> {
-    pub(crate) fn new(table: &Table, graph: &CellGraph<Convex>, tree: &'a WorldTree) -> Self {
+    pub(crate) fn new(table: &Table, graph: &CellGraph<Convex>, tree: &'a MapTree) -> Self {
         let cells: Vec<Aabb<3>> = table.cells().iter().map(|c| Aabb { min: c.min, max: c.max }).collect();
-        let boxes: Vec<Aabb<3>> = tree.faces.iter().map(WorldFace::bounds).collect();
+        let boxes: Vec<Aabb<3>> = tree.faces.iter().map(MapFace::bounds).collect();
         let scale = scale_of(cells.iter().flat_map(|b| b.min.into_iter().chain(b.max)));
         Self { portals: PortalWorld::new(graph), tree, cells, faces: BoxTree::build(&boxes, 4), size: 4.0 * scale }
     }
@@ -56,15 +56,15 @@ impl<'a> MapWorld<'a> {
         if self.tree.nodes.is_empty() {
             return found;
         }
-        let mut open = vec![(WorldChild::Node(0), 0.0f64, 1.0f64)];
+        let mut open = vec![(MapChild::Node(0), 0.0f64, 1.0f64)];
         while let Some((child, from, to)) = open.pop() {
             let node = match child {
-                WorldChild::Node(node) => &self.tree.nodes[node as usize],
-                WorldChild::Cluster(cluster) => {
+                MapChild::Node(node) => &self.tree.nodes[node as usize],
+                MapChild::Cluster(cluster) => {
                     found.push(Stretch { from, to, cluster: Some(cluster) });
                     continue;
                 }
-                WorldChild::Solid => {
+                MapChild::Solid => {
                     found.push(Stretch { from, to, cluster: None });
                     continue;
                 }
@@ -157,7 +157,7 @@ impl<'a> MapWorld<'a> {
     /// Where a segment crosses a face from one side to the other, further from its edges than the margin: the share of the segment, and the
     /// polygon of the face.
     fn crosses_face(&self, face: u32, p: Point3, q: Point3) -> Option<(f64, &'a [Point3])> {
-        let tree: &'a WorldTree = self.tree;
+        let tree: &'a MapTree = self.tree;
         let polygons = tree.faces[face as usize].polygons.iter();
         polygons.map(|corners| &corners[..]).find_map(|corners| Some((Self::crosses(corners, p, q)?, corners)))
     }
@@ -203,7 +203,7 @@ impl<'a> MapWorld<'a> {
     }
 
     /// Proposes the faces behind which a ray is in something solid.
-    fn propose_faces(&self, from: u32, p: Point3, d: Point3, end: f64, visit: &mut dyn FnMut(Sight)) {
+    fn propose_faces(&self, from: u32, p: Point3, d: Point3, end: f64, visit: &mut dyn FnMut(SightSegment)) {
         // A little further than where it comes near something solid.
         let n = length(d);
         let q = at(p, d, end + 8.0 / n);
@@ -217,7 +217,7 @@ impl<'a> MapWorld<'a> {
                     // Two units behind it.
                     let behind = at(p, sub(q, p), t * (1.0 + 2.0 / height.max(MARGIN)));
                     let segment = [p, behind].map(snapped);
-                    visit(Sight { from: CellId(from), target: Target::Object(face), segment });
+                    visit(SightSegment { from: CellId(from), target: Target::Object(face), segment });
                 }
             },
         );
@@ -233,7 +233,7 @@ fn height(corners: &[Point3], p: Point3) -> f64 {
 impl RayOracle for MapWorld<'_> {
     const CELLS_ARE_CONVEX: bool = false;
 
-    fn shoot(&self, from: u32, random: &mut Random, visit: &mut dyn FnMut(Sight)) -> Option<()> {
+    fn shoot(&self, from: u32, random: &mut Random, visit: &mut dyn FnMut(SightSegment)) -> Option<()> {
         if random.below(2) == 0 {
             return self.portals.shoot(from, random, visit);
         }
@@ -242,13 +242,13 @@ impl RayOracle for MapWorld<'_> {
         let (stays, end) = self.stays(p, d);
         for stay in &stays {
             let segment = [p, at(p, d, 0.5 * (stay.from + stay.to))].map(snapped);
-            visit(Sight { from: CellId(from), target: Target::Cell(CellId(stay.cluster)), segment });
+            visit(SightSegment { from: CellId(from), target: Target::Cell(CellId(stay.cluster)), segment });
         }
         self.propose_faces(from, p, d, end, visit);
         Some(())
     }
 
-    fn proves(&self, sight: &Sight) -> bool {
+    fn proves(&self, sight: &SightSegment) -> bool {
         let [p, q] = sight.segment;
         match sight.target {
             Target::Cell(to) => self.is_free(sight.from.0, to.0, p, q) || self.portals.proves(sight),
@@ -256,21 +256,27 @@ impl RayOracle for MapWorld<'_> {
         }
     }
 
-    fn aim(&self, table: &Table, from: u32, target: Target, tries: u32, random: &mut Random) -> Option<Sight> {
+    fn aim(&self, table: &Table, from: u32, target: Target, tries: u32, random: &mut Random) -> Option<SightSegment> {
         let Target::Cell(to) = target else { return None };
         if let Some(sight) = self.portals.aim(table, from, target, tries, random) {
             return Some(sight);
         }
         (0..tries / 4).find_map(|_| {
             let segment = [self.place(from, random)?, self.place(to.0, random)?];
-            let sight = Sight { from: CellId(from), target, segment };
+            let sight = SightSegment { from: CellId(from), target, segment };
             self.proves(&sight).then_some(sight)
         })
     }
 
     const SAMPLES: [bool; 2] = [true, false];
 
-    fn sample(&self, from: u32, target: Target, random: &mut Random, may_lead: &dyn Fn(&Sight) -> bool) -> Sample {
+    fn sample(
+        &self,
+        from: u32,
+        target: Target,
+        random: &mut Random,
+        may_lead: &dyn Fn(&SightSegment) -> bool,
+    ) -> Sample {
         let Target::Cell(to) = target else { return Sample::Nowhere };
         let any_place = |cell: u32, random: &mut Random| {
             let p = snapped(random.point(&self.cells[cell as usize]));
@@ -279,7 +285,7 @@ impl RayOracle for MapWorld<'_> {
         };
         let Some(p) = any_place(from, random) else { return Sample::Nowhere };
         let Some(q) = any_place(to.0, random) else { return Sample::Nowhere };
-        let sight = Sight { from: CellId(from), target, segment: [p, q] };
+        let sight = SightSegment { from: CellId(from), target, segment: [p, q] };
         Sample::of((may_lead(&sight) && self.is_free(from, to.0, p, q)).then_some(sight))
     }
 
@@ -295,7 +301,7 @@ impl RayOracle for MapWorld<'_> {
         self.portals.crosses(portal, segment)
     }
 
-    fn proves_way(&self, sight: &Sight) -> bool {
+    fn proves_way(&self, sight: &SightSegment) -> bool {
         // What stays clear of all that is solid need not stay clear of the borders of portals.
         self.portals.proves(sight)
     }

@@ -1,4 +1,4 @@
-//! What is really there, ready for rays. Vectors and rays are written out here on purpose, as this checks what others compute. Doubles propose segments; what [`RayOracle::proves`] says alone counts.
+//! Ray oracles: what is really there, ready for rays. Vectors and rays are written out here on purpose, as this checks what others compute. Doubles propose segments; what [`RayOracle::proves`] says alone counts.
 
 mod climb;
 mod convex;
@@ -12,7 +12,7 @@ pub(crate) use plan::PlanWorld;
 pub(crate) use solid::SolidWorld;
 pub(crate) use world::MapWorld;
 
-use crate::sight::{Sight, Target};
+use crate::sight::{SightSegment, Target};
 use sightlines_geometry::{Aabb, Point3, Random};
 use sightlines_pvs::{PortalRecord, Table};
 
@@ -23,13 +23,13 @@ pub(crate) trait RayOracle: Sync {
 
     /// A ray in a random direction from a random place inside of a cell; `visit` gets what may be visible along it, as
     /// proposals. `None` if no place was found.
-    fn shoot(&self, from: u32, random: &mut Random, visit: &mut dyn FnMut(Sight)) -> Option<()>;
+    fn shoot(&self, from: u32, random: &mut Random, visit: &mut dyn FnMut(SightSegment)) -> Option<()>;
 
     /// Whether a sight is one: certainly, or the answer is no.
-    fn proves(&self, sight: &Sight) -> bool;
+    fn proves(&self, sight: &SightSegment) -> bool;
 
     /// Looks for a sight from a cell to a cell or an object, with about so many rays; what is found is proven.
-    fn aim(&self, table: &Table, from: u32, target: Target, tries: u32, random: &mut Random) -> Option<Sight>;
+    fn aim(&self, table: &Table, from: u32, target: Target, tries: u32, random: &mut Random) -> Option<SightSegment>;
 
     /// Whether [`RayOracle::sample`] knows places in cells, and on objects.
     const SAMPLES: [bool; 2];
@@ -38,7 +38,13 @@ pub(crate) trait RayOracle: Sync {
     /// the object, or in the box that it does not leave.
     ///
     /// * `may_lead`: rules out segments that cannot be free
-    fn sample(&self, from: u32, target: Target, random: &mut Random, may_lead: &dyn Fn(&Sight) -> bool) -> Sample;
+    fn sample(
+        &self,
+        from: u32,
+        target: Target,
+        random: &mut Random,
+        may_lead: &dyn Fn(&SightSegment) -> bool,
+    ) -> Sample;
 
     /// Whether one cell may see another that does not see it.
     fn has_one_way(&self) -> bool {
@@ -57,12 +63,12 @@ pub(crate) trait RayOracle: Sync {
     /// Short segments from inside of a cell to inside of the cells next to it, as proposals: one or more through each part of their common border that
     /// none of the cell's portals covers. A border of two cells has to be looked at from one of them only. None if cells are known by their portals
     /// alone.
-    fn through_borders(&self, _from: u32, _portals: &[&PortalRecord]) -> Vec<Sight> {
+    fn through_borders(&self, _from: u32, _portals: &[&PortalRecord]) -> Vec<SightSegment> {
         Vec::new()
     }
 
     /// Whether a sight to a cell is one along the portals that it crosses: certainly, or the answer is no.
-    fn proves_way(&self, sight: &Sight) -> bool {
+    fn proves_way(&self, sight: &SightSegment) -> bool {
         self.proves(sight)
     }
 }
@@ -75,12 +81,12 @@ pub(crate) enum Sample {
     /// It is not free for certain, or ruled out.
     Blocked,
     /// It is free, which is proven.
-    Free(Sight),
+    Free(SightSegment),
 }
 
 impl Sample {
     /// A segment that was shot.
-    pub(crate) fn of(free: Option<Sight>) -> Self {
+    pub(crate) fn of(free: Option<SightSegment>) -> Self {
         free.map_or(Self::Blocked, Self::Free)
     }
 }

@@ -6,8 +6,8 @@
 
 use super::{Gate, PortalWorld};
 use crate::exact::snapped;
-use crate::real::{RayOracle, at, dot, length, sub};
-use crate::sight::{Sight, Target};
+use crate::oracle::{RayOracle, at, dot, length, sub};
+use crate::sight::{SightSegment, Target};
 use sightlines_geometry::{Point3, Random};
 use sightlines_pvs::{CellId, Table};
 
@@ -38,7 +38,7 @@ impl PortalWorld {
         to: u32,
         tries: u32,
         random: &mut Random,
-    ) -> Option<Sight> {
+    ) -> Option<SightSegment> {
         let goals: Vec<Point3> = self.gates[to as usize].iter().map(|g| g.middle).collect();
         let goal = if goals.is_empty() { return None } else { crate::shapes::middle(&goals) };
         let mut search = Search {
@@ -57,7 +57,7 @@ impl PortalWorld {
 }
 
 impl Search<'_> {
-    fn go_on_from(&mut self, cell: u32, line: Option<[Point3; 2]>) -> Option<Sight> {
+    fn go_on_from(&mut self, cell: u32, line: Option<[Point3; 2]>) -> Option<SightSegment> {
         let world = self.world;
         let both =
             |c: u32| self.table.sees(CellId(self.from), CellId(c)) && self.table.sees(CellId(self.to), CellId(c));
@@ -87,14 +87,14 @@ impl Search<'_> {
         None
     }
 
-    fn sight(&self, [a, b]: [Point3; 2]) -> Option<Sight> {
+    fn sight(&self, [a, b]: [Point3; 2]) -> Option<SightSegment> {
         // From before the first gate to behind the last.
         let d = sub(b, a);
         let at_gate = |g: &Gate| dot(g.normal, sub(g.middle, a)) / dot(g.normal, d);
         let (first, last) = (at_gate(self.gates.first()?), at_gate(self.gates.last()?));
         let beside = 1.0 / length(d);
         let segment = [at(a, d, first - beside), at(a, d, last + beside)].map(snapped);
-        let sight = Sight { from: CellId(self.from), target: Target::Cell(CellId(self.to)), segment };
+        let sight = SightSegment { from: CellId(self.from), target: Target::Cell(CellId(self.to)), segment };
         self.world.proves(&sight).then_some(sight)
     }
 

@@ -4,7 +4,7 @@ use super::{RayOracle, Sample, at, chosen, clip, extreme, neighbours_of, scale_o
 use crate::borders::middles;
 use crate::exact::{segments_apart, snapped, strictly_in_polygon};
 use crate::shapes::{ends, outlines};
-use crate::sight::{Sight, Target};
+use crate::sight::{SightSegment, Target};
 use sightlines_cells::{CellId, Plan};
 use sightlines_geometry::{Aabb, BoxTree, Point2, Point3, Random, Segment2, orient2d, polygon_contains};
 use sightlines_pvs::{PortalRecord, Table};
@@ -177,9 +177,9 @@ impl PlanWorld {
         Some(Point2::new(x, y)).filter(|&p| self.is_inside(cell, p))
     }
 
-    fn sight(from: u32, target: Target, p: Point2, q: Point2) -> Sight {
+    fn sight(from: u32, target: Target, p: Point2, q: Point2) -> SightSegment {
         let lift = |p: Point2| snapped([p.x, p.y, 0.0]);
-        Sight { from: CellId(from), target, segment: [lift(p), lift(q)] }
+        SightSegment { from: CellId(from), target, segment: [lift(p), lift(q)] }
     }
 
     /// A random point of an object, its corners included.
@@ -216,7 +216,7 @@ fn has_rounded_crossings(plan: &Plan) -> bool {
 impl RayOracle for PlanWorld {
     const CELLS_ARE_CONVEX: bool = true;
 
-    fn shoot(&self, from: u32, random: &mut Random, visit: &mut dyn FnMut(Sight)) -> Option<()> {
+    fn shoot(&self, from: u32, random: &mut Random, visit: &mut dyn FnMut(SightSegment)) -> Option<()> {
         let p = self.place(from, random)?;
         if !self.objects.is_empty() && random.below(8) == 0 {
             let object = random.below(self.objects.len()) as u32;
@@ -242,7 +242,7 @@ impl RayOracle for PlanWorld {
         Some(())
     }
 
-    fn proves(&self, sight: &Sight) -> bool {
+    fn proves(&self, sight: &SightSegment) -> bool {
         let [p, q] = flat(sight.segment);
         let arrives = || match sight.target {
             Target::Cell(cell) => self.is_inside(cell.0, q),
@@ -259,7 +259,7 @@ impl RayOracle for PlanWorld {
         p != q && self.is_inside(sight.from.0, p) && arrives() && self.is_free(p, q)
     }
 
-    fn aim(&self, table: &Table, from: u32, target: Target, tries: u32, random: &mut Random) -> Option<Sight> {
+    fn aim(&self, table: &Table, from: u32, target: Target, tries: u32, random: &mut Random) -> Option<SightSegment> {
         if let Target::Cell(to) = target
             && let Some(sight) = self.through_slits(table, from, to.0, tries)
         {
@@ -278,7 +278,13 @@ impl RayOracle for PlanWorld {
 
     const SAMPLES: [bool; 2] = [true, true];
 
-    fn sample(&self, from: u32, target: Target, random: &mut Random, may_lead: &dyn Fn(&Sight) -> bool) -> Sample {
+    fn sample(
+        &self,
+        from: u32,
+        target: Target,
+        random: &mut Random,
+        may_lead: &dyn Fn(&SightSegment) -> bool,
+    ) -> Sample {
         let Some(p) = self.any_place(from, random) else { return Sample::Nowhere };
         let end = match target {
             Target::Cell(to) => self.any_place(to.0, random),
@@ -310,7 +316,7 @@ impl RayOracle for PlanWorld {
         across(orient2d(p, q, a), orient2d(p, q, b)) && across(orient2d(a, b, p), orient2d(a, b, q))
     }
 
-    fn through_borders(&self, from: u32, portals: &[&PortalRecord]) -> Vec<Sight> {
+    fn through_borders(&self, from: u32, portals: &[&PortalRecord]) -> Vec<SightSegment> {
         let corners = &self.cells[from as usize];
         let mut found = Vec::new();
         for (i, &start) in corners.iter().enumerate() {

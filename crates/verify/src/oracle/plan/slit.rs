@@ -6,7 +6,7 @@
 //! the one that tables are made by.
 
 use super::PlanWorld;
-use crate::sight::{Sight, Target};
+use crate::sight::{SightSegment, Target};
 use sightlines_geometry::{Point2, orient2d};
 use sightlines_pvs::{CellId, Table};
 
@@ -32,7 +32,7 @@ const LONGEST: usize = 64;
 
 impl PlanWorld {
     /// Looks for a sight through sequences of portals, with up to 8 steps for each try.
-    pub(super) fn through_slits(&self, table: &Table, from: u32, to: u32, tries: u32) -> Option<Sight> {
+    pub(super) fn through_slits(&self, table: &Table, from: u32, to: u32, tries: u32) -> Option<SightSegment> {
         let budget = tries.saturating_mul(8);
         let mut search = Search { world: self, table, from, to, budget, cells: vec![from] };
         search.go_on_from(from, None, &Sides::default())
@@ -41,7 +41,7 @@ impl PlanWorld {
 
 impl Search<'_> {
     /// Goes on from a cell, with a line that passes all portals so far.
-    fn go_on_from(&mut self, cell: u32, line: Option<[Point2; 2]>, before: &Sides) -> Option<Sight> {
+    fn go_on_from(&mut self, cell: u32, line: Option<[Point2; 2]>, before: &Sides) -> Option<SightSegment> {
         let world = self.world;
         for &(next, left, right) in &world.gates[cell as usize] {
             let sees = |a: u32, b: u32| self.table.sees(CellId(a), CellId(b));
@@ -68,13 +68,13 @@ impl Search<'_> {
         None
     }
 
-    fn try_lines(&self, line: [Point2; 2], mut sides: Sides) -> Option<Sight> {
+    fn try_lines(&self, line: [Point2; 2], mut sides: Sides) -> Option<SightSegment> {
         let best = middle_line(&mut sides).unwrap_or(line);
         [best, line].into_iter().find_map(|l| self.try_line(l))
     }
 
     /// Tries segments of a line from the one cell to the other.
-    fn try_line(&self, [a, b]: [Point2; 2]) -> Option<Sight> {
+    fn try_line(&self, [a, b]: [Point2; 2]) -> Option<SightSegment> {
         let everywhere = [f64::NEG_INFINITY, f64::INFINITY];
         let [p0, p1] = self.world.within(self.from, a, b - a, everywhere)?;
         let [q0, q1] = self.world.within(self.to, a, b - a, everywhere)?;
