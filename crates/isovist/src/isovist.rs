@@ -98,7 +98,7 @@ impl Visitor for Ends {
 }
 
 impl WallMesh {
-    /// The isovist of a point. For many points, a [`IsovistFinder`] saves memory.
+    /// The isovist of a point. For many points, an [`IsovistFinder`] saves memory.
     ///
     /// Exact: see [`Isovist`]. Cost: about 10 ns for each triangle that is seen, and 50 ns for each vertex.
     ///
