@@ -1,7 +1,7 @@
 //! Maps of space: what inserts and extrusion directions do.
 
-use super::angle::sin_cos;
 use crate::error::{Malformed, malformed};
+use sightlines_geometry::sin_cos;
 
 /// An insert of a block.
 #[derive(Debug)]

@@ -3,20 +3,19 @@
 use super::MAX_ELEMENTS;
 use super::expand::too_many;
 use crate::error::Malformed;
-use sightlines_geometry::{Aabb, Point2, Segment2, check_coordinate, orient2d};
+use sightlines_geometry::{Aabb, Point2, Region, Segment2, check_coordinate};
 
-/// A polygon in the world's coordinates. Its inside is what rays leave through an odd number of sides, and its border.
+/// What is inside of a clip, in the world's coordinates.
 #[derive(Debug)]
-struct Polygon {
-    sides: Vec<Segment2>,
-    bounds: Aabb<2>,
+struct Clip {
+    region: Region,
     /// The clip of the insert that this one is in.
     outer: Option<usize>,
 }
 
 /// The clips of all inserts that have one.
 #[derive(Debug, Default)]
-pub(super) struct Clips(Vec<Polygon>);
+pub(super) struct Clips(Vec<Clip>);
 
 impl Clips {
     /// Adds a polygon, of which only what is inside of `outer` counts.
@@ -27,22 +26,22 @@ impl Clips {
     ) -> Result<usize, Malformed> {
         let checked = |[x, y]: [f64; 2]| Ok(Point2::new(check_coordinate(x)?, check_coordinate(y)?));
         let corners = corners.map(checked).collect::<Result<Vec<_>, Malformed>>()?;
-        let bounds = Aabb::around(corners.iter().map(|p| [p.x, p.y]));
-        let ends = corners.iter().zip(corners.iter().cycle().skip(1));
-        self.0.push(Polygon { sides: ends.map(|(&a, &b)| Segment2 { a, b }).collect(), bounds, outer });
+        self.0.push(Clip { region: Region::new(&corners), outer });
         Ok(self.0.len() - 1)
     }
 
     /// The clip and those around it.
-    fn all(&self, clip: Option<usize>) -> impl Iterator<Item = &Polygon> {
+    fn all(&self, clip: Option<usize>) -> impl Iterator<Item = &Region> {
         let first = clip.map(|k| &self.0[k]);
-        std::iter::successors(first, |polygon| polygon.outer.map(|k| &self.0[k]))
+        std::iter::successors(first, |clip| clip.outer.map(|k| &self.0[k])).map(|clip| &clip.region)
     }
 
     /// The point of a clip's bounds that is nearest.
     pub(super) fn nearest(&self, clip: Option<usize>, point: [f64; 2]) -> [f64; 2] {
-        let into =
-            |p: [f64; 2], of: &Polygon| std::array::from_fn(|k| p[k].max(of.bounds.min[k]).min(of.bounds.max[k]));
+        let into = |p: [f64; 2], of: &Region| {
+            let Aabb { min, max } = of.bounds();
+            std::array::from_fn(|k| p[k].max(min[k]).min(max[k]))
+        };
         self.all(clip).fold(point, into)
     }
 
@@ -58,50 +57,13 @@ impl Clips {
         /// How many take as long as an element.
         const CHEAP: usize = 1 << 8;
         let mut parts = vec![line];
-        for polygon in self.all(clip) {
-            *n_compared += parts.len() * polygon.sides.len();
+        for region in self.all(clip) {
+            *n_compared += parts.len() * region.n_sides();
             if *n_compared / CHEAP > MAX_ELEMENTS {
                 return Err(too_many());
             }
-            parts = parts.into_iter().flat_map(|part| polygon.parts(part)).collect();
+            parts = parts.into_iter().flat_map(|part| region.parts(part)).collect();
         }
         Ok(parts)
-    }
-}
-
-impl Polygon {
-    fn contains(&self, p: Point2) -> bool {
-        let crosses = |side: &&Segment2| {
-            let [low, high] = if side.a.y < side.b.y { [side.a, side.b] } else { [side.b, side.a] };
-            (low.y <= p.y) != (high.y <= p.y) && orient2d(low, high, p) > 0.0
-        };
-        self.bounds.contains([p.x, p.y])
-            && (self.sides.iter().filter(crosses).count() % 2 == 1 || self.sides.iter().any(|side| side.contains(p)))
-    }
-
-    fn parts(&self, Segment2 { a, b }: Segment2) -> Vec<Segment2> {
-        // Where the line meets the lines of the sides, as shares of it.
-        let mut shares = vec![0.0, 1.0];
-        for side in &self.sides {
-            let [from, to] = [a, b].map(|p| orient2d(side.a, side.b, p));
-            if (from < 0.0) != (to < 0.0) {
-                shares.push((from / (from - to)).clamp(0.0, 1.0));
-            }
-        }
-        shares.sort_by(f64::total_cmp);
-        let at = |t: f64| match t {
-            0.0 => a,
-            1.0 => b,
-            _ => a + (b - a) * t,
-        };
-        let mut drawn: Vec<[f64; 2]> = Vec::new();
-        for pair in shares.windows(2).filter(|pair| self.contains(at(0.5 * (pair[0] + pair[1])))) {
-            match drawn.last_mut() {
-                Some(last) if last[1] == pair[0] => last[1] = pair[1],
-                _ => drawn.push([pair[0], pair[1]]),
-            }
-        }
-        let parts = drawn.into_iter().map(|share| share.map(at)).map(|[a, b]| Segment2 { a, b });
-        parts.filter(|part| part.a != part.b).collect()
     }
 }

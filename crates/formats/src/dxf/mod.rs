@@ -30,7 +30,6 @@
 //! Latin-1. Lines without length and lines that repeat others are dropped and counted ([`PlanFile`]).
 
 mod affine;
-mod angle;
 mod clip;
 mod curve;
 mod drawing;

@@ -1,5 +1,6 @@
 //! Bytes of a glTF: the GLB container, and the buffers of a document wherever they are.
 
+use super::gltf::UPGRADE;
 use super::json;
 use crate::beside::Neighbours;
 use crate::bytes::number_at;
@@ -23,6 +24,9 @@ pub(super) fn split_glb(file: &[u8]) -> Result<(&[u8], Option<&[u8]>), Malformed
     let (Some(version), Some(stated)) = (number_at(file, 4), number_at(file, 8)) else {
         return Err(malformed!("not a GLB: {len} bytes are less than a header"));
     };
+    if version == 1 {
+        return Err(malformed!("GLB version 1 is not 2; {UPGRADE}"));
+    }
     if version != 2 {
         return Err(malformed!("GLB version {version} is not 2"));
     }

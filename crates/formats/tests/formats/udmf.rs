@@ -131,6 +131,8 @@ fn what_is_wrong_is_named_with_its_line_and_column() {
             "linedef { v1 = 4294967296; v2 = 0; }",
             "line 1, column 16: v1 is 4294967296, but it takes the number of a block",
         ),
+        ("linedef { v1 = 08; v2 = 0; }", "line 1, column 16: v1 is 08, but it takes the number of a block"),
+        ("linedef { v1 = 0; v2 = 0; special = a; }", "line 1, column 37: special is a, but it takes a whole number"),
         ("linedef { v1 = 0x; v2 = 0; }", "line 1, column 16: v1 is 0x, but it takes the number of a block"),
         (
             "linedef { v1 = 0; v2 = 0; sideback = -2; }",
@@ -311,4 +313,23 @@ fn what_has_no_end_is_named_where_it_begins() {
     ] {
         assert_eq!(refused(text), error, "{text}");
     }
+}
+
+/// A byte order mark, zeros that fill the lump up, line ends of old programs, and numbers that all programs read the same way.
+#[test]
+fn texts_are_read_as_programs_write_them() {
+    let text = triangle("linedef { v1 = 02; v2 = 001; sidefront = -01; special = 00; } // the last\n");
+    let expected = read(triangle("linedef { v1 = 2; v2 = 1; }\n").as_bytes()).unwrap();
+    let with = |before: &[u8], behind: &[u8]| [before, text.as_bytes(), behind].concat();
+    for bytes in [
+        with(b"", b""),
+        with(b"\xEF\xBB\xBF", b""),
+        with(b"", b"\0"),
+        with(b"\xEF\xBB\xBF", &[0; 100]),
+        text.replace('\n', "\r").into_bytes(),
+        text.replace('\n', "\r\n").into_bytes(),
+    ] {
+        assert_same(&read(&bytes).unwrap(), &expected);
+    }
+    assert!(read(&with(b"\0", b"")).is_err() && read(&with(b"", b"\0 x")).is_err());
 }

@@ -98,7 +98,7 @@ impl<'t> Lexer<'t> {
             let rest = &self.text[self.at..];
             match rest {
                 [first, ..] if first.is_ascii_whitespace() => self.step(),
-                [b'/', b'/', ..] => self.at += rest.iter().position(|&b| b == b'\n').unwrap_or(rest.len()),
+                [b'/', b'/', ..] => self.at += rest.iter().position(|b| b"\r\n".contains(b)).unwrap_or(rest.len()),
                 [b'/', b'*', ..] => self.comment()?,
                 _ => return Ok(()),
             }
