@@ -229,14 +229,3 @@ impl Builder {
 pub(super) fn is_flat(b: &Aabb<3>) -> bool {
     (0..3).any(|axis| b.min[axis] >= b.max[axis])
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn unused_corners_are_left_out() {
-        let compact = Compact::new(vec![9, 4, 4, 7], [[9, 4, 7]].into_iter());
-        assert_eq!((compact.corners, compact.triangles), (vec![4, 7, 9], vec![[2, 0, 1]]));
-    }
-}

@@ -130,8 +130,10 @@ pub(super) fn split(bytes: &[u8]) -> Result<(&str, Option<&[u8]>), Malformed> {
     Ok((text, binary))
 }
 
-/// How version 1 becomes version 2.
-pub(super) const UPGRADE: &str = "`npx gltf-pipeline -i IN.gltf -o OUT.glb` makes version 2 of version 1";
+/// The command that makes version 2 of a file of version 1.
+pub(super) fn upgrade(is_first: bool) -> &'static str {
+    if is_first { "; `npx gltf-pipeline -i IN.gltf -o OUT.glb` makes version 2 of version 1" } else { "" }
+}
 
 /// The version that a text states which may be of another one; that which is read if there is no telling.
 fn stated_version(text: &str) -> String {
@@ -141,10 +143,11 @@ fn stated_version(text: &str) -> String {
 }
 
 fn check_version(version: &str) -> Result<(), Malformed> {
-    match version.split('.').next() {
-        Some("2") => Ok(()),
-        Some("1") => Err(malformed!("glTF version {version:?} is not 2.x; {UPGRADE}")),
-        _ => Err(malformed!("glTF version {version:?} is not 2.x")),
+    let first = version.split('.').next();
+    if first == Some("2") {
+        Ok(())
+    } else {
+        Err(malformed!("glTF version {version:?} is not 2.x{}", upgrade(first == Some("1"))))
     }
 }
 

@@ -41,7 +41,12 @@ impl LocalMesh {
             let [a, b, c] = triangle_of(primitive.mode, k).map(|place| corners[place]);
             Some([a?, b?, c?])
         });
-        let mesh = Compact::new(corners.iter().flatten().copied().collect(), triangles);
+        let mut used: Vec<usize> = corners.iter().flatten().copied().collect();
+        if used.is_empty() {
+            // Without triangles, but somewhere.
+            used.extend(0..positions.count);
+        }
+        let mesh = Compact::new(used, triangles);
         let positions = mesh.corners.iter().map(|&k| positions.position(k)).collect();
         let n_left_out = n_triangles - mesh.triangles.len();
         Ok(Self { mesh, positions, left_out: wrong.filter(|_| n_left_out > 0).map(|what| (n_left_out, what)) })

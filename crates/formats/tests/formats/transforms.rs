@@ -1,8 +1,8 @@
-//! Transforms of nodes: rotations by right angles, and mirrors, which turn triangles round.
+//! Transforms of nodes: rotations by right angles, and mirrors, which turn triangles round. And what objects have of the corners in a file.
 
 use crate::common::glb::Doc;
 use serde_json::{Value, json};
-use sightlines_formats::scene::parse_glb;
+use sightlines_formats::scene::{parse_glb, parse_obj};
 
 /// Corners of an object with these, in nodes one in the other, and whether its triangle was turned round.
 fn placed(corners: &[[f32; 3]; 3], nodes: &[Value]) -> Option<(Vec<[f64; 3]>, bool)> {
@@ -48,4 +48,14 @@ fn mirrors_are_distinguished_from_turns() {
     let (twice, is_mirrored) = placed(&corners, &[swap.clone(), swap.clone()]).unwrap();
     let again = [once[0].map(|x| x as f32), corners[1], corners[2]];
     assert_eq!((twice[0], is_mirrored), (placed(&again, &[swap]).unwrap().0[0], false));
+}
+
+/// Objects have the corners that their faces use, in the order of the file.
+#[test]
+fn unused_corners_are_left_out() {
+    let corners: String = (0..10).map(|k| format!("v {k} {} 0\n", k * k)).collect();
+    let file = parse_obj(format!("{corners}f 10 5 8\nf 5 5 8\n").as_bytes()).unwrap();
+    let object = &file.scene.objects()[0];
+    assert_eq!(object.vertices, [[4., 16., 0.], [7., 49., 0.], [9., 81., 0.]]);
+    assert_eq!(object.triangles, [[2, 0, 1]]);
 }

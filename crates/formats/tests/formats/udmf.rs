@@ -15,7 +15,11 @@ fn read(text: &[u8]) -> Result<DoomMap, Malformed> {
 
 fn refused(text: &str) -> String {
     let error = read(text.as_bytes()).unwrap_err();
-    error.to_string().strip_prefix("map MAP01: TEXTMAP: ").expect("the place first").to_owned()
+    error
+        .to_string()
+        .strip_prefix("map MAP01: TEXTMAP: ")
+        .unwrap_or_else(|| panic!("the place comes first: {error}"))
+        .to_owned()
 }
 
 /// The binary map of two rooms.
@@ -151,7 +155,7 @@ fn what_is_wrong_is_named_with_its_line_and_column() {
         ("vertex", "line 1, column 7: = or { is expected, not the end of the text"),
         ("a = ;", "line 1, column 5: a value is expected, not ;"),
         ("}", "line 1, column 1: a name is expected, not }"),
-        ("\u{feff}a = 1;", "line 1, column 1: a name is expected, not \\xef\\xbb\\xbfa"),
+        ("a = 1; \u{feff}b = 1;", "line 1, column 8: a name is expected, not \\xef\\xbb\\xbfb"),
         ("a = \"\n\n", "line 1, column 5: this string has no end"),
         ("// a\n/* b", "line 2, column 1: this comment has no end"),
     ];

@@ -86,7 +86,7 @@ fn clips_that_are_off_show_all_and_depth_is_ignored() {
     let below = vec![[5.0, 0.0, 5.0, 2.0]];
     let deep = Dxf::new().put(71, 1).put(72, 1).put(40, 3).put(73, 1).put(41, -3);
     assert_eq!(one(&at_five(), &corners, &deep, [IDENTITY; 2]), (below.clone(), vec![]));
-    // Where the insert was when it was clipped counts, not where it is: 10 to the right, turned by a quarter.
+    // Where the insert was when it was clipped counts, not where it is.
     let to_block = [0.0, 1.0, 0.0, 2.0, -1.0, 0.0, 0.0, 11.0, 0.0, 0.0, 1.0, 0.0];
     // The block's (0, 0) and (4, 3) were at (11, -2) and (8, 2).
     let found = one(&at_five(), &[[11.0, -2.0], [8.0, 2.0]], &Dxf::new(), [to_block, IDENTITY]);
@@ -119,10 +119,11 @@ fn inserts_whose_clip_is_not_understood_are_left_out() {
     let of = |objects: &Dxf| {
         lines(&read(&file(&partition(), &clipped(&at_five(), 0x34).line("0", [0.0; 2], [9.0, 0.0]), objects)))
     };
-    let dictionary = |key: &str| Dxf::new().put(0, "DICTIONARY").put(5, 34).put(3, key).put(350, 35);
-    assert_eq!(of(&dictionary("ACAD_FILTER")).len(), 1);
-    assert_eq!(of(&dictionary("ACAD_FILTER").add(&dictionary("SPATIAL").put(5, 35))).len(), 1);
-    assert_eq!(of(&dictionary("ACAD_GROUP")).len(), 2);
+    let dictionary = |own: u8, key: &str| Dxf::new().put(0, "DICTIONARY").put(5, own).put(3, key).put(350, own + 1);
+    assert_eq!(of(&dictionary(34, "ACAD_FILTER")).len(), 1);
+    assert_eq!(of(&dictionary(34, "ACAD_FILTER").add(&dictionary(35, "SPATIAL"))).len(), 1);
+    assert_eq!(of(&dictionary(34, "ACAD_FILTER").add(&dictionary(35, "LAYER"))).len(), 2);
+    assert_eq!(of(&dictionary(34, "ACAD_GROUP")).len(), 2);
     assert_eq!(of(&Dxf::new()).len(), 2);
 }
 
