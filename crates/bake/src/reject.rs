@@ -1,8 +1,8 @@
 //! REJECT lumps: which sectors of a Doom map cannot see each other.
 //!
 //! # The flat model
-//! Sight ignores heights. A line lets sight through if and only if it is marked two-sided; nothing else
-//! about it matters, because doors and lifts move and a REJECT bit cannot. The map's regions are the
+//! Sight ignores heights. A line lets sight through if it is marked two-sided, if it has a left side and the engine is not known to be one of Doom
+//! ([`RejectOptions::game`]), and if it is of a polyobject; nothing else about it matters, because doors and lifts move and a REJECT bit cannot. The map's regions are the
 //! faces of the arrangement of all its lines; a region belongs to every sector that a side facing it
 //! names. Sector A sees sector B if an open set of segments without a closed one-sided line in their way
 //! leads from a region of A into a region of B.
@@ -28,7 +28,7 @@ pub use wads::{RejectMaps, RejectTables, RejectWadsError, reject_wad, reject_wad
 
 use crate::error::BakeError;
 use crate::sectors::see_groups;
-use sightlines_formats::doom::{DoomMap, MapFormat, MapLumps, RmbFile};
+use sightlines_formats::doom::{DoomMap, Game, MapFormat, MapLumps, RmbFile};
 use sightlines_formats::{LumpName, Malformed, RejectTable, Wad, WadError};
 use sightlines_progress::{Halt, Observer, Units};
 use sightlines_pvs::BitMatrix;
@@ -44,6 +44,8 @@ pub struct RejectOptions<'a> {
     pub force: bool,
     /// One map that cannot be done is an error; otherwise the others are done.
     pub strict: bool,
+    /// The game that the tables are for, unless a map's format says it; without one they are right for every engine ([`DoomMap::plan_for`]).
+    pub game: Option<Game>,
     /// Effects to make in the tables that are built. The tables of maps that it has effects on are replaced, whatever they are.
     pub rmb: Option<&'a RmbFile>,
     /// Number of threads; 0 for one for each core. Changes nothing but the time.
@@ -60,6 +62,7 @@ impl std::fmt::Debug for RejectOptions<'_> {
             .field("maps", &self.maps)
             .field("force", &self.force)
             .field("strict", &self.strict)
+            .field("game", &self.game)
             .field("rmb", &self.rmb)
             .field("threads", &self.threads)
             .finish_non_exhaustive()
@@ -165,7 +168,7 @@ pub struct RejectSummary {
 /// [`RejectError::Bake`] if the map has no lines.
 pub fn reject_table(map: &DoomMap, options: &RejectOptions<'_>) -> Result<(RejectTable, RejectSummary), RejectError> {
     let bake = |kind: BakeError| RejectError::Bake { map: map.name(), kind };
-    let plan = map.plan().map_err(|kind| bake(kind.into()))?;
+    let plan = map.plan_for(options.game).map_err(|kind| bake(kind.into()))?;
     let search = SearchOptions { threads: options.threads, progress: options.progress, ..SearchOptions::default() };
     let (seen, cut) = see_groups(&plan, map.n_sectors(), &search).map_err(bake)?;
     let table = table_of(&seen, map.n_sectors());

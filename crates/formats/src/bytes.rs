@@ -5,6 +5,17 @@ pub(crate) fn without_mark(text: &[u8]) -> &[u8] {
     text.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(text)
 }
 
+/// What ends the lines of a text: LF, behind CR or not; CR alone in texts of old programs, which have no other.
+pub(crate) fn line_end(text: &[u8]) -> u8 {
+    if text.contains(&b'\n') { b'\n' } else { b'\r' }
+}
+
+/// The lines of a text; those that end in CR and LF with their CR.
+pub(crate) fn text_lines(text: &[u8]) -> impl Iterator<Item = &[u8]> {
+    let end = line_end(text);
+    text.split(move |&byte| byte == end)
+}
+
 /// The bytes at `at`, which the caller knows to be inside.
 pub(crate) fn bytes_at<const N: usize>(bytes: &[u8], at: usize) -> [u8; N] {
     let mut out = [0; N];

@@ -15,6 +15,7 @@ mod places;
 mod plan;
 mod quake;
 mod reject;
+mod reject_engines;
 mod reject_text;
 mod reject_units;
 mod reject_wads;

@@ -3,24 +3,37 @@
 
 use proptest::prelude::*;
 use sightlines_bake::{MapStatus, RejectError, RejectOptions, RejectOutcome, RejectSummary, reject_table, reject_wad};
-use sightlines_formats::doom::{DoomMapSource, ML_TWOSIDED, MapFormat, SourceLine, list_maps, write_doom_map};
+use sightlines_formats::doom::{DoomMapSource, Game, ML_TWOSIDED, MapFormat, SourceLine, list_maps, write_doom_map};
 use sightlines_formats::wad::WadKind;
 use sightlines_formats::{DoomMap, LumpName, RejectTable, Wad, WadBuilder};
+use sightlines_progress::Units;
 use sightlines_testkit::{draw, sector_visibility_brute_force};
 
 // --- Drawing maps ------------------------------------------------------------------------------------
 
 /// A flag of a line that players cannot cross, whatever sight does.
-const BLOCKING: u16 = 1;
+pub(crate) const BLOCKING: u16 = 1;
 
-type Corner = [i16; 2];
+/// Flags count, whatever sides lines have; the other engines have tests of their own.
+pub(crate) const FOR_DOOM: RejectOptions<'_> = RejectOptions {
+    maps: Vec::new(),
+    force: false,
+    strict: false,
+    game: Some(Game::Doom),
+    rmb: None,
+    threads: 1,
+    progress: None,
+    units: Units(None),
+};
+
+pub(crate) type Corner = [i16; 2];
 
 /// A map, drawn line by line.
 #[derive(Debug, Clone)]
 pub(crate) struct Sketch(pub(crate) DoomMapSource);
 
 impl Sketch {
-    fn new(n_sectors: u16) -> Self {
+    pub(crate) fn new(n_sectors: u16) -> Self {
         let (vertices, lines, things) = Default::default();
         Self(DoomMapSource { vertices, lines, n_sectors, things, reject: None, hexen: false })
     }
@@ -34,30 +47,30 @@ impl Sketch {
         u16::try_from(index).expect("a small map")
     }
 
-    fn line(mut self, [a, b]: [Corner; 2], flags: u16, right: Option<u16>, left: Option<u16>) -> Self {
+    pub(crate) fn line(mut self, [a, b]: [Corner; 2], flags: u16, right: Option<u16>, left: Option<u16>) -> Self {
         let (v1, v2) = (self.vertex(a), self.vertex(b));
         self.0.lines.push(SourceLine { v1, v2, flags, right, left });
         self
     }
 
     /// One-sided lines from corner to corner, `sector` on their right hand.
-    fn walls(self, corners: &[Corner], sector: u16) -> Self {
+    pub(crate) fn walls(self, corners: &[Corner], sector: u16) -> Self {
         corners.windows(2).fold(self, |map, w| map.line([w[0], w[1]], BLOCKING, Some(sector), None))
     }
 
     /// Two-sided lines from corner to corner.
-    fn open(self, corners: &[Corner], right: u16, left: u16) -> Self {
+    pub(crate) fn open(self, corners: &[Corner], right: u16, left: u16) -> Self {
         corners.windows(2).fold(self, |map, w| map.line([w[0], w[1]], ML_TWOSIDED, Some(right), Some(left)))
     }
 
     /// A closed room, its sides clockwise, so that `sector` is on their right hand.
-    fn room(self, low: Corner, high: Corner, sector: u16) -> Self {
+    pub(crate) fn room(self, low: Corner, high: Corner, sector: u16) -> Self {
         self.walls(&ring(low, high), sector)
     }
 }
 
 /// The corners of a box, clockwise, the first again at the end.
-fn ring([x0, y0]: Corner, [x1, y1]: Corner) -> [Corner; 5] {
+pub(crate) fn ring([x0, y0]: Corner, [x1, y1]: Corner) -> [Corner; 5] {
     [[x0, y0], [x0, y1], [x1, y1], [x1, y0], [x0, y0]]
 }
 
@@ -72,7 +85,7 @@ pub(crate) fn with_door(n_sectors: u16) -> Sketch {
 }
 
 pub(crate) fn with_wall(n_sectors: u16) -> Sketch {
-    two_rooms(n_sectors, |map, line| map.line(line, BLOCKING, Some(1), Some(0)))
+    two_rooms(n_sectors, |map, line| map.line(line, BLOCKING, Some(1), None))
 }
 
 fn name(text: &str) -> LumpName {
@@ -89,7 +102,7 @@ pub(crate) fn read(wad: &Wad) -> DoomMap {
 
 /// The table in the lump that is written for a map, by way of the file.
 fn table(map: &Sketch) -> RejectTable {
-    let outcome = reject_wad(&wad_of(map), &RejectOptions { force: true, ..RejectOptions::default() }).unwrap();
+    let outcome = reject_wad(&wad_of(map), &RejectOptions { force: true, ..FOR_DOOM }).unwrap();
     let MapStatus::Written(summary) = outcome.maps[0].status else { panic!("a table is written") };
     let map = read(&Wad::parse(outcome.bytes).unwrap());
     let table = RejectTable::from_bytes(map.n_sectors(), map.reject().expect("a lump")).unwrap();
@@ -194,7 +207,7 @@ fn sectors_without_lines_see_only_themselves() {
     }
 }
 
-/// The flag decides, not the number of sides.
+/// For Doom the flag decides, not the number of sides.
 #[test]
 fn one_sided_lines_with_two_sides_are_opaque() {
     let flagged = |flags| visible(&two_rooms(2, |map, line| map.line(line, flags, Some(1), Some(0))));
@@ -224,7 +237,7 @@ fn a_crossing_of_a_wall_and_an_open_line_hides_and_shows_what_it_should() {
         map.line([[2, 4], [5, 0]], ML_TWOSIDED, Some(2), Some(3)).0
     };
     let (closed, open) = (Sketch(map(BLOCKING)), Sketch(map(ML_TWOSIDED)));
-    let (_, summary) = reject_table(&read(&wad_of(&closed)), &RejectOptions::default()).unwrap();
+    let (_, summary) = reject_table(&read(&wad_of(&closed)), &FOR_DOOM).unwrap();
     assert!(summary.n_rounded_crossings > 0, "the crossing is on no double");
     // The short line divides nothing, so its sectors 2 and 3 are in both rooms.
     let around = [(0, 2), (0, 3), (1, 2), (1, 3), (2, 3)];
@@ -274,9 +287,8 @@ fn compare(truth: &[Vec<bool>], rejected: impl Fn(u32, u32) -> bool) -> Comparis
 /// The table of a map, what brute force says, and what was done.
 fn judged(map: &Sketch) -> (RejectTable, Vec<Vec<bool>>, RejectSummary) {
     let map = read(&wad_of(map));
-    let options = RejectOptions { threads: 1, ..RejectOptions::default() };
-    let (table, summary) = reject_table(&map, &options).unwrap();
-    (table, sector_visibility_brute_force(&map.plan().unwrap()), summary)
+    let (table, summary) = reject_table(&map, &FOR_DOOM).unwrap();
+    (table, sector_visibility_brute_force(&map.plan_for(FOR_DOOM.game).unwrap()), summary)
 }
 
 proptest! {
@@ -344,7 +356,7 @@ const DEAF: [u8; 1] = [0b1000];
 
 pub(crate) fn build(wad: &Wad, maps: &[&str], force: bool) -> Result<RejectOutcome, RejectError> {
     let maps = maps.iter().map(|&m| m.to_owned()).collect();
-    reject_wad(wad, &RejectOptions { maps, force, threads: 1, ..RejectOptions::default() })
+    reject_wad(wad, &RejectOptions { maps, force, ..FOR_DOOM })
 }
 
 /// Names and bytes of all lumps but REJECT, in their order.

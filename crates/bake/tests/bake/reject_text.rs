@@ -1,6 +1,6 @@
 //! REJECT tables of maps as text: those of the binary maps that they say the same as, and of coordinates that only texts have.
 
-use crate::reject::{BLIND, build, crossing_map, other_lumps, read, rejects, three_maps, wad_of};
+use crate::reject::{BLIND, FOR_DOOM, build, crossing_map, other_lumps, read, rejects, three_maps, wad_of};
 use proptest::prelude::*;
 use sightlines_bake::{MapStatus, RejectOptions, reject_wad};
 use sightlines_formats::Wad;
@@ -11,7 +11,7 @@ use sightlines_testkit::draw;
 mod udmf;
 
 fn reject_lumps(wad: &Wad) -> Vec<Option<Vec<u8>>> {
-    let outcome = reject_wad(wad, &RejectOptions { force: true, threads: 1, ..RejectOptions::default() }).unwrap();
+    let outcome = reject_wad(wad, &RejectOptions { force: true, ..FOR_DOOM }).unwrap();
     rejects(&Wad::parse(outcome.bytes).unwrap())
 }
 

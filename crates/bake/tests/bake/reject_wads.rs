@@ -62,6 +62,7 @@ const ONE: RejectOptions<'_> = RejectOptions {
     maps: Vec::new(),
     force: false,
     strict: false,
+    game: None,
     rmb: None,
     threads: 1,
     progress: None,

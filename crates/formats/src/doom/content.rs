@@ -1,6 +1,6 @@
 //! What maps of all formats hold: lines, things, and the lists of them.
 
-use super::ML_TWOSIDED;
+use super::{Game, ML_TWOSIDED};
 use crate::error::{Malformed, malformed};
 
 /// A line from one vertex to another.
@@ -19,7 +19,7 @@ pub struct LineDef {
 }
 
 impl LineDef {
-    /// Whether the line lets sight through. Its sides do not matter.
+    /// Whether its flag lets sight through, whatever its sides. Engines may look through others too: [`DoomMap::plan_for`](super::DoomMap::plan_for).
     pub fn is_two_sided(&self) -> bool {
         self.flags & ML_TWOSIDED != 0
     }
@@ -44,6 +44,10 @@ pub(super) struct Content {
     pub(super) side_sectors: Vec<u32>,
     pub(super) n_sectors: usize,
     pub(super) things: Vec<Thing>,
+    /// What each line does, where the format numbers that as Hexen does; else empty.
+    pub(super) hexen_specials: Vec<i32>,
+    /// The game that the format is of.
+    pub(super) game: Option<Game>,
 }
 
 impl Content {

@@ -1,7 +1,7 @@
 //! One map: its lines, sides, sectors and things, checked, and the plan they make.
 
 use super::content::{Content, LineDef, Thing};
-use super::{MAX_SECTORS, MapFormat, MapLump, MapLumps, records, udmf};
+use super::{Game, MAX_SECTORS, MapFormat, MapLump, MapLumps, engine, records, udmf};
 use crate::error::{Malformed, Within, malformed};
 use crate::wad::{LumpName, Wad};
 use sightlines_cells::{Plan, PlanError, PlanLine, PlanObject};
@@ -13,6 +13,8 @@ pub struct DoomMap {
     name: LumpName,
     format: MapFormat,
     content: Content,
+    /// Lines of polyobjects.
+    moving: Vec<bool>,
     n_sectors: u32,
     reject: Option<Vec<u8>>,
 }
@@ -41,7 +43,8 @@ impl DoomMap {
         };
         let n_sectors = check(&content)?;
         let reject = lumps.lump(MapLump::Reject).map(|lump| wad.lump_bytes(lump).to_vec());
-        Ok(Self { name: lumps.name(), format: lumps.format(), content, n_sectors, reject })
+        let moving = engine::in_polyobjects(&content);
+        Ok(Self { name: lumps.name(), format: lumps.format(), content, moving, n_sectors, reject })
     }
 
     /// The map's name.
@@ -95,21 +98,32 @@ impl DoomMap {
     }
 
     /// The map as engines use REJECT: flat. The lines of the plan are those of the map that have length, in their order, from the
-    /// first vertex to the second; a line blocks sight unless its flag [`ML_TWOSIDED`](super::ML_TWOSIDED) is
-    /// set. Heights, doors and textures do not count, because they change during play. Groups are
+    /// first vertex to the second; a line blocks sight unless some engine looks through it ([`DoomMap::plan_for`]). Heights, doors and textures do not count, because they change during play. Groups are
     /// sectors; [`Plan::n_groups`] may be less than [`DoomMap::n_sectors`], as some may be unused.
     /// Things are objects without extent, called such as `thing 3001 #12`.
     ///
     /// # Errors
     /// None for a map that was read: its coordinates are 16-bit integers, or were checked.
     pub fn plan(&self) -> Result<Plan, PlanError> {
+        self.plan_for(None)
+    }
+
+    /// As [`DoomMap::plan`], for the engines of one game. A line lets sight through if its flag [`ML_TWOSIDED`](super::ML_TWOSIDED) is
+    /// set, whatever its sides; if it has a left side, unless the game is Doom; and if it is of a polyobject, because these move. What the
+    /// format says counts more than `game`: BEHAVIOR, and the namespaces `hexen` and `heretic`, are of engines that look through every line with a left side.
+    ///
+    /// # Errors
+    /// As [`DoomMap::plan`].
+    pub fn plan_for(&self, game: Option<Game>) -> Result<Plan, PlanError> {
+        let game = self.content.game.or(game);
         let point = |vertex: u32| {
             let [x, y] = self.content.vertices[vertex as usize];
             Point2::new(x, y)
         };
-        let lines = self.lines().iter().filter(|line| self.content.has_length(line)).map(|l| {
+        let lines = self.lines().iter().zip(&self.moving).filter(|(line, _)| self.content.has_length(line));
+        let lines = lines.map(|(l, moves)| {
             let [right, left] = self.sectors_of(l);
-            PlanLine { a: point(l.v1), b: point(l.v2), opaque: !l.is_two_sided(), left, right }
+            PlanLine { a: point(l.v1), b: point(l.v2), opaque: !moves && !l.is_seen_through(game), left, right }
         });
         let objects = self.things().iter().enumerate().map(|(index, thing)| PlanObject {
             name: format!("thing {} #{index}", thing.kind),

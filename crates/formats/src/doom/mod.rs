@@ -6,6 +6,7 @@
 
 mod choose;
 mod content;
+mod engine;
 mod list;
 mod lumps;
 mod map;
@@ -16,6 +17,7 @@ mod udmf;
 
 pub use choose::{MapChoiceError, choose_map};
 pub use content::{LineDef, Thing};
+pub use engine::Game;
 pub use list::{MapLumps, list_maps};
 pub use lumps::{MapFormat, MapLump};
 pub use map::DoomMap;
@@ -24,7 +26,7 @@ pub use source::{DoomMapSource, SourceLine, SourceThing, write_doom_map};
 
 use crate::wad::{Edit, LumpName, Wad, WadError};
 
-/// Flag of a line that lets sight through: set on lines that open from one sector into another.
+/// Flag of a line that lets sight through: set on lines that open from one sector into another. See [`Game`].
 pub const ML_TWOSIDED: u16 = 4;
 
 /// Most sectors that a map can have: sides of binary maps name theirs by 16 bits. Maps as text with more are refused.

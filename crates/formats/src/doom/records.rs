@@ -1,7 +1,7 @@
 //! The records of binary maps.
 
 use super::content::{Content, LineDef, Thing};
-use super::{MapFormat, MapLump, MapLumps};
+use super::{Game, MapFormat, MapLump, MapLumps};
 use crate::bytes::{i16_at, u16_at};
 use crate::error::{Malformed, malformed};
 use crate::wad::Wad;
@@ -15,7 +15,9 @@ pub(super) fn parse(wad: &Wad, lumps: &MapLumps) -> Result<Content, Malformed> {
     let hexen = lumps.format() == MapFormat::Hexen;
     let point = |r| [f64::from(i16_at(r, 0)), f64::from(i16_at(r, 2))];
     let vertices = read.of(MapLump::Vertexes, 4)?.map(point).collect();
-    let lines = read.of(MapLump::Linedefs, if hexen { 16 } else { 14 })?.map(line_def).collect();
+    let lines = read.of(MapLump::Linedefs, if hexen { 16 } else { 14 })?;
+    let hexen_specials = lines.clone().filter(|_| hexen).map(|r| r[6].into()).collect();
+    let lines = lines.map(line_def).collect();
     let side_sectors = read.of(MapLump::Sidedefs, 30)?.map(|r| u32::from(u16_at(r, 28))).collect();
     let n_sectors = read.of(MapLump::Sectors, 26)?.len();
     let things = match (lumps.lump(MapLump::Things), hexen) {
@@ -23,7 +25,8 @@ pub(super) fn parse(wad: &Wad, lumps: &MapLumps) -> Result<Content, Malformed> {
         (Some(_), false) => read.of(MapLump::Things, 10)?.map(|r| thing(r, 0, 6)).collect(),
         (Some(_), true) => read.of(MapLump::Things, 20)?.map(|r| thing(r, 2, 10)).collect(),
     };
-    Ok(Content { vertices, lines, side_sectors, n_sectors, things })
+    let game = hexen.then_some(Game::Hexen);
+    Ok(Content { vertices, lines, side_sectors, n_sectors, things, hexen_specials, game })
 }
 
 /// Access to the records of a map's lumps.

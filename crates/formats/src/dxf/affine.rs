@@ -1,7 +1,7 @@
 //! Maps of space: what inserts and extrusion directions do.
 
-use super::angle::sin_cos;
 use crate::error::{Malformed, malformed};
+use sightlines_geometry::sin_cos;
 
 /// An insert of a block.
 #[derive(Debug)]
@@ -14,6 +14,8 @@ pub(super) struct Insert {
     /// Columns and rows.
     pub(super) counts: [u32; 2],
     pub(super) spacing: [f64; 2],
+    /// The handle of its extension dictionary.
+    pub(super) extension: Option<u64>,
 }
 
 /// A map of space: the images of the axes, and of the origin.
@@ -26,6 +28,18 @@ pub(super) struct Affine {
 impl Affine {
     pub(super) const IDENTITY: Self =
         Self { axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], origin: [0.0; 3] };
+
+    /// From three rows of four numbers, the last of each for the origin.
+    pub(super) fn of_rows(rows: &[f64]) -> Self {
+        let column = |k| [rows[k], rows[4 + k], rows[8 + k]];
+        Self { axes: [0, 1, 2].map(column), origin: column(3) }
+    }
+
+    /// Whether what is above a point stays above it.
+    pub(super) fn keeps_above(&self) -> bool {
+        let [x, y, _] = self.axes[2];
+        x == 0.0 && y == 0.0
+    }
 
     /// Where a direction goes.
     pub(super) fn direction(&self, v: [f64; 3]) -> [f64; 3] {

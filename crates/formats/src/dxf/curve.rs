@@ -1,7 +1,7 @@
 //! Curves as rational Bézier curves: maps of space act on their corners, and a curve lies within its corners.
 
 use super::affine::Affine;
-use super::angle::sin_cos;
+use sightlines_geometry::sin_cos;
 
 /// A rational Bézier curve; all weights are positive. The ends are exactly the first and the last corner.
 #[derive(Debug, Clone, PartialEq)]

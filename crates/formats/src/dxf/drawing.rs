@@ -1,6 +1,7 @@
 //! The parts of a drawing: layers, blocks, and the entities of the model.
 
 use super::entity::{Entity, Read, read_entity};
+use super::filters::Filters;
 use super::groups::{Group, Groups, next_record, refuse_binary, unended};
 use super::layers::Layers;
 use super::text::{decode, folded};
@@ -14,6 +15,7 @@ pub(super) struct Drawing {
     pub(super) blocks: Vec<Block>,
     /// Blocks by name.
     pub(super) by_name: HashMap<String, usize>,
+    pub(super) filters: Filters,
     /// Those of the model.
     pub(super) entities: Vec<Entity>,
 }
@@ -48,6 +50,7 @@ pub(super) fn read(text: &[u8]) -> Result<Drawing, Malformed> {
         match name.value {
             b"TABLES" => drawing.read_tables(&mut groups)?,
             b"BLOCKS" => drawing.read_blocks(&mut groups)?,
+            b"OBJECTS" => drawing.filters = Filters::read(&mut groups)?,
             b"ENTITIES" => {
                 let end = read_entities(&mut groups, &mut drawing.layers, &mut drawing.entities)?;
                 expect(&end, "ENDSEC")?;

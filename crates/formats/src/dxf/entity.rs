@@ -1,6 +1,7 @@
 //! The entities of a drawing, in their own coordinates.
 
 use super::affine::Insert;
+use super::filters::extension;
 use super::groups::{Group, Groups, next_record};
 use super::layers::Layers;
 use super::spline::Spline;
@@ -70,14 +71,14 @@ pub(super) enum Read<'a> {
 }
 
 /// The groups of one entity.
-struct Fields<'f, 'a> {
-    kind: &'static str,
-    line: usize,
-    groups: &'f [Group<'a>],
+pub(super) struct Fields<'f, 'a> {
+    pub(super) kind: &'static str,
+    pub(super) line: usize,
+    pub(super) groups: &'f [Group<'a>],
 }
 
 impl<'a> Fields<'_, 'a> {
-    fn find(&self, code: i32) -> Option<&Group<'a>> {
+    pub(super) fn find(&self, code: i32) -> Option<&Group<'a>> {
         self.groups.iter().find(|group| group.code == code)
     }
 
@@ -85,7 +86,7 @@ impl<'a> Fields<'_, 'a> {
         self.find(code).map_or(Ok(default), Group::number)
     }
 
-    fn integer(&self, code: i32) -> Result<i64, Malformed> {
+    pub(super) fn integer(&self, code: i32) -> Result<i64, Malformed> {
         self.find(code).map_or(Ok(0), Group::integer)
     }
 
@@ -102,8 +103,13 @@ impl<'a> Fields<'_, 'a> {
         Ok([self.needed(code, what)?, self.needed(code + 10, what)?, self.number(code + 20, 0.0)?])
     }
 
+    /// The extrusion direction.
+    pub(super) fn normal(&self) -> Result<[f64; 3], Malformed> {
+        Ok([self.number(210, 0.0)?, self.number(220, 0.0)?, self.number(230, 1.0)?])
+    }
+
     /// All numbers with that code.
-    fn numbers(&self, code: i32) -> Result<Vec<f64>, Malformed> {
+    pub(super) fn numbers(&self, code: i32) -> Result<Vec<f64>, Malformed> {
         self.groups.iter().filter(|group| group.code == code).map(Group::number).collect()
     }
 }
@@ -138,7 +144,7 @@ pub(super) fn read_entity<'a>(groups: &mut Groups<'a>, layers: &mut Layers) -> R
         (_, true) => Shown::Nowhere,
         _ => Shown::Model,
     };
-    let normal = [about.number(210, 0.0)?, about.number(220, 0.0)?, about.number(230, 1.0)?];
+    let normal = about.normal()?;
     Ok(Read::Entity(Entity { line: record.line, layer, normal, shown, shape }))
 }
 
@@ -248,5 +254,6 @@ fn insert(fields: &Fields<'_, '_>) -> Result<Insert, Malformed> {
         rotation: fields.number(50, 0.0)?,
         counts: [count(70)?, count(71)?],
         spacing: [fields.number(44, 0.0)?, fields.number(45, 0.0)?],
+        extension: extension(fields.groups),
     })
 }

@@ -1,9 +1,11 @@
 //! The entities of the model, with blocks where they are inserted: straight and curved pieces in the plane.
 
 use super::affine::{Affine, Insert, checked_unit, cross};
+use super::clip::Clips;
 use super::curve::{Bezier, arc, bulged};
 use super::drawing::Drawing;
 use super::entity::{Entity, Shape, Shown};
+use super::filters::Clip;
 use super::layers::Chosen;
 use super::text::{folded, list};
 use super::{MAX_ELEMENTS, MAX_NESTING};
@@ -11,15 +13,24 @@ use crate::error::{Malformed, malformed};
 use sightlines_geometry::check_coordinate;
 use std::collections::{BTreeMap, BTreeSet};
 
+/// The pieces of an entity.
+#[derive(Debug)]
+pub(super) struct Drawn {
+    pub(super) pieces: Vec<Bezier<2>>,
+    pub(super) clip: Option<usize>,
+}
+
 /// What becomes lines.
 #[derive(Debug, Default)]
 pub(super) struct Expanded {
-    /// In the order of the entities, each with its pieces.
-    pub(super) pieces: Vec<Vec<Bezier<2>>>,
+    pub(super) entities: Vec<Drawn>,
+    pub(super) clips: Clips,
     /// What is ignored, by kind.
     ignored: BTreeMap<String, usize>,
     n_hidden: usize,
     hidden_layers: BTreeSet<u32>,
+    /// Inserts whose clip is not understood, by block.
+    not_clipped: BTreeMap<String, usize>,
     n_on_paper: usize,
     n_invisible: usize,
 }
@@ -41,6 +52,10 @@ impl Expanded {
             let what = entities(self.n_hidden);
             warnings.push(format!("left out {what} on layers that are frozen or off: {}", list(names, MOST)));
         }
+        if !self.not_clipped.is_empty() {
+            let blocks = self.not_clipped.iter().map(|(block, n)| format!("{n} of {}", block.escape_debug()));
+            warnings.push(format!("left out inserts whose clip (XCLIP) is not understood: {}", list(blocks, MOST)));
+        }
         if self.n_on_paper > 0 {
             warnings.push(format!("left out {} in paper space", entities(self.n_on_paper)));
         }
@@ -53,7 +68,7 @@ impl Expanded {
 
 /// Follows the inserts of the model.
 pub(super) fn expand(drawing: &Drawing, chosen: &Chosen) -> Result<Expanded, Malformed> {
-    let mut walk = Walk { drawing, chosen, out: Expanded::default(), n_elements: 0, open: Vec::new() };
+    let mut walk = Walk { drawing, chosen, out: Expanded::default(), n_elements: 0, clip: None, open: Vec::new() };
     walk.entities(&drawing.entities, &Affine::IDENTITY, None)?;
     Ok(walk.out)
 }
@@ -63,6 +78,7 @@ struct Walk<'d> {
     chosen: &'d Chosen,
     out: Expanded,
     n_elements: usize,
+    clip: Option<usize>,
     /// The blocks that are being inserted, each in the one before it.
     open: Vec<usize>,
 }
@@ -126,8 +142,22 @@ impl Walk<'_> {
             return Err(at(malformed!("blocks are nested more than {MAX_NESTING} deep")));
         }
         let own = map.after(&Affine::of_extrusion(entity.normal).map_err(at)?);
-        self.open.push(idx);
         let [n_columns, n_rows] = insert.counts;
+        let outer = self.clip;
+        match drawing.filters.of(insert.extension) {
+            Clip::Off => {}
+            Clip::Inside(corners) if insert.counts == [1, 1] && own.keeps_above() => {
+                self.count(corners.len()).map_err(at)?;
+                let placed = own.after(&Affine::of_insert(insert, block.base, [0, 0]));
+                let corners = corners.into_iter().map(|p| placed.point(p)).map(|[x, y, _]| [x, y]);
+                self.clip = Some(self.out.clips.add(corners, outer).map_err(at)?);
+            }
+            _ => {
+                *self.out.not_clipped.entry(block.name.clone()).or_default() += 1;
+                return Ok(());
+            }
+        }
+        self.open.push(idx);
         for row in 0..n_rows {
             for column in 0..n_columns {
                 self.count(1).map_err(at)?;
@@ -136,6 +166,7 @@ impl Walk<'_> {
             }
         }
         self.open.pop();
+        self.clip = outer;
         Ok(())
     }
 
@@ -184,7 +215,7 @@ impl Walk<'_> {
         for x in flat.iter_mut().flat_map(|piece| &mut piece.corners).flat_map(|(corner, _)| corner) {
             *x = check_coordinate(*x)?;
         }
-        self.out.pieces.push(flat);
+        self.out.entities.push(Drawn { pieces: flat, clip: self.clip });
         Ok(())
     }
 }

@@ -1,20 +1,19 @@
 //! Straight pieces of curves, and the plan that they make.
 
-use super::curve::Bezier;
-use super::expand::too_many;
+use super::expand::{Drawn, Expanded, too_many};
 use super::{DEFAULT_DEVIATION, MAX_ELEMENTS};
 use crate::error::Malformed;
 use crate::plan::{PlanFile, PlanLines};
 use sightlines_cells::PlanLine;
-use sightlines_geometry::{Aabb, Point2, check_coordinate};
+use sightlines_geometry::{Aabb, Point2, Segment2, check_coordinate};
 
 /// The plan of all pieces, entity by entity.
-pub(super) fn flatten(entities: &[Vec<Bezier<2>>], deviation: Option<f64>) -> Result<PlanFile, Malformed> {
-    let deviation = deviation.unwrap_or_else(|| default_deviation(entities));
+pub(super) fn flatten(expanded: &Expanded, deviation: Option<f64>) -> Result<PlanFile, Malformed> {
+    let deviation = deviation.unwrap_or_else(|| default_deviation(expanded));
     let mut lines = PlanLines::default();
-    let mut n_lines = 0;
+    let (mut n_lines, mut n_compared) = (0, 0);
     let mut stack = Vec::new();
-    for pieces in entities {
+    for Drawn { pieces, clip } in &expanded.entities {
         let mut has_length = false;
         for piece in pieces {
             stack.push(piece.clone());
@@ -33,7 +32,9 @@ pub(super) fn flatten(entities: &[Vec<Bezier<2>>], deviation: Option<f64>) -> Re
                 let [a, b] = [checked(a)?, checked(b)?];
                 if a != b {
                     has_length = true;
-                    lines.push(PlanLine::wall(a, b), false);
+                    for part in expanded.clips.parts(*clip, Segment2 { a, b }, &mut n_compared)? {
+                        lines.push(PlanLine::wall(part.a, part.b), false);
+                    }
                 }
             }
         }
@@ -49,8 +50,12 @@ fn checked(point: [f64; 2]) -> Result<Point2, Malformed> {
     Ok(Point2::new(check_coordinate(point[0])?, check_coordinate(point[1])?))
 }
 
-fn default_deviation(entities: &[Vec<Bezier<2>>]) -> f64 {
-    let bounds = Aabb::around(entities.iter().flatten().flat_map(|piece| &piece.corners).map(|&(p, _)| p));
+fn default_deviation(expanded: &Expanded) -> f64 {
+    let corners = |Drawn { pieces, clip }: &'_ Drawn| {
+        let corners = pieces.iter().flat_map(|piece| &piece.corners);
+        Aabb::around(corners.map(|&(p, _)| expanded.clips.nearest(*clip, p)))
+    };
+    let bounds = expanded.entities.iter().map(corners).fold(Aabb::around([]), Aabb::united);
     let longest = (0..2).map(|k| bounds.max[k] - bounds.min[k]).fold(0.0, f64::max);
     DEFAULT_DEVIATION * longest
 }

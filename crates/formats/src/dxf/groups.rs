@@ -1,6 +1,6 @@
 //! The groups of a drawing: pairs of a code and a value, a line each.
 
-use crate::bytes::without_mark;
+use crate::bytes::{line_end, without_mark};
 use crate::error::{Malformed, malformed};
 use std::str::FromStr;
 
@@ -55,6 +55,7 @@ fn parsed<T: FromStr>(text: &[u8]) -> Option<T> {
 #[derive(Debug)]
 pub(super) struct Groups<'a> {
     rest: &'a [u8],
+    line_end: u8,
     /// Lines before the rest.
     n_lines: usize,
     peeked: Option<Group<'a>>,
@@ -62,7 +63,7 @@ pub(super) struct Groups<'a> {
 
 impl<'a> Groups<'a> {
     pub(super) fn new(text: &'a [u8]) -> Self {
-        Self { rest: without_mark(text), n_lines: 0, peeked: None }
+        Self { rest: without_mark(text), line_end: line_end(text), n_lines: 0, peeked: None }
     }
 
     /// The next group; an error if there is none, as the drawing ends with `EOF`.
@@ -103,7 +104,7 @@ impl<'a> Groups<'a> {
         if self.rest.is_empty() {
             return None;
         }
-        let end = self.rest.iter().position(|&byte| byte == b'\n');
+        let end = self.rest.iter().position(|&byte| byte == self.line_end);
         let (line, rest) = match end {
             Some(end) => (&self.rest[..end], &self.rest[end + 1..]),
             None => (self.rest, &self.rest[self.rest.len()..]),

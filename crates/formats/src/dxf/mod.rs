@@ -7,7 +7,7 @@
 //! | --- | --- |
 //! | LINE, LWPOLYLINE, POLYLINE | lines; bulges are arcs; of a POLYLINE that was smoothed the points of the smooth curve count |
 //! | ARC, CIRCLE, ELLIPSE, SPLINE with control points | straight pieces |
-//! | INSERT | the entities of its block: nested, scaled, mirrored, turned, in rows and columns |
+//! | INSERT | the entities of its block: nested, scaled, mirrored, turned, in rows and columns, and of a clipped one (XCLIP) what is inside of the clip |
 //! | anything else (TEXT, HATCH, DIMENSION, SOLID, POINT, meshes …) | ignored, and counted in a warning; so are inserts of other files (external references) |
 //!
 //! **Curves.** All vertices lie on the curve up to rounding, and no point of the curve is further from its pieces than the deviation
@@ -23,15 +23,19 @@
 //! [`PlanReadOptions::layers`]. In a block the layer `0` is that of the insert. Names are compared without case. What is marked as
 //! invisible, and what is in paper space, is left out.
 //!
+//! **Clips.** What is clipped away is not drawn and no wall; ends at the border of a clip are rounded. Inserts with a clip in a plane of
+//! its own, or in rows and columns, are left out, and counted in a warning with their blocks.
+//!
 //! Binary DXF is refused. A file without its end mark is refused, since walls could be missing. Texts that are not UTF-8 are read as
 //! Latin-1. Lines without length and lines that repeat others are dropped and counted ([`PlanFile`]).
 
 mod affine;
-mod angle;
+mod clip;
 mod curve;
 mod drawing;
 mod entity;
 mod expand;
+mod filters;
 mod flatten;
 mod groups;
 mod layers;
@@ -69,7 +73,7 @@ pub fn parse_dxf(text: &[u8], options: &PlanReadOptions) -> Result<PlanFile, Mal
     let chosen = drawing.layers.choose(options.layers.as_deref())?;
     let expanded = expand::expand(&drawing, &chosen)?;
     let left_out = expanded.warnings(&drawing);
-    let mut file = flatten::flatten(&expanded.pieces, deviation)?;
+    let mut file = flatten::flatten(&expanded, deviation)?;
     file.layers = drawing.layers.into_names();
     file.warnings.extend(left_out);
     Ok(file)

@@ -39,17 +39,3 @@ pub(super) fn list(all: impl ExactSizeIterator<Item = String>, most: usize) -> S
     let more = if n > most { format!(" and {} more", n - most) } else { String::new() };
     format!("{}{more}", shown.join(", "))
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_are_decoded() {
-        assert_eq!(decode(b"W\xC3\xA4nde"), "Wände");
-        assert_eq!(decode(b"W\xE4nde"), "Wände");
-        assert_eq!(decode(br"W\U+00E4nde\U+00E"), "Wände\\U+00E");
-        assert_eq!(decode(br"\U+D800\U+\U+0041"), "\\U+D800\\U+A");
-        assert_eq!(folded("WÄNDE"), folded("wände"));
-    }
-}

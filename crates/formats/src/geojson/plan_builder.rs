@@ -6,7 +6,7 @@ use super::geometry::{Geometry, GeometryKind};
 use super::properties::{Properties, wrong};
 use crate::error::Malformed;
 use crate::plan::{PlanFile, PlanLines};
-use sightlines_cells::{PlanLine, PlanObject};
+use sightlines_cells::{Plan, PlanLine, PlanObject};
 use sightlines_geometry::{Aabb, Point2};
 
 /// The plan so far, and where in the text the reader is.
@@ -23,7 +23,8 @@ impl PlanBuilder {
     /// The plan, when all is read.
     pub(super) fn finish(self) -> Result<PlanFile, Malformed> {
         // Coordinates and lengths were checked on the way; only the number of lines is left.
-        let file = self.lines.finish(self.objects)?;
+        let mut file = self.lines.finish(self.objects)?;
+        file.warnings.extend(degrees_warning(&file.plan, self.crs.as_deref()));
         Ok(PlanFile { crs: self.crs, ..file })
     }
 
@@ -72,4 +73,25 @@ impl PlanBuilder {
             }
         }
     }
+}
+
+/// What a user should hear of a plan in degrees, as newer GeoJSON has them (RFC 7946): one whose `crs` says so, or one without `crs` that would be
+/// smaller than a table in metres, away from the origin.
+fn degrees_warning(plan: &Plan, crs: Option<&str>) -> Option<String> {
+    let Aabb { min, max } = plan.bounds();
+    let [width, height] = [max[0] - min[0], max[1] - min[1]];
+    let fits = min[0] >= -180.0 && max[0] <= 180.0 && min[1] >= -90.0 && max[1] <= 90.0;
+    let is_degrees = match crs {
+        Some(crs) => ["CRS84", "EPSG::4326", "EPSG:4326"].iter().any(|name| crs.contains(name)),
+        None => width.max(height) < 0.25 && [min, max].iter().any(|p| p.iter().any(|x| x.abs() > 1.0)),
+    };
+    // The zone of UTM around the middle, in the north or the south.
+    let zone = (((min[0] + max[0]) / 2.0 + 180.0) / 6.0).floor().clamp(0.0, 59.0) + 1.0;
+    let system = 32600.0 + zone + if min[1] + max[1] < 0.0 { 100.0 } else { 0.0 };
+    (fits && is_degrees).then(|| {
+        format!(
+            "the plan seems to be in degrees, {width:.6} by {height:.6}: it is read as one in a plane, where distances, angles and areas of degrees are wrong; \
+             `ogr2ogr -t_srs EPSG:{system} OUT.geojson IN.geojson` projects it to metres"
+        )
+    })
 }

@@ -1,5 +1,6 @@
 //! Bytes of a glTF: the GLB container, and the buffers of a document wherever they are.
 
+use super::gltf::upgrade;
 use super::json;
 use crate::beside::Neighbours;
 use crate::bytes::number_at;
@@ -24,7 +25,7 @@ pub(super) fn split_glb(file: &[u8]) -> Result<(&[u8], Option<&[u8]>), Malformed
         return Err(malformed!("not a GLB: {len} bytes are less than a header"));
     };
     if version != 2 {
-        return Err(malformed!("GLB version {version} is not 2"));
+        return Err(malformed!("GLB version {version} is not 2{}", upgrade(version == 1)));
     }
     let whole = usize::try_from(stated).ok().filter(|&stated| stated >= HEADER).and_then(|stated| file.get(..stated));
     let glb = whole.ok_or_else(|| malformed!("the header states {stated} bytes, the file has {len}"))?;
@@ -224,16 +225,5 @@ mod tests {
         }
         assert_eq!(data_uri("application/octet-stream;base64,Zm8=").unwrap(), b"fo");
         assert!(data_uri("text/plain,fo").is_err() && data_uri("base64").is_err());
-    }
-
-    #[test]
-    fn paths_stay_in_the_folder() {
-        let is = |uri, path: &str| assert_eq!(relative_path(uri), Some(PathBuf::from(path)), "{uri}");
-        is("walls.bin", "walls.bin");
-        is("./a%20b/%C3%A9.bin", "./a b/é.bin");
-        let refused = "|/etc/passwd|../x.bin|a/../../x.bin|%2e%2e/x|http://x/y|file:x|a%0|a%zz|a%00|%FF";
-        for refused in refused.split('|') {
-            assert_eq!(relative_path(refused), None, "{refused}");
-        }
     }
 }

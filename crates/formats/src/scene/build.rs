@@ -53,6 +53,8 @@ pub(super) struct Builder {
     /// Of all objects up to the last that has one.
     sources: Vec<Option<ObjectSource>>,
     simplified: Option<Simplification>,
+    /// How many faces cannot be, and why one of them cannot.
+    left_out: Option<(usize, Malformed)>,
     /// What a user should hear of the file.
     pub(super) warnings: Vec<String>,
 }
@@ -86,6 +88,11 @@ impl Builder {
             .collect();
         self.n_degenerate += n_all - triangles.len();
         self.objects.push(SceneObject { name, vertices, triangles });
+    }
+
+    /// Counts faces that cannot be, with why one of them cannot.
+    pub(super) fn leave_out(&mut self, n: usize, why: Malformed) {
+        self.left_out.get_or_insert((0, why)).0 += n;
     }
 
     /// Index of the object that was added last.
@@ -185,6 +192,13 @@ impl Builder {
         let scene = scene.with_single_sided(self.fronts_only)?.with_front_occluders(self.front_occluders)?;
         let scene = scene.with_doors(self.doors)?.with_sources(self.sources)?;
         let n_triangles = scene.n_triangles();
+        if let Some((n, first)) = self.left_out {
+            if n_triangles == 0 {
+                return Err(first);
+            }
+            let faces = if n == 1 { "1 face".to_owned() } else { format!("{n} faces, the first of them") };
+            self.warnings.push(format!("left out {faces}: {first}"));
+        }
         if n_triangles == 0 {
             let what = format_args!("{n_objects} objects, {n_degenerate} triangles without area");
             return Err(malformed!("no triangles ({what})"));
@@ -214,15 +228,4 @@ impl Builder {
 /// Whether a box has no inside.
 pub(super) fn is_flat(b: &Aabb<3>) -> bool {
     (0..3).any(|axis| b.min[axis] >= b.max[axis])
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn unused_corners_are_left_out() {
-        let compact = Compact::new(vec![9, 4, 4, 7], [[9, 4, 7]].into_iter());
-        assert_eq!((compact.corners, compact.triangles), (vec![4, 7, 9], vec![[2, 0, 1]]));
-    }
 }

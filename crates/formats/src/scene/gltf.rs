@@ -9,7 +9,6 @@ use super::motion::{Motions, Moved, Vertices};
 use super::movers::{self, INSTANCING};
 use super::nodes::{Nodes, Placed, place_nodes, scene_names, too_many};
 use super::primitive::{LocalMesh, n_triangles_of};
-use super::range::{Range, RangeBox, bounded, box_of, united};
 use super::role::Role;
 use super::surface::{Classification, Classifier, SceneReadOptions};
 use super::{MAX_ELEMENTS, MAX_OBJECTS, SceneFile, SceneFormat};
@@ -19,6 +18,7 @@ use crate::error::{Malformed, Within, malformed};
 use crate::point::check_point;
 use sightlines_cells::Point3;
 use sightlines_geometry::Aabb;
+use sightlines_geometry::range::{Range, RangeBox, bounded, box_of, united};
 use std::path::Path;
 
 pub(crate) use super::buffers::MAGIC;
@@ -92,7 +92,10 @@ pub(super) fn parse(
 ) -> Result<(SceneFile, Loaded), Malformed> {
     let (text, binary) = split(bytes)?;
     let document: Document =
-        serde_json::from_str(text).map_err(|error| malformed!("the glTF text cannot be read: {error}"))?;
+        serde_json::from_str(text).map_err(|error| match check_version(&stated_version(text)) {
+            Ok(()) => malformed!("the glTF text cannot be read: {error}"),
+            Err(other) => other,
+        })?;
     check_understood(&document)?;
     let buffers = Buffers::new(&document.buffers, binary, beside);
     let Nodes { placed, above, n_coarser } = place_nodes(&document, &buffers, options.scene.as_deref())?;
@@ -127,11 +130,29 @@ pub(super) fn split(bytes: &[u8]) -> Result<(&str, Option<&[u8]>), Malformed> {
     Ok((text, binary))
 }
 
-fn check_understood(document: &Document) -> Result<(), Malformed> {
-    let version = &document.asset.version;
-    if version != "2" && !version.starts_with("2.") {
-        return Err(malformed!("glTF version {version:?} is not 2.x"));
+/// The command that makes version 2 of a file of version 1.
+pub(super) fn upgrade(is_first: bool) -> &'static str {
+    if is_first { "; `npx gltf-pipeline -i IN.gltf -o OUT.glb` makes version 2 of version 1" } else { "" }
+}
+
+/// The version that a text states which may be of another one; that which is read if there is no telling.
+fn stated_version(text: &str) -> String {
+    let whole: Option<serde_json::Value> = serde_json::from_str(text).ok();
+    let version = whole.as_ref().and_then(|whole| whole.pointer("/asset/version"));
+    version.map_or("2".to_owned(), |version| version.as_str().map_or_else(|| version.to_string(), str::to_owned))
+}
+
+fn check_version(version: &str) -> Result<(), Malformed> {
+    let first = version.split('.').next();
+    if first == Some("2") {
+        Ok(())
+    } else {
+        Err(malformed!("glTF version {version:?} is not 2.x{}", upgrade(first == Some("1"))))
     }
+}
+
+fn check_understood(document: &Document) -> Result<(), Malformed> {
+    check_version(&document.asset.version)?;
     let strange = |name: &&String| !HARMLESS.iter().any(|harmless| name.starts_with(harmless));
     match document.extensions_required.iter().find(strange) {
         Some(name) => Err(malformed!("extension {name} is not understood{}", remedy(name))),
@@ -189,7 +210,13 @@ fn build(
             Some(mesh) => mesh,
             unread => {
                 let read = |(k, p)| LocalMesh::read(document, motions.buffers(), p).map_err(|what| at.fail(k, what));
-                unread.insert(at.mesh.primitives.iter().enumerate().map(read).collect::<Result<_, _>>()?)
+                let mut locals = at.mesh.primitives.iter().enumerate().map(read).collect::<Result<Vec<_>, _>>()?;
+                for (k, local) in locals.iter_mut().enumerate() {
+                    if let Some((n, what)) = local.left_out.take() {
+                        builder.leave_out(n, at.fail(k, what));
+                    }
+                }
+                unread.insert(locals)
             }
         };
         watch(Origin { node: at.index, mesh: at.mesh_idx, mirrors: at.world.mirrors(), locals: mesh });

@@ -1,5 +1,6 @@
 //! Wavefront MTL: which materials of an OBJ let light through.
 
+use crate::bytes::text_lines;
 use std::collections::BTreeMap;
 
 /// Why each material of a library lets light through; `None` for one that is opaque. Of several with a name, one that lets
@@ -17,7 +18,7 @@ use std::collections::BTreeMap;
 pub(super) fn parse_mtl(bytes: &[u8]) -> BTreeMap<String, Option<String>> {
     let mut materials = BTreeMap::new();
     let mut current: Option<&mut Option<String>> = None;
-    for line in bytes.split(|&b| b == b'\n') {
+    for line in text_lines(bytes) {
         // What is not UTF-8 becomes marks, as it does in the OBJ.
         let line = String::from_utf8_lossy(line);
         let line = line.trim();
@@ -49,32 +50,4 @@ pub(super) fn parse_mtl(bytes: &[u8]) -> BTreeMap<String, Option<String>> {
 /// What stands before a `#`. Behind a number it begins a comment; in a name it may be a part of it, as programs write `Material #25`.
 pub(super) fn before_comment(text: &str) -> &str {
     text.split('#').next().unwrap_or_default().trim()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn glass_is_told_from_walls() {
-        let text = "# materials\nd 0.1\nnewmtl wall\nKd 1 1 1\nTf 0.6 0.6 0.6\nd 1.0\nTr 0\nillum 2\nnewmtl glass\r\n  d 0.25\r\n\
-                    newmtl water\nTr 0.5 # half\nnewmtl leaf\nmap_d leaf mask.png\nnewmtl pane\nillum 4\nnewmtl halo\nd -halo 1\n\
-                    newmtl odd\nd\nnewmtl old glass\nd 1\nnewmtl old glass\nd 0.9";
-        let found = parse_mtl(text.as_bytes());
-        let why = |name: &str| found[name].as_deref();
-        assert_eq!([why("wall"), why("glass"), why("water")], [None, Some("d 0.25"), Some("Tr 0.5")]);
-        assert_eq!([why("leaf"), why("pane"), why("halo")], [Some("map_d"), Some("illum 4"), Some("d -halo 1")]);
-        assert_eq!((why("odd"), why("old glass"), found.len()), (Some("d"), Some("d 0.9"), 8));
-        for (illum, is_glass) in
-            [(0, false), (3, false), (5, false), (8, false), (6, true), (9, true), (10, true), (11, true)]
-        {
-            let found = parse_mtl(format!("newmtl a\nillum {illum} # why").as_bytes());
-            assert_eq!(found["a"].is_some(), is_glass, "illum {illum}");
-        }
-        let names =
-            parse_mtl(b"newmtl Material #25\nd 0.5 # half\n#newmtl x\nnewmtl Material #26 # a wall\nd 1#\n# d 0");
-        assert_eq!(names["Material #25"].as_deref(), Some("d 0.5"));
-        assert_eq!((&names["Material #26 # a wall"], names.len()), (&None, 2));
-        assert!(parse_mtl(b"").is_empty() && parse_mtl(b"\xFF\xFE d 0").is_empty());
-    }
 }

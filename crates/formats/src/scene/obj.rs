@@ -3,16 +3,16 @@
 use super::buffers::load_file;
 use super::build::{Builder, Compact};
 use super::mtl::{before_comment, parse_mtl};
-use super::polygon::{MAX_WINDING_CORNERS, PolygonError, triangulate};
 use super::role::{MeshNames, Role, role_of_name};
 use super::surface::{Classification, Classifier, Evidence, SceneReadOptions};
 use super::write_obj::{OCCLUDER, SEE_THROUGH, SIMPLIFIED, STATEMENT};
 use super::{MAX_ELEMENTS, SceneFile, SceneFormat, Simplification};
 use crate::beside::Neighbours;
-use crate::bytes::without_mark;
+use crate::bytes::{text_lines, without_mark};
 use crate::error::{Malformed, malformed};
 use crate::point::check_point;
 use sightlines_cells::Point3;
+use sightlines_geometry::triangles::{MAX_WINDING_CORNERS, PolygonError, triangulate};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
@@ -31,12 +31,12 @@ use std::collections::BTreeMap;
 /// Costs time and memory in proportion to the text, but for winding faces of many corners.
 ///
 /// # Errors
-/// [`Malformed`] with the line, or if there are no triangles.
+/// [`Malformed`] with the line, or if there are no triangles. A face that cannot be is left out, with a warning.
 ///
 /// # Source
 /// Wavefront Technologies, Advanced Visualizer manual, appendix B1 (the format of `.obj`). Chosen here: materials do
 /// not split objects, but for the faces of an object that are see-through while others are not; self-intersecting outlines
-/// are refused, because the extent of such a face is undefined.
+/// are left out, because the extent of such a face is undefined.
 pub fn parse_obj(bytes: &[u8]) -> Result<SceneFile, Malformed> {
     parse_obj_with(bytes, None, &SceneReadOptions::default())
 }
@@ -59,6 +59,7 @@ pub fn parse_obj_with(
     let mut builder = Builder::default();
     let mut classifier = Classifier::new(options);
     let surfaces = Surfaces::read(&obj, beside, &mut builder.warnings);
+    obj.wrong.iter().for_each(|wrong| builder.leave_out(1, wrong.clone()));
     let names: MeshNames<'_> = obj.groups.iter().map(|group| group.name.as_str()).collect();
     for (k, group) in obj.groups.iter().enumerate() {
         let end = obj.groups.get(k + 1).map_or(obj.faces.len(), |next| next.first_face);
@@ -84,7 +85,10 @@ pub fn parse_obj_with(
         let (walls, glass): (Vec<&Face>, Vec<&Face>) = faces.iter().partition(hides);
         for (faces, suffix) in [(&walls, ""), (&glass, if walls.is_empty() { "" } else { "#see-through" })] {
             let Some(first) = faces.first() else { continue };
-            let mesh = obj.mesh(faces)?;
+            let mesh = obj.mesh(faces, &mut builder);
+            if mesh.triangles.is_empty() {
+                continue;
+            }
             let vertices = mesh.corners.iter().map(|&v| obj.positions[v]).collect();
             builder.add(format!("{}{suffix}", group.name), vertices, mesh.triangles.iter().copied(), false, false);
             if matches!(role_of_name(&group.name), Some((Role::Mirror, _))) {
@@ -118,10 +122,8 @@ impl Surfaces {
         let mut before_comments = known.clone();
         let mut missing = Vec::new();
         for library in &obj.libraries {
-            let Some(files) = read_libraries(library, beside) else {
-                missing.push(library.as_str());
-                continue;
-            };
+            let (files, unread) = read_libraries(library, beside);
+            missing.extend(unread);
             for (name, why) in files.iter().flat_map(|bytes| parse_mtl(bytes)) {
                 let short = before_comment(&name).to_owned();
                 for (names, name) in [(&mut before_comments, short), (&mut known, name)] {
@@ -164,16 +166,19 @@ impl Surfaces {
     }
 }
 
-/// The contents of the libraries that a line names: one, whose name may have spaces, or several. `None` if one of them
-/// cannot be read.
-fn read_libraries(line: &str, beside: Option<&dyn Neighbours>) -> Option<Vec<Vec<u8>>> {
+/// The contents of the libraries that a line names, one, whose name may have spaces, or several; and the names of those that cannot be read.
+fn read_libraries<'l>(line: &'l str, beside: Option<&dyn Neighbours>) -> (Vec<Vec<u8>>, Vec<&'l str>) {
     // Names from Windows may have backslashes.
     let read = |name: &str| load_file(beside, name).or_else(|_| load_file(beside, &name.replace('\\', "/"))).ok();
-    let one = read(line).or_else(|| read(before_comment(line)));
-    match one {
-        Some(bytes) => Some(vec![bytes]),
-        None => before_comment(line).split_ascii_whitespace().map(read).collect(),
+    if let Some(bytes) = read(line).or_else(|| read(before_comment(line))) {
+        return (vec![bytes], vec![]);
     }
+    let (mut files, mut missing) = (Vec::new(), Vec::new());
+    for name in before_comment(line).split_ascii_whitespace() {
+        read(name).map_or_else(|| missing.push(name), |bytes| files.push(bytes));
+    }
+    // If there is none, it may be one name.
+    if files.is_empty() { (files, vec![line]) } else { (files, missing) }
 }
 
 /// The parts of an OBJ that matter here.
@@ -189,6 +194,8 @@ struct Obj {
     materials: Vec<String>,
     /// What each line that names files with materials has behind its keyword.
     libraries: Vec<String>,
+    /// Why faces are none, in the order of the file.
+    wrong: Vec<Malformed>,
     /// What a comment of ours states of the whole.
     simplified: Option<Simplification>,
 }
@@ -223,7 +230,16 @@ impl Obj {
             let fail = |what: Malformed| what.on_line(number);
             match keyword(&line) {
                 b"v" => obj.vertex(words(&line).map_err(fail)?).map_err(fail)?,
-                b"f" => obj.face(number, material, words(&line).map_err(fail)?).map_err(fail)?,
+                b"f" => {
+                    let before = obj.corners.len();
+                    if let Err(what) = obj.face(number, material, words(&line).map_err(fail)?) {
+                        obj.corners.truncate(before);
+                        obj.wrong.push(fail(what));
+                    }
+                    if obj.n_triangles > MAX_ELEMENTS {
+                        return Err(fail(malformed!("with it the scene has more than {MAX_ELEMENTS} triangles")));
+                    }
+                }
                 b"usemtl" => {
                     let name = lossy_text(&line);
                     let next = by_name.len();
@@ -294,9 +310,6 @@ impl Obj {
             return Err(malformed!("a face needs three corners or more"));
         }
         self.n_triangles += n_corners - 2;
-        if self.n_triangles > MAX_ELEMENTS {
-            return Err(malformed!("with it the scene has more than {MAX_ELEMENTS} triangles"));
-        }
         self.faces.push(Face { line, first_corner, n_corners, material });
         Ok(())
     }
@@ -309,24 +322,32 @@ impl Obj {
         self.groups.push(Group { name, first_face: self.faces.len(), is_see_through: false });
     }
 
-    /// The triangles of `faces`. Indices are looked up only here, since a face may stand before its corners.
-    fn mesh(&self, faces: &[&Face]) -> Result<Compact, Malformed> {
+    /// The triangles of `faces`, but for those that are none. Indices are looked up only here, since a face may stand before its corners.
+    fn mesh(&self, faces: &[&Face], builder: &mut Builder) -> Compact {
         let (mut used, mut triangles) = (Vec::new(), Vec::new());
         for face in faces {
-            let fail = |what: Malformed| what.on_line(face.line);
-            let corners = self.look_up(face).map_err(fail)?;
-            let polygon: Vec<Point3> = corners.iter().map(|&v| self.positions[v]).collect();
-            let cut = triangulate(&polygon).map_err(|error| match error {
-                PolygonError::Crossing => fail(malformed!("the outline of the face crosses itself")),
-                PolygonError::TooLarge => {
-                    let n = face.n_corners;
-                    fail(malformed!("a winding face of {n} corners, more than {MAX_WINDING_CORNERS}"))
+            match self.cut(face) {
+                Ok((corners, cut)) => {
+                    triangles.extend(cut.into_iter().map(|t| t.map(|k| corners[k])));
+                    used.extend(corners);
                 }
-            })?;
-            triangles.extend(cut.into_iter().map(|t| t.map(|k| corners[k])));
-            used.extend(corners);
+                Err(what) => builder.leave_out(1, what.on_line(face.line)),
+            }
         }
-        Ok(Compact::new(used, triangles.into_iter()))
+        Compact::new(used, triangles.into_iter())
+    }
+
+    /// The corners of a face, and its triangles.
+    fn cut(&self, face: &Face) -> Result<(Vec<usize>, Vec<[usize; 3]>), Malformed> {
+        let corners = self.look_up(face)?;
+        let polygon: Vec<Point3> = corners.iter().map(|&v| self.positions[v]).collect();
+        let cut = triangulate(&polygon).map_err(|error| match error {
+            PolygonError::Crossing => malformed!("the outline of the face crosses itself"),
+            PolygonError::TooLarge => {
+                malformed!("a winding face of {} corners, more than {MAX_WINDING_CORNERS}", face.n_corners)
+            }
+        })?;
+        Ok((corners, cut))
     }
 
     fn look_up(&self, face: &Face) -> Result<Vec<usize>, Malformed> {
@@ -346,7 +367,7 @@ fn no_corner(index: i64) -> Malformed {
 /// Lines with their numbers from 1. Comments are gone, but for those behind names, which may have a `#`, and lines that end in a backslash have the next one
 /// behind them.
 fn lines(bytes: &[u8]) -> impl Iterator<Item = (usize, Cow<'_, [u8]>)> {
-    let mut rest = bytes.split(|&b| b == b'\n').enumerate();
+    let mut rest = text_lines(bytes).enumerate();
     std::iter::from_fn(move || {
         let (number, line) = rest.next()?;
         let mut whole = Cow::Borrowed(line);

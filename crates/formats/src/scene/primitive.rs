@@ -17,6 +17,8 @@ pub(super) struct LocalMesh {
     pub(super) mesh: Compact,
     /// Of each corner of `mesh`.
     pub(super) positions: Vec<[f64; 3]>,
+    /// How many triangles have corners that are not there, and the first of these.
+    pub(super) left_out: Option<(usize, Malformed)>,
 }
 
 impl LocalMesh {
@@ -26,26 +28,39 @@ impl LocalMesh {
             Elements::new(document, buffers, accessor, role).within(format_args!("{what} (accessor {accessor})"))
         };
         let positions = read("positions", positions, AccessorRole::Positions)?;
-        let corners = match primitive.indices {
-            Some(accessor) => read_indices(&read("indices", accessor, AccessorRole::Indices)?, positions.count)?,
-            None => (0..positions.count).collect(),
-        };
+        let (mut corners, mut wrong) = ((0..positions.count).map(Some).collect::<Vec<_>>(), None);
+        if let Some(accessor) = primitive.indices {
+            let indices = read("indices", accessor, AccessorRole::Indices)?;
+            let found = |k| read_index(&indices, positions.count, k);
+            corners =
+                (0..indices.count).map(|k| found(k).map_err(|what| wrong = wrong.take().or(Some(what))).ok()).collect();
+        }
         check_mode(primitive.mode, corners.len())?;
         let n_triangles = n_triangles_of(primitive.mode, corners.len());
-        let triangles = (0..n_triangles).map(|k| triangle_of(primitive.mode, k).map(|place| corners[place]));
-        let mesh = Compact::new(corners.clone(), triangles);
+        let triangles = (0..n_triangles).filter_map(|k| {
+            let [a, b, c] = triangle_of(primitive.mode, k).map(|place| corners[place]);
+            Some([a?, b?, c?])
+        });
+        let mut used: Vec<usize> = corners.iter().flatten().copied().collect();
+        if used.is_empty() {
+            // Without triangles, but somewhere.
+            used.extend(0..positions.count);
+        }
+        let mesh = Compact::new(used, triangles);
         let positions = mesh.corners.iter().map(|&k| positions.position(k)).collect();
-        Ok(Self { mesh, positions })
+        let n_left_out = n_triangles - mesh.triangles.len();
+        Ok(Self { mesh, positions, left_out: wrong.filter(|_| n_left_out > 0).map(|what| (n_left_out, what)) })
     }
 }
 
 pub(super) fn read_indices(indices: &Elements<'_>, n_positions: usize) -> Result<Vec<usize>, Malformed> {
-    let check = |position| {
-        let index = indices.index(position);
-        let found = usize::try_from(index).ok().filter(|&i| i < n_positions);
-        found.ok_or_else(|| malformed!("index {position} is {index}, but there are {n_positions} positions"))
-    };
-    (0..indices.count).map(check).collect()
+    (0..indices.count).map(|position| read_index(indices, n_positions, position)).collect()
+}
+
+fn read_index(indices: &Elements<'_>, n_positions: usize, position: usize) -> Result<usize, Malformed> {
+    let index = indices.index(position);
+    let found = usize::try_from(index).ok().filter(|&i| i < n_positions);
+    found.ok_or_else(|| malformed!("index {position} is {index}, but there are {n_positions} positions"))
 }
 
 /// Refuses modes that do not exist, and lists of triangles that end in a part of one.

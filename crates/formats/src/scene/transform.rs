@@ -4,9 +4,9 @@
 //! quotient per entry of a rotation.
 
 use super::json::Node;
-use super::range::Range;
 use crate::error::{Malformed, malformed};
 use sightlines_cells::Point3;
+use sightlines_geometry::range::Range;
 
 /// An affine map of space.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -136,34 +136,4 @@ fn rotation_rows([x, y, z, w]: [f64; 4]) -> Option<[Point3; 3]> {
         [off(x * y, w * z), diagonal(yy, xx, zz), off(y * z, -(w * x))],
         [off(x * z, -(w * y)), off(y * z, w * x), diagonal(zz, xx, yy)],
     ])
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn right_angles_are_exact() {
-        let h = f64::from(std::f32::consts::FRAC_1_SQRT_2);
-        let quarter = |q| rotation_rows(q).unwrap();
-        assert_eq!(quarter([h, 0., 0., h]), [[1., 0., 0.], [0., 0., -1.], [0., 1., 0.]]);
-        assert_eq!(quarter([0., h, 0., h]), [[0., 0., 1.], [0., 1., 0.], [-1., 0., 0.]]);
-        assert_eq!(quarter([0., 0., -h, h]), [[0., 1., 0.], [-1., 0., 0.], [0., 0., 1.]]);
-        assert_eq!(quarter([0., h, h, 0.]), [[-1., 0., 0.], [0., 0., 1.], [0., 1., 0.]]);
-        assert_eq!(quarter([0.5, 0.5, 0.5, 0.5]), [[0., 0., 1.], [1., 0., 0.], [0., 1., 0.]]);
-        assert_eq!(quarter([0., 0., 0., -3.]), [[1., 0., 0.], [0., 1., 0.], [0., 0., 1.]]);
-        assert_eq!(rotation_rows([0.; 4]), None);
-    }
-
-    #[test]
-    fn mirrors_are_distinguished_from_turns() {
-        let scaled = |s| Transform::from_parts([0.; 3], [0., 0., 0., 1.], s).unwrap().mirrors();
-        assert!(scaled([-1., 1., 1.]) && scaled([-1., -2., -1.]));
-        assert!(!scaled([-1., -1., 1.]) && !scaled([2., 1., 1.]) && !scaled([-1., 0., 1.]));
-        let swap = [0., 1., 0., 0., 1., 0., 0., 0., 0., 0., 1., 0., 5., 6., 7., 1.];
-        let swap = Transform::from_columns(&swap).unwrap();
-        assert!(swap.mirrors() && !swap.after(&swap).mirrors());
-        assert_eq!(swap.apply([1., 2., 3.]), [7., 7., 10.]);
-        assert_eq!(swap.after(&swap).apply([1., 2., 3.]), swap.apply(swap.apply([1., 2., 3.])));
-    }
 }

@@ -50,12 +50,18 @@ pub struct Lump {
     pub name: LumpName,
     /// Its bytes in the file; empty wherever an empty lump claims to be.
     range: (u32, u32),
+    is_lost: bool,
 }
 
 impl Lump {
     /// Where its bytes are in the file.
     pub fn range(&self) -> Range<usize> {
         self.range.0 as usize..self.range.1 as usize
+    }
+
+    /// Whether it is a REJECT lump whose entry names bytes that cannot be its own, such as those past the end of the file. It has none.
+    pub fn is_lost(&self) -> bool {
+        self.is_lost
     }
 
     /// Number of bytes.
@@ -68,7 +74,7 @@ impl Lump {
 ///
 /// Several entries may name exactly the same bytes, as tools that save space write them. Entries of
 /// size 0 may claim any place. REJECT lumps that start at one place may differ in size, because one
-/// node builder lets all tables of zeros share their bytes.
+/// node builder lets all tables of zeros share their bytes; one that is nowhere counts as empty ([`Lump::is_lost`]), as it will be replaced.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Wad {
     bytes: Vec<u8>,
@@ -87,7 +93,13 @@ impl Wad {
         let lumps = bytes[directory.clone()]
             .chunks_exact(ENTRY_LEN)
             .enumerate()
-            .map(|(index, entry)| parse_entry(index, entry, bytes.len(), &directory))
+            .map(|(index, entry)| {
+                let name = LumpName::from_raw(bytes_at(entry, 8));
+                match parse_entry((index, name), entry, bytes.len(), &directory) {
+                    Err(_) if name.is("REJECT") => Ok(Lump { name, range: (0, 0), is_lost: true }),
+                    found => found.map(|range| Lump { name, range, is_lost: false }),
+                }
+            })
             .collect::<Result<Vec<_>, _>>()?;
         check_overlaps(&lumps)?;
         Ok(Self { bytes, kind: header.kind, lumps })
@@ -166,11 +178,15 @@ impl Header {
     }
 }
 
-fn parse_entry(index: usize, entry: &[u8], file_len: usize, directory: &Range<usize>) -> Result<Lump, Malformed> {
-    let name = LumpName::from_raw(bytes_at(entry, 8));
+fn parse_entry(
+    (index, name): (usize, LumpName),
+    entry: &[u8],
+    file_len: usize,
+    directory: &Range<usize>,
+) -> Result<(u32, u32), Malformed> {
     let (offset, size) = (i32_at(entry, 0), i32_at(entry, 4));
     if size == 0 {
-        return Ok(Lump { name, range: (0, 0) });
+        return Ok((0, 0));
     }
     // The sum of two numbers below 2^31 fits.
     let range = u32::try_from(offset).ok().zip(u32::try_from(size).ok()).map(|(start, size)| (start, start + size));
@@ -178,14 +194,14 @@ fn parse_entry(index: usize, entry: &[u8], file_len: usize, directory: &Range<us
         let what = malformed!("{size} bytes at byte {offset} are not inside the file of {file_len} bytes");
         return Err(what.within(label(index, name)));
     };
-    let lump = Lump { name, range };
-    if lump.range().start < HEADER_LEN {
+    let [start, end] = [range.0, range.1].map(|at| at as usize);
+    if start < HEADER_LEN {
         return Err(malformed!("{} overlaps the header", label(index, name)));
     }
-    if lump.range().start < directory.end && directory.start < lump.range().end {
+    if start < directory.end && directory.start < end {
         return Err(malformed!("{} overlaps the directory", label(index, name)));
     }
-    Ok(lump)
+    Ok(range)
 }
 
 /// A lump as errors name it.

@@ -1,5 +1,7 @@
 //! Files that are written as a whole or not at all, and what killed processes leave.
 
+use sightlines_formats::input::Neighbours;
+use sightlines_formats::scene::{SceneReadOptions, parse_gltf_with};
 use sightlines_formats::{Hidden, NewFolder, atomic_write, process_mark, remove_left};
 use std::fs::{self, File};
 use std::io;
@@ -162,4 +164,37 @@ fn names_that_are_taken_are_passed_over() {
         assert_eq!((names(&target), names(all.path()).len()), (vec![files[0].to_owned()], 4));
     }
     assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+}
+
+/// Asks for nothing but what it was asked for.
+#[derive(Debug, Default)]
+struct Asked(std::sync::Mutex<Vec<std::path::PathBuf>>);
+
+impl Neighbours for Asked {
+    fn read(&self, path: &Path) -> io::Result<Option<Vec<u8>>> {
+        self.0.lock().unwrap().push(path.to_owned());
+        Ok(Some(vec![0; 36]))
+    }
+}
+
+#[test]
+fn paths_stay_in_the_folder() {
+    let asked = |uri: &str| {
+        let document = serde_json::json!({
+            "asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+            "accessors": [{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 3}],
+            "bufferViews": [{"buffer": 0, "byteLength": 36}], "buffers": [{"byteLength": 36, "uri": uri}],
+        });
+        let (asked, options) = (Asked::default(), SceneReadOptions::default());
+        parse_gltf_with(document.to_string().as_bytes(), Some(&asked), &options).unwrap_err();
+        asked.0.into_inner().unwrap()
+    };
+    for (uri, path) in [("walls.bin", "walls.bin"), ("./a%20b/%C3%A9.bin", "./a b/\u{e9}.bin")] {
+        assert_eq!(asked(uri), [Path::new(path)], "{uri}");
+    }
+    let refused = "|/etc/passwd|../x.bin|a/../../x.bin|%2e%2e/x|http://x/y|file:x|a%0|a%zz|a%00|%FF";
+    for refused in refused.split('|') {
+        assert!(asked(refused).is_empty(), "{refused}");
+    }
 }

@@ -357,3 +357,42 @@ fn written_text_is_pinned() {
 "#;
     assert_eq!(text, expected);
 }
+
+/// Plans in degrees are noticed, and others are not.
+#[test]
+fn plans_in_degrees_are_noticed() {
+    let warnings = |[x, y]: [f64; 2], size: f64, crs: &str| {
+        let crs = if crs.is_empty() {
+            String::new()
+        } else {
+            format!(r#""crs": {{"type": "name", "properties": {{"name": "{crs}"}}}},"#)
+        };
+        let (a, b) = (x + size, y + size);
+        let text = format!(
+            r#"{{"type": "Feature", {crs} "geometry": {{"type": "Polygon", "coordinates": [[[{x}, {y}], [{a}, {y}], [{a}, {b}], [{x}, {y}]]]}}}}"#
+        );
+        parse_plan_file(text.as_bytes()).unwrap().warnings
+    };
+    for (at, zone) in
+        [([8.54, 47.37], "32632"), ([-70.6, -33.4], "32719"), ([179.9, 1.5], "32660"), ([-180.0, 1.5], "32601")]
+    {
+        let found = warnings(at, 0.0005, "");
+        assert_eq!(found.len(), 1, "{at:?}");
+        let text = format!(
+            "the plan seems to be in degrees, 0.000500 by 0.000500: it is read as one in a plane, where distances, angles and areas of degrees are wrong; `ogr2ogr -t_srs EPSG:{zone} OUT.geojson IN.geojson` projects it to metres"
+        );
+        assert_eq!(found, [text]);
+    }
+    assert_eq!(warnings([1.0, 2.0], 9.0, "urn:ogc:def:crs:OGC:1.3:CRS84").len(), 1);
+    assert_eq!(warnings([1.0, 2.0], 9.0, "urn:ogc:def:crs:EPSG::4326").len(), 1);
+    // A room, something small around the origin, numbers that no degrees have, and another system.
+    for (at, size, crs) in [
+        ([8.54, 47.37], 6.0, ""),
+        ([-0.1, 0.0], 0.2, ""),
+        ([181.0, 0.0], 0.1, ""),
+        ([8.5, 91.0], 0.1, ""),
+        ([8.54, 47.37], 0.001, "EPSG:25832"),
+    ] {
+        assert_eq!(warnings(at, size, crs), [""; 0], "{at:?}");
+    }
+}

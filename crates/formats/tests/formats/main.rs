@@ -29,6 +29,7 @@ mod scene_mutations;
 mod scene_oracles;
 mod scene_writers;
 mod scenes;
+mod transforms;
 mod udmf;
 mod view_cells;
 mod wad;

@@ -2,7 +2,9 @@
 
 use crate::common::{difference_besides_reject, small_wad, two_rooms};
 use proptest::prelude::*;
-use sightlines_formats::doom::{DoomMapSource, MapLump, SourceLine, SourceThing, Thing, list_maps, write_doom_map};
+use sightlines_formats::doom::{
+    DoomMapSource, Game, MapLump, SourceLine, SourceThing, Thing, list_maps, write_doom_map,
+};
 use sightlines_formats::wad::{WadBuilder, WadError, WadKind};
 use sightlines_formats::{DoomMap, LumpName, Malformed, ReadError, Wad};
 
@@ -87,7 +89,13 @@ fn lines_with_missing_sides_are_fine() {
     assert!(plan.lines()[0].opaque && plan.lines()[0].right.is_none());
     source.lines[6].flags = 0;
     source.lines[6].left = Some(0);
-    assert!(read(small_wad(&source)).unwrap().plan().unwrap().lines()[6].opaque, "two sides do not make it two-sided");
+    let opaque = |source: &_, game| read(small_wad(source)).unwrap().plan_for(game).unwrap().lines()[6].opaque;
+    assert!(opaque(&source, Some(Game::Doom)), "two sides do not make it two-sided");
+    assert!(!opaque(&source, None) && !opaque(&source, Some(Game::Heretic)), "other engines look through it");
+    source.hexen = true;
+    assert!(!opaque(&source, Some(Game::Doom)), "the format counts more");
+    (source.lines[6].right, source.lines[6].left) = (Some(0), None);
+    assert!(opaque(&source, None), "it needs a left side");
 }
 
 #[test]
@@ -308,7 +316,7 @@ proptest! {
             }
             let drawn = all_drawn.next().expect("each line with length");
             prop_assert_eq!([drawn.right, drawn.left], sectors);
-            prop_assert_eq!(drawn.opaque, written.flags & 4 == 0);
+            prop_assert_eq!(drawn.opaque, written.flags & 4 == 0 && written.left.is_none());
             prop_assert_eq!([drawn.a.to_array(), drawn.b.to_array()], [start, end]);
         }
         prop_assert_eq!(all_drawn.next(), None);

@@ -432,3 +432,68 @@ fn names_of_an_obj_may_have_a_hash() {
     let file = obj(&format!("mtllib a.mtl # materials\n{all}"), &[("a.mtl", library)], &none).unwrap();
     assert_eq!((hiding(&file).len(), file.info.warnings), (5, vec![]));
 }
+
+/// Why each material of a library lets light through, as the object says that has it; `None` for one that does not.
+fn reasons<const N: usize>(library: &str, names: [&str; N]) -> [Option<String>; N] {
+    let faces: String = names.iter().map(|name| format!("o a\nusemtl {name}\nf 1 2 3\n")).collect();
+    let file = obj(&format!("mtllib a.mtl\n{faces}"), &[("a.mtl", library)], &SceneReadOptions::default()).unwrap();
+    let reason = |k: u32| file.info.surfaces.iter().find(|class| class.object == k).map(|class| class.reason.clone());
+    std::array::from_fn(|k| reason(k as u32))
+}
+
+#[test]
+fn glass_is_told_from_walls() {
+    let text = "# materials\nd 0.1\nnewmtl wall\nKd 1 1 1\nTf 0.6 0.6 0.6\nd 1.0\nTr 0\nillum 2\nnewmtl glass\r\n  d 0.25\r\n\
+                newmtl water\nTr 0.5 # half\nnewmtl leaf\nmap_d leaf mask.png\nnewmtl pane\nillum 4\nnewmtl halo\nd -halo 1\n\
+                newmtl odd\nd\nnewmtl old glass\nd 1\nnewmtl old glass\nd 0.9";
+    let names = ["wall", "glass", "water", "leaf", "pane", "halo", "odd", "old glass", "none"];
+    let none = "a material that is in no library";
+    let expected = ["", "d 0.25", "Tr 0.5", "map_d", "illum 4", "d -halo 1", "d", "d 0.9", none];
+    // The same with the line ends of other systems.
+    for text in [text.to_owned(), text.replace("\r\n", "\n").replace('\n', "\r")] {
+        let found = reasons(&text, names);
+        assert_eq!(found.each_ref().map(|why| why.as_deref().unwrap_or_default()), expected);
+        assert_eq!(found[0], None);
+    }
+    for (illum, is_glass) in
+        [(0, false), (3, false), (5, false), (8, false), (6, true), (9, true), (10, true), (11, true)]
+    {
+        let [found] = reasons(&format!("newmtl a\nillum {illum} # why"), ["a"]);
+        assert_eq!(found.is_some(), is_glass, "illum {illum}");
+    }
+    let text = "newmtl Material #25\nd 0.5 # half\n#newmtl x\nnewmtl Material #26 # a wall\nd 1#\n# d 0";
+    let [half, wall, x] = reasons(text, ["Material #25", "Material #26 # a wall", "x"]);
+    assert_eq!((half.as_deref(), wall, x.as_deref()), (Some("d 0.5"), None, Some(none)));
+    assert_eq!(reasons("", ["a"])[0].as_deref(), Some(none));
+    let bytes = Files(&[]);
+    let odd = parse_obj_with(
+        format!("{FACES}mtllib \u{fffd}\nusemtl a\nf 1 2 3").as_bytes(),
+        Some(&bytes),
+        &SceneReadOptions::default(),
+    );
+    assert_eq!(odd.unwrap().info.warnings.len(), 1);
+}
+
+/// Of several libraries in a line those that are there are used, and those that are not are named.
+#[test]
+fn missing_libraries_take_no_others_with_them() {
+    let text = "o house\nusemtl brick\nf 1 2 3\no pane\nusemtl glass\nf 1 2 4\no post\nusemtl lost\nf 1 3 4\n";
+    let (a, b) = (("a.mtl", "newmtl brick\nd 1\n"), ("b.mtl", "newmtl glass\nd 0.5\n"));
+    let missing = |name: &str| {
+        format!(
+            "the material library {name:?} cannot be read: put it beside the OBJ; without it, faces with its materials hide nothing"
+        )
+    };
+    for (line, files, missing, hides) in [
+        ("a.mtl none.mtl b.mtl", &[a, b][..], Some(missing("none.mtl")), [true, false, false]),
+        ("none.mtl a.mtl", &[a], Some(missing("none.mtl")), [true, false, false]),
+        ("b.mtl none.mtl", &[a, b], Some(missing("none.mtl")), [false, false, false]),
+        ("a.mtl b.mtl", &[a, b], None, [true, false, false]),
+        // None of them: it may be one name with spaces.
+        ("my walls.mtl", &[a, b], Some(missing("my walls.mtl")), [false, false, false]),
+    ] {
+        let file = obj(&format!("mtllib {line}\n{text}"), files, &SceneReadOptions::default()).unwrap();
+        assert_eq!(hiding(&file).into_iter().map(|(_, hides)| hides).collect::<Vec<_>>(), hides, "{line}");
+        assert_eq!(file.info.warnings, missing.into_iter().collect::<Vec<_>>());
+    }
+}

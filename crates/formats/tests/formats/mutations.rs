@@ -46,7 +46,7 @@ fn check_map(map: &DoomMap) {
     let corners = |l: &sightlines_formats::doom::LineDef| [l.v1, l.v2].map(|v| map.vertices()[v as usize]);
     let with_length = map.lines().iter().filter(|l| corners(l)[0] != corners(l)[1]);
     for (line, def) in plan.lines().iter().zip(with_length) {
-        assert!(line.a != line.b && line.opaque != def.is_two_sided());
+        assert!(line.a != line.b && line.opaque <= !(def.is_two_sided() || def.left.is_some()));
         assert_eq!([line.right, line.left], map.sectors_of(def));
     }
     if let Some(Ok(table)) = map.reject().map(|bytes| RejectTable::from_bytes(map.n_sectors(), bytes)) {

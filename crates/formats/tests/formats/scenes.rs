@@ -243,14 +243,27 @@ fn buffers_wherever_they_are() {
 fn broken_containers_are_refused() {
     let says = |bytes: &[u8], text: &str| assert_eq!(parse_glb(bytes, None).unwrap_err().to_string(), text);
     says(b"glTF\x02\0\0", "not a GLB: 7 bytes are less than a header");
-    says(b"glTF\x01\0\0\0\x0C\0\0\0", "GLB version 1 is not 2");
+    says(
+        b"glTF\x01\0\0\0\x0C\0\0\0",
+        "GLB version 1 is not 2; `npx gltf-pipeline -i IN.gltf -o OUT.glb` makes version 2 of version 1",
+    );
+    says(b"glTF\x03\0\0\0\x0C\0\0\0", "GLB version 3 is not 2");
     says(b"glTF\x02\0\0\0\x03\0\0\0", "the header states 3 bytes, the file has 12");
     says(b"glTF\x02\0\0\0\x0C\0\0\0", "the first chunk is not JSON");
     says(b"glTF\x02\0\0\0\x14\0\0\0\x01\0\0\0JSON", "the chunk at byte 12 is not inside the 20 bytes of the file");
     says(b"glTF\x02\0\0\0\x14\0\0\0\0\0\0\0BIN\0", "the first chunk is not JSON");
     says(&glb("{}", b""), "the glTF text cannot be read: missing field `asset` at line 1 column 2");
     says(b"{\"asset\":\xFF}", "byte 9 of the glTF text is not UTF-8");
-    says(br#"{"asset":{"version":"1.0"}}"#, "glTF version \"1.0\" is not 2.x");
+    says(
+        br#"{"asset":{"version":"1.0"}}"#,
+        "glTF version \"1.0\" is not 2.x; `npx gltf-pipeline -i IN.gltf -o OUT.glb` makes version 2 of version 1",
+    );
+    // Of other versions the rest of the text may have any form.
+    says(
+        br#"{"asset":{"version":"1.1"},"nodes":{}}"#,
+        "glTF version \"1.1\" is not 2.x; `npx gltf-pipeline -i IN.gltf -o OUT.glb` makes version 2 of version 1",
+    );
+    says(br#"{"asset":{"version":0.8},"nodes":{}}"#, "glTF version \"0.8\" is not 2.x");
     says(br#"{"asset":{"version":"2.1"}}"#, "no triangles (0 objects, 0 triangles without area)");
     // Chunks of extensions, and what is behind the GLB, are skipped.
     let mut file = small_doc().glb();
@@ -368,7 +381,6 @@ fn errors_name_node_and_primitive() {
         json!(2),
         &format!("{quantised}2 elements are not inside the 1 bytes of buffer view 3"),
     );
-    with(&|doc| doc.binary[48..50].copy_from_slice(&[4, 0]), &format!("{wall}index 0 is 4, but there are 4 positions"));
     with(
         &|doc| doc.binary[40..44].copy_from_slice(&f32::NAN.to_le_bytes()),
         &format!("{wall}position 3: coordinate NaN is not a finite number"),
@@ -639,4 +651,73 @@ fn instances_are_objects() {
     assert!(error.contains("nodes[1]") && error.contains("EXT_mesh_gpu_instancing"), "{error}");
     let pattern = SceneReadOptions { see_through: vec!["tree".parse().unwrap()], ..SceneReadOptions::default() };
     assert_eq!(parse_gltf_with(&doc.glb(), None, &pattern).unwrap().scene.see_through(), [0, 1, 2]);
+}
+
+/// A triangle with an index that is not there is left out and named, and the rest is as it was; without a rest the file is refused.
+#[test]
+fn triangles_of_corners_that_are_not_there_are_left_out() {
+    let square = [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.], [1., 1., 0.]];
+    let of = |indices: &[u32], mode: u32| {
+        let mut doc = Doc::new(json!([{"name": "wall", "mesh": 0}, {"mesh": 0, "translation": [0, 0, 5]}]));
+        let (positions, indices) = (doc.positions(&square), doc.indices(indices, 2));
+        doc.mesh(json!([{"attributes": {"POSITION": positions}, "indices": indices, "mode": mode}]));
+        parse_glb(&doc.glb(), None)
+    };
+    let (list, strip, fan) = (4, 5, 6);
+    for (indices, mode, n_left_out, triangles) in [
+        (&[0, 1, 2, 1, 2, 4, 2, 1, 3][..], list, "1 face: ", &[[0, 1, 2], [2, 1, 3]][..]),
+        (&[9, 9, 9, 0, 1, 7, 2, 1, 3], list, "2 faces, the first of them: ", &[[2, 1, 3]]),
+        (&[0, 1, 2, 3, 8], strip, "1 face: ", &[[0, 1, 2], [1, 3, 2]]),
+        (&[0, 1, 3, 2, 8], fan, "1 face: ", &[[1, 3, 0], [3, 2, 0]]),
+    ] {
+        let file = of(indices, mode).unwrap();
+        let k = indices.iter().position(|&index| index > 3).unwrap();
+        let wrong = format!("index {k} is {}, but there are 4 positions", indices[k]);
+        assert_eq!(file.info.n_triangles, 2 * triangles.len());
+        assert_eq!(file.info.warnings.len(), 1);
+        let warning = &file.info.warnings[0];
+        assert!(warning.starts_with(&format!("left out {n_left_out}")) && warning.ends_with(&wrong), "{warning}");
+        let found: Vec<_> = corners(&file, 0);
+        let expected = triangles.iter().map(|t| t.map(|k| file.scene.objects()[0].vertices[k]));
+        assert_eq!(found.len(), triangles.len());
+        let sorted = |t: [[f64; 3]; 3]| {
+            let mut t = t.map(|p| p.map(f64::to_bits));
+            t.sort_unstable();
+            t
+        };
+        assert_eq!(found.into_iter().map(sorted).collect::<Vec<_>>(), expected.map(sorted).collect::<Vec<_>>());
+    }
+    let error = of(&[0, 1, 4], list).unwrap_err().to_string();
+    assert!(error.ends_with("index 2 is 4, but there are 4 positions"), "{error}");
+}
+
+/// The same of an OBJ: bad faces are left out, counted and named, wherever they stand; line ends are those of any system.
+#[test]
+fn bad_faces_of_an_obj_are_left_out() {
+    let good = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\no wall\nf 1 2 3 4\no post\nf 1 2 3\n";
+    let expected = parse_obj(good.as_bytes()).unwrap();
+    assert_eq!(expected.info.warnings, [""; 0]);
+    for end in ["\r\n", "\r"] {
+        assert_eq!(parse_obj(good.replace('\n', end).as_bytes()).unwrap(), expected);
+    }
+    let bad = ["f 1 2", "f", "f 1 2 x", "f 1 2 /3", "f 1 2 9", "f 0 1 2", "f 1 2 -5", "f 1 3 2 4"];
+    for (k, bad) in bad.iter().enumerate() {
+        // Before, between and behind the others, and once as an object that has nothing else.
+        for (place, line) in [("o wall", 5), ("o post", 7), ("", 9)] {
+            let text = if place.is_empty() {
+                format!("{good}o bad\n{bad}")
+            } else {
+                good.replace(place, &format!("{bad}\n{place}"))
+            };
+            let line = if place.is_empty() { line + 1 } else { line };
+            let file = parse_obj(text.as_bytes()).unwrap();
+            assert_eq!(file.scene.objects(), expected.scene.objects(), "{k}: {text}");
+            let [warning] = &file.info.warnings[..] else { panic!("{:?}", file.info.warnings) };
+            assert!(warning.starts_with(&format!("left out 1 face: line {line}: ")), "{warning}");
+        }
+    }
+    let all = parse_obj(format!("{good}{}", bad.join("\n")).as_bytes()).unwrap();
+    let [warning] = &all.info.warnings[..] else { panic!("{:?}", all.info.warnings) };
+    assert!(warning.starts_with("left out 8 faces, the first of them: line 9: a face needs"), "{warning}");
+    assert_eq!(all.scene.objects(), expected.scene.objects());
 }

@@ -15,7 +15,11 @@ fn read(text: &[u8]) -> Result<DoomMap, Malformed> {
 
 fn refused(text: &str) -> String {
     let error = read(text.as_bytes()).unwrap_err();
-    error.to_string().strip_prefix("map MAP01: TEXTMAP: ").expect("the place first").to_owned()
+    error
+        .to_string()
+        .strip_prefix("map MAP01: TEXTMAP: ")
+        .unwrap_or_else(|| panic!("the place comes first: {error}"))
+        .to_owned()
 }
 
 /// The binary map of two rooms.
@@ -131,6 +135,8 @@ fn what_is_wrong_is_named_with_its_line_and_column() {
             "linedef { v1 = 4294967296; v2 = 0; }",
             "line 1, column 16: v1 is 4294967296, but it takes the number of a block",
         ),
+        ("linedef { v1 = 08; v2 = 0; }", "line 1, column 16: v1 is 08, but it takes the number of a block"),
+        ("linedef { v1 = 0; v2 = 0; special = a; }", "line 1, column 37: special is a, but it takes a whole number"),
         ("linedef { v1 = 0x; v2 = 0; }", "line 1, column 16: v1 is 0x, but it takes the number of a block"),
         (
             "linedef { v1 = 0; v2 = 0; sideback = -2; }",
@@ -149,7 +155,7 @@ fn what_is_wrong_is_named_with_its_line_and_column() {
         ("vertex", "line 1, column 7: = or { is expected, not the end of the text"),
         ("a = ;", "line 1, column 5: a value is expected, not ;"),
         ("}", "line 1, column 1: a name is expected, not }"),
-        ("\u{feff}a = 1;", "line 1, column 1: a name is expected, not \\xef\\xbb\\xbfa"),
+        ("a = 1; \u{feff}b = 1;", "line 1, column 8: a name is expected, not \\xef\\xbb\\xbfb"),
         ("a = \"\n\n", "line 1, column 5: this string has no end"),
         ("// a\n/* b", "line 2, column 1: this comment has no end"),
     ];
@@ -311,4 +317,23 @@ fn what_has_no_end_is_named_where_it_begins() {
     ] {
         assert_eq!(refused(text), error, "{text}");
     }
+}
+
+/// A byte order mark, zeros that fill the lump up, line ends of old programs, and numbers that all programs read the same way.
+#[test]
+fn texts_are_read_as_programs_write_them() {
+    let text = triangle("linedef { v1 = 02; v2 = 001; sidefront = -01; special = 00; } // the last\n");
+    let expected = read(triangle("linedef { v1 = 2; v2 = 1; }\n").as_bytes()).unwrap();
+    let with = |before: &[u8], behind: &[u8]| [before, text.as_bytes(), behind].concat();
+    for bytes in [
+        with(b"", b""),
+        with(b"\xEF\xBB\xBF", b""),
+        with(b"", b"\0"),
+        with(b"\xEF\xBB\xBF", &[0; 100]),
+        text.replace('\n', "\r").into_bytes(),
+        text.replace('\n', "\r\n").into_bytes(),
+    ] {
+        assert_same(&read(&bytes).unwrap(), &expected);
+    }
+    assert!(read(&with(b"\0", b"")).is_err() && read(&with(b"", b"\0 x")).is_err());
 }

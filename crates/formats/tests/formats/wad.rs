@@ -65,6 +65,14 @@ fn broken_lumps_are_refused_by_index_and_name() {
     assert_eq!(refused(8, &[(14, 4, "A"), (40, 0, "B"), fine]), "lump 0 (A) and lump 2 (FINE) overlap");
     assert_eq!(refused(8, &[(12, 4, "A"), (12, 5, "B")]), "lump 0 (A) and lump 1 (B) overlap");
     assert_eq!(refused(8, &[(12, 8, "A"), (14, 1, "B"), (16, 1, "C")]), "lump 0 (A) and lump 1 (B) overlap");
+    // Those of REJECT are replaced anyway.
+    for lost in [(12, 9, "REJECT"), (-1, 3, "REJECT"), (12, -3, "REJECT"), (11, 2, "reject"), (19, 2, "REJECT")] {
+        let wad = Wad::parse(raw(8, &[fine, lost])).unwrap();
+        assert!(wad.lumps()[1].is_lost() && !wad.lumps()[0].is_lost() && wad.lump_bytes(1).is_empty(), "{lost:?}");
+        let after = Wad::parse(wad.with_edits(&[Edit::Replace { lump: 1, bytes: vec![7] }]).unwrap()).unwrap();
+        assert!(!after.lumps()[1].is_lost() && after.lump_bytes(1) == [7] && after.lump_bytes(0) == wad.lump_bytes(0));
+    }
+    assert!(!Wad::parse(raw(8, &[(77, 0, "REJECT")])).unwrap().lumps()[0].is_lost(), "an empty one may be anywhere");
     assert_eq!(refused(8, &[(12, 5, "REJECT"), (13, 4, "REJECT")]), "lump 0 (REJECT) and lump 1 (REJECT) overlap");
     assert_eq!(refused(8, &[(12, 5, "REJECT"), (12, 4, "FOO")]), "lump 0 (REJECT) and lump 1 (FOO) overlap");
 }
@@ -87,8 +95,8 @@ fn files_are_refused_by_name_and_early() {
 /// Whether a directory is sound, by the definition: pair by pair.
 fn sound(body: i32, entries: &[(i32, i32, &str)]) -> bool {
     let (begin, end) = (12, 12 + body);
-    let real: Vec<_> = entries.iter().filter(|e| e.1 != 0).collect();
     let inside = |e: &(i32, i32, &str)| e.1 > 0 && begin <= e.0 && e.0 + e.1 <= end;
+    let real: Vec<_> = entries.iter().filter(|e| e.1 != 0 && (inside(e) || e.2 != "REJECT")).collect();
     let apart = |a: &(i32, i32, &str), b: &(i32, i32, &str)| a.0 + a.1 <= b.0 || b.0 + b.1 <= a.0;
     let zeros = |a: &(i32, i32, &str), b: &(i32, i32, &str)| a.0 == b.0 && a.2 == "REJECT" && b.2 == "REJECT";
     let same = |a: &(i32, i32, &str), b: &(i32, i32, &str)| (a.0, a.1) == (b.0, b.1);

@@ -1,7 +1,7 @@
 //! `reject` of a folder: all WADs in it, whose maps are units of one work.
 
 use super::outcome::{FileOutcome, FileStatus, FolderOutcome};
-use super::{BAR, Map, RejectArgs, warn};
+use super::{BAR, Map, RejectArgs, warn, warn_of_lost};
 use crate::error::{Result, anyhow, bail};
 use crate::interrupt;
 use crate::kept::{self, Keeping, Kept};
@@ -113,7 +113,8 @@ impl Folder<'_> {
         for (k, path) in self.paths.iter().enumerate() {
             let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
             let mut file = FileOutcome { name, out: None, status: FileStatus::Skipped, reason: None, maps: Vec::new() };
-            match Wad::read(path).map(|wad| RejectMaps::of(&wad, &self.args.map)) {
+            match Wad::read(path).inspect(|wad| warn_of_lost(path, wad)).map(|wad| RejectMaps::of(&wad, &self.args.map))
+            {
                 Ok(maps) if maps.n_in_file() == 0 => file.reason = Some("it has no maps".to_owned()),
                 Ok(maps) if maps.is_empty() => file.reason = Some("it has no map of that name".to_owned()),
                 Ok(maps) => {

@@ -15,7 +15,7 @@ use outcome::{Map, WadOutcome};
 use sightlines::bake::{MapOutcome, MapStatus, RejectError, RejectOptions, RejectSummary, reject_wad};
 use sightlines::checkpoint::{Identity, Inputs};
 use sightlines::formats::Wad;
-use sightlines::formats::doom::RmbFile;
+use sightlines::formats::doom::{Game, RmbFile};
 use sightlines::progress::memory;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -40,6 +40,10 @@ pub(crate) struct RejectArgs {
     /// Make the effects of this option file of RMB: BLIND and SAFE 0 and 1, INCLUDE, EXCLUDE; not for a folder
     #[arg(long, help_heading = "Method", value_name = "FILE.rej")]
     rmb: Option<PathBuf>,
+    /// The game whose engines read the tables. Those of Heretic and Hexen look through every line with a left side, those of Doom only if it is flagged as two-sided.
+    /// Without it tables are right for all; Hexen's format and a UDMF namespace of either game count more
+    #[arg(long, help_heading = "Method", value_name = "GAME", value_enum)]
+    game: Option<GameArg>,
     /// Stop at a map that cannot be done and write nothing, instead of doing the others
     #[arg(long, help_heading = "Method")]
     strict: bool,
@@ -55,6 +59,24 @@ pub(crate) struct RejectArgs {
     pub(crate) output: PathBuf,
     #[command(flatten)]
     json: JsonArg,
+}
+
+/// Values of `--game`.
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+enum GameArg {
+    Doom,
+    Heretic,
+    Hexen,
+}
+
+impl From<GameArg> for Game {
+    fn from(game: GameArg) -> Self {
+        match game {
+            GameArg::Doom => Self::Doom,
+            GameArg::Heretic => Self::Heretic,
+            GameArg::Hexen => Self::Hexen,
+        }
+    }
 }
 
 pub(crate) fn run(args: &RejectArgs, Verbosity { show_progress, .. }: Verbosity) -> Result<Done> {
@@ -78,6 +100,7 @@ fn make_wad(args: &RejectArgs, keeping: Keeping<'_>, show_progress: bool) -> Res
     let files = std::iter::once(&args.input).chain(&args.rmb).map(PathBuf::as_path);
     let inputs = kept::look(keeping, files)?;
     let wad = Wad::read(&args.input)?;
+    warn_of_lost(&args.input, &wad);
     let rmb = args.rmb.as_ref().map(RmbFile::read).transpose()?;
     let kept = Kept::open(keeping, &inputs, &[&args.output], || args.identity(&inputs, &[]))?;
     let made = || -> Result<WadOutcome> {
@@ -113,6 +136,7 @@ impl RejectArgs {
             force: self.force,
             strict: self.strict,
             rmb: None,
+            game: self.game.map(Game::from),
             threads: self.threads,
             progress: Some(bar),
             units: kept.units(),
@@ -123,11 +147,21 @@ impl RejectArgs {
     ///
     /// * `names`: those of the WADs of a folder
     fn identity(&self, inputs: &Inputs, names: &[&OsStr]) -> Identity {
-        let Self { input: _, map, force, rmb: _, strict, threads: _, memory: _, resume: _, output: _, json: _ } = self;
+        let Self { input: _, map, force, rmb: _, game, strict, threads: _, memory: _, resume: _, output: _, json: _ } =
+            self;
         let mut identity = kept::identity("reject", inputs);
         identity.debug("options", &(map, force, strict));
+        game.iter().for_each(|game| identity.debug("game", game));
         names.iter().for_each(|name| identity.debug("name", name));
         identity
+    }
+}
+
+/// Names the REJECT lumps that are nowhere.
+fn warn_of_lost(path: &Path, wad: &Wad) {
+    for (index, lump) in wad.lumps().iter().enumerate().filter(|(_, lump)| lump.is_lost()) {
+        let (path, name) = (path.display(), lump.name);
+        tracing::warn!("{path}: lump {index} ({name}) is not inside the file, and counts as empty");
     }
 }
 

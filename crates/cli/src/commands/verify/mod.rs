@@ -85,7 +85,10 @@ pub(crate) fn run(args: &VerifyArgs, Verbosity { show_progress, .. }: Verbosity)
     let options = args.surfaces.options_with(table.info());
     let plan = args.plans.options_with(&args.scene, table)?;
     let scene = truth::Real::read(&args.scene, args.map.as_deref(), args.prt.as_deref(), (&options, &plan))?;
-    let scene = if own.is_some() { scene.without_objects() } else { scene };
+    let scene = match own {
+        Some(_) => scene.for_every_engine(&args.scene, args.map.as_deref())?.without_objects(),
+        None => scene,
+    };
     if own.is_some() {
         let found = "a map with its own";
         refuse(&args.table, &[("--proofs or --strict", args.proofs.is_given())], "tables", found)?;

@@ -6,6 +6,7 @@ use crate::map_portals::{do_not_fit, portals_for};
 use crate::output::{JsonSchema, Serialize, bytes, count};
 use sightlines::bake::BakeError;
 use sightlines::formats::InputKind;
+use sightlines::formats::doom::Game;
 use sightlines::formats::quake::{Prt, read_bsp, read_prt};
 use sightlines::triangulation::subdivide;
 use sightlines::verify::{OwnError, OwnSummary, OwnVisibility};
@@ -92,6 +93,9 @@ fn of_bsp(path: &Path, scene: &Path, prt: Option<&Path>) -> Result<OwnVisibility
     })
 }
 
+/// A table is wrong if it hides what every engine shows, and those of Doom show the least.
+pub(super) const JUDGED_FOR: Option<Game> = Some(Game::Doom);
+
 /// Reads the lump of a Doom map, for the cells that the lines of the scene make.
 fn of_wad(path: &Path, scene: &Path, name: Option<&str>) -> Result<OwnVisibility> {
     if input::kind_of(scene)? != Some(InputKind::Wad) {
@@ -115,7 +119,7 @@ fn of_wad(path: &Path, scene: &Path, name: Option<&str>) -> Result<OwnVisibility
     let failed = |source: BakeError| anyhow!("{}: map {}: {source}", scene.display(), real.name());
     // A map without a lump is refused before it is cut.
     OwnVisibility::check_reject(&map).map_err(|error| refused(path, Some(map.name().to_string()), error))?;
-    let plan = real.plan().map_err(|error| failed(error.into()))?;
+    let plan = real.plan_for(JUDGED_FOR).map_err(|error| failed(error.into()))?;
     let (graph, _) = subdivide(&plan).map_err(|error| failed(error.into()))?;
     OwnVisibility::of_reject(&map, &graph).map_err(|error| refused(path, Some(map.name().to_string()), error))
 }

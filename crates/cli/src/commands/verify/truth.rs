@@ -1,5 +1,6 @@
 //! The scene that a table is checked against.
 
+use super::own::JUDGED_FOR;
 use crate::error::{ErrorAbout, Result};
 use crate::input::{self, refuse};
 use crate::map_portals::{do_not_fit, portals_for};
@@ -8,7 +9,7 @@ use sightlines::cells::{CellGraph, Convex, Plan, Scene};
 use sightlines::formats::quake::graph_of_prt;
 use sightlines::formats::quake::visibility::check_portals;
 use sightlines::formats::scene::SceneReadOptions;
-use sightlines::formats::{Input, PlanReadOptions};
+use sightlines::formats::{Input, InputKind, PlanReadOptions};
 use sightlines::pvs::Table;
 use sightlines::verify::{MapTree, Truth, VerifyError, along_frame};
 use std::path::Path;
@@ -48,6 +49,14 @@ impl Real {
                 Self::Map(graph_of_prt(&portals), MapTree::of_map(&bsp, &portals).in_file(path)?)
             }
         })
+    }
+
+    /// What every engine shows of a map of a WAD; others as they are.
+    pub(super) fn for_every_engine(self, path: &Path, name: Option<&str>) -> Result<Self> {
+        if input::kind_of(path)? != Some(InputKind::Wad) {
+            return Ok(self);
+        }
+        Ok(Self::Plan(input::doom(path, name)?.plan_for(JUDGED_FOR)?))
     }
 
     /// The same without objects, for a table that has none.

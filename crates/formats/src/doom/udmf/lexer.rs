@@ -20,8 +20,8 @@ impl Place {
 pub(super) enum Piece<'t> {
     /// A name, a number or a keyword.
     Word(&'t [u8]),
-    /// A string in quotes, without its content: sight depends on none.
-    Quoted,
+    /// A string in quotes: what is between them, as it stands.
+    Quoted(&'t [u8]),
     /// One of `{ } = ; ( ) '`.
     Mark(u8),
     /// The end of the text.
@@ -35,7 +35,7 @@ impl Piece<'_> {
         match self {
             Self::Word(word) if word.len() > LONGEST => format!("{}...", word[..LONGEST].escape_ascii()),
             Self::Word(word) => word.escape_ascii().to_string(),
-            Self::Quoted => "a string".to_owned(),
+            Self::Quoted(_) => "a string".to_owned(),
             Self::Mark(mark) => char::from(*mark).to_string(),
             Self::End => "the end of the text".to_owned(),
         }
@@ -52,7 +52,10 @@ pub(super) struct Lexer<'t> {
 }
 
 impl<'t> Lexer<'t> {
+    /// Without a byte order mark, and without the zeros that fill lumps up.
     pub(super) fn new(text: &'t [u8]) -> Self {
+        let text = text.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(text);
+        let text = &text[..text.iter().rposition(|&byte| byte != 0).map_or(0, |last| last + 1)];
         Self { text, at: 0, line: 1, line_start: 0 }
     }
 
@@ -62,8 +65,7 @@ impl<'t> Lexer<'t> {
         let place = self.place();
         let Some(&first) = self.text.get(self.at) else { return Ok((Piece::End, place)) };
         if first == b'"' {
-            self.string(place)?;
-            return Ok((Piece::Quoted, place));
+            return Ok((Piece::Quoted(self.string(place)?), place));
         }
         if is_mark(first) {
             self.at += 1;
@@ -96,7 +98,7 @@ impl<'t> Lexer<'t> {
             let rest = &self.text[self.at..];
             match rest {
                 [first, ..] if first.is_ascii_whitespace() => self.step(),
-                [b'/', b'/', ..] => self.at += rest.iter().position(|&b| b == b'\n').unwrap_or(rest.len()),
+                [b'/', b'/', ..] => self.at += rest.iter().position(|b| b"\r\n".contains(b)).unwrap_or(rest.len()),
                 [b'/', b'*', ..] => self.comment()?,
                 _ => return Ok(()),
             }
@@ -117,8 +119,9 @@ impl<'t> Lexer<'t> {
     }
 
     /// Goes past a string; `\` takes its meaning from the character behind it.
-    fn string(&mut self, place: Place) -> Result<(), Malformed> {
+    fn string(&mut self, place: Place) -> Result<&'t [u8], Malformed> {
         self.at += 1;
+        let start = self.at;
         loop {
             match self.text[self.at..] {
                 [b'"', ..] => break,
@@ -131,7 +134,7 @@ impl<'t> Lexer<'t> {
             }
         }
         self.at += 1;
-        Ok(())
+        Ok(&self.text[start..self.at - 1])
     }
 }
 

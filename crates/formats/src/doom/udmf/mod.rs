@@ -2,13 +2,13 @@
 //!
 //! A text is a list of assignments, `name = value;`, and of blocks of assignments, `name { ... }`; blocks do not nest.
 //! Blocks of one kind are numbered in their order. Letters of names count the same in both cases; of two assignments
-//! to one name in a block the later counts. Blocks and names that are not needed are skipped, whatever the namespace.
+//! to one name in a block the later counts. Blocks and names that are not needed are skipped. The namespace counts for what lines do.
 
 mod lexer;
 mod values;
 
-use super::ML_TWOSIDED;
 use super::content::{Content, LineDef, Thing};
+use super::{Game, ML_TWOSIDED};
 use crate::error::{Malformed, malformed};
 use lexer::{Lexer, Piece, Place};
 use values::Value;
@@ -18,10 +18,18 @@ use values::Value;
 /// # Errors
 /// [`Malformed`] with the line and column of the first thing that is wrong.
 pub(super) fn parse(text: &[u8]) -> Result<Content, Malformed> {
-    let mut reader = Reader { lexer: Lexer::new(text), content: Content::default(), lines: vec![], sides: vec![] };
+    let (lexer, content) = (Lexer::new(text), Content::default());
+    let mut reader = Reader { lexer, content, namespace: b"", lines: vec![], sides: vec![] };
     while reader.global()? {}
     reader.check()?;
-    Ok(reader.content)
+    let Reader { mut content, namespace, .. } = reader;
+    let is = |name: &str| namespace.eq_ignore_ascii_case(name.as_bytes());
+    content.game = if is("hexen") { Some(Game::Hexen) } else { is("heretic").then_some(Game::Heretic) };
+    // All other engines number what lines do as Hexen does.
+    if is("doom") || is("heretic") || is("strife") {
+        content.hexen_specials.clear();
+    }
+    Ok(content)
 }
 
 /// What a block of a kind takes, and where the block is.
@@ -36,6 +44,7 @@ struct Block<'t, const N: usize> {
 struct Reader<'t> {
     lexer: Lexer<'t>,
     content: Content,
+    namespace: &'t [u8],
     /// Where the blocks of lines are.
     lines: Vec<Place>,
     /// Where the blocks of sides are.
@@ -51,7 +60,12 @@ impl<'t> Reader<'t> {
             (piece, place) => (identifier(piece, place, "a name")?, place),
         };
         match self.lexer.next()? {
-            (Piece::Mark(b'='), _) => _ = self.value()?,
+            (Piece::Mark(b'='), _) => {
+                let value = self.value()?;
+                if let (true, Piece::Quoted(text)) = (name.eq_ignore_ascii_case(b"namespace"), value.piece) {
+                    self.namespace = text;
+                }
+            }
             (Piece::Mark(b'{'), _) => self.block_of(name, place)?,
             (piece, place) => return Err(expected("= or {", piece, place)),
         }
@@ -69,10 +83,13 @@ impl<'t> Reader<'t> {
             }
             b"linedef" => {
                 let index = content.lines.len();
-                let block = self.block(("linedef", index, place), ["v1", "v2", "sidefront", "sideback", "twosided"])?;
+                let block = self
+                    .block(("linedef", index, place), ["v1", "v2", "sidefront", "sideback", "twosided", "special"])?;
                 let flags = if block.flag(4)? { ML_TWOSIDED } else { 0 };
                 let (right, left) = (block.optional_index(2)?, block.optional_index(3)?);
                 let line = LineDef { v1: block.index(0)?, v2: block.index(1)?, flags, right, left };
+                let special = if block.values[5].is_some() { block.integer(5)? } else { 0 };
+                self.content.hexen_specials.push(special);
                 self.content.lines.push(line);
                 self.lines.push(place);
             }
@@ -125,7 +142,7 @@ impl<'t> Reader<'t> {
     /// Reads a value and the semicolon behind it.
     fn value(&mut self) -> Result<Value<'t>, Malformed> {
         let (piece, place) = self.lexer.next()?;
-        if !matches!(piece, Piece::Word(_) | Piece::Quoted) {
+        if !matches!(piece, Piece::Word(_) | Piece::Quoted(_)) {
             return Err(expected("a value", piece, place));
         }
         match self.lexer.next()? {

@@ -28,8 +28,8 @@ impl Value<'_> {
 
     /// A whole number in decimal digits, or in hexadecimal ones behind `0x`.
     ///
-    /// Zeros before other digits are refused: the grammar calls such a number octal, and programs that read it so and programs that
-    /// read it as decimal would not mean the same block.
+    /// Zeros before several other digits are refused: the grammar calls such a number octal, and programs that read it so and programs
+    /// that read it as decimal would not mean the same block.
     fn integer(&self) -> Option<i64> {
         let Piece::Word(word) = self.piece else { return None };
         let text = std::str::from_utf8(word).ok()?;
@@ -37,10 +37,11 @@ impl Value<'_> {
         let hexadecimal = digits.strip_prefix("0x").or_else(|| digits.strip_prefix("0X"));
         let (digits, radix) = hexadecimal.map_or((digits, 10), |digits| (digits, 16));
         let plain = !digits.is_empty() && digits.chars().all(|c| c.is_digit(radix));
-        if !plain || radix == 10 && digits.len() > 1 && digits.starts_with('0') {
+        let magnitude = i64::from_str_radix(digits, radix).ok().filter(|_| plain)?;
+        let has_zeros = radix == 10 && digits.len() > 1 && digits.starts_with('0');
+        if has_zeros && i64::from_str_radix(digits, 8) != Ok(magnitude) {
             return None;
         }
-        let magnitude = i64::from_str_radix(digits, radix).ok()?;
         Some(if text.starts_with('-') { -magnitude } else { magnitude })
     }
 }

@@ -4,9 +4,9 @@ use super::turns::{MOST_PIECES, SAME, one_arc, thin, turned_between};
 use super::{Motions, ROUNDING};
 use crate::scene::accessor::{AccessorRole, Elements};
 use crate::scene::json::{Channel, Node, Sampler};
-use crate::scene::range::{Range, RangeBox, united};
 use serde_json::Value;
 use sightlines_cells::Point3;
+use sightlines_geometry::range::{Range, RangeBox, united};
 
 /// What animations do to a node.
 #[derive(Debug, Default)]

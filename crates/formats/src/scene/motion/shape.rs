@@ -3,9 +3,9 @@
 use super::{Motions, Moved, ROUNDING, Vertices};
 use crate::scene::accessor::{AccessorRole, Elements};
 use crate::scene::json::{Mesh, Node, Primitive};
-use crate::scene::range::{Range, RangeBox, bounded, box_of, mapped, united};
 use crate::scene::transform::Transform;
 use sightlines_cells::Point3;
+use sightlines_geometry::range::{Range, RangeBox, bounded, box_of, mapped, united};
 
 /// Vertices of a mesh with morph targets.
 pub(super) struct Morphed {

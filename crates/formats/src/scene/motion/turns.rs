@@ -1,7 +1,7 @@
 //! Rotations between keys, as boxes around pieces of arcs and curves of quaternions.
 
 use super::ROUNDING;
-use crate::scene::range::Range;
+use sightlines_geometry::range::Range;
 
 /// The most pieces of the rotations of a node; beyond, neighbours are put together.
 pub(super) const MOST_PIECES: usize = 1024;

@@ -136,7 +136,7 @@ fn compacted(
         return Ok(primitive.clone());
     }
     let elements = Elements::new(document, buffers, indices, AccessorRole::Indices).expect("it was read before");
-    let indices = read_indices(&elements, n_positions).expect("they were read before");
+    let indices = read_indices(&elements, n_positions)?;
     let place_of = |index: usize| corners.partition_point(|&c| c < index) as u32;
     let indices: Vec<u32> = indices.into_iter().map(place_of).collect();
     match copies.primitive(primitive, corners, &indices, false, place) {

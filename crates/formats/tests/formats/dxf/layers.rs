@@ -56,3 +56,29 @@ fn layers_are_chosen_by_name() {
     let error = parse_dxf(&drawing(), &options).unwrap_err().to_string();
     assert_eq!(error, "there is no layer Wals, ; there are 0, Walls, Old, Hidden, Möbel");
 }
+
+#[test]
+fn names_are_decoded() {
+    let layer = |name: &[u8]| {
+        let text = String::from_utf8(Dxf::new().line("NAME", [0.0; 2], [1.0, 0.0]).model(&Dxf::new())).unwrap();
+        let [before, behind] = text.split("NAME").collect::<Vec<_>>()[..] else { panic!("{text}") };
+        read(&[before.as_bytes(), name, behind.as_bytes()].concat()).layers
+    };
+    assert_eq!(layer(b"W\xC3\xA4nde"), ["Wände"]);
+    assert_eq!(layer(b"W\xE4nde"), ["Wände"]);
+    assert_eq!(layer(br"W\U+00E4nde\U+00E"), ["Wände\\U+00E"]);
+    assert_eq!(layer(br"\U+D800\U+\U+0041"), ["\\U+D800\\U+A"]);
+    // Without regard to case.
+    let both = Dxf::new().line("WÄNDE", [0.0; 2], [1.0, 0.0]).line("wände", [0.0; 2], [2.0, 0.0]);
+    assert_eq!(read(&both.model(&Dxf::new())).layers, ["WÄNDE"]);
+}
+
+/// Lines may end as on other systems.
+#[test]
+fn line_ends_are_those_of_any_system() {
+    let text = String::from_utf8(drawing()).unwrap();
+    let expected = read(text.as_bytes());
+    for end in ["\r\n", "\r"] {
+        assert_eq!(read(text.replace('\n', end).as_bytes()), expected);
+    }
+}

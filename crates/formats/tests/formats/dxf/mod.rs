@@ -1,5 +1,6 @@
 //! Drawings as plans: every entity, curves against their formulas, inserts against another way to place points, damaged files.
 
+mod clips;
 mod curves;
 mod damaged;
 mod entities;

@@ -1,14 +1,13 @@
-//! Polygons of an OBJ to triangles.
+//! Polygons of space, bent or not convex, to triangles.
 
-use sightlines_cells::Point3;
-use sightlines_geometry::{Point2, orient2d};
+use crate::{Point2, Point3, orient2d};
 
 /// The most corners of a polygon that no fan covers: cutting ears takes cubic time at worst.
-pub(super) const MAX_WINDING_CORNERS: usize = 1024;
+pub const MAX_WINDING_CORNERS: usize = 1024;
 
 /// Why a polygon is not a union of triangles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum PolygonError {
+pub enum PolygonError {
     /// Its outline crosses itself as seen from every axis.
     Crossing,
     /// It has more than [`MAX_WINDING_CORNERS`] corners and no fan covers it.
@@ -21,7 +20,10 @@ pub(super) enum PolygonError {
 /// another along which it is more than a line. Along that axis no triangle runs the other way round, exactly. The triangles then cover each
 /// point as often as the outline winds around it, so they cover the polygon, all of it and nothing else.
 /// Corners on a straight line make triangles without area.
-pub(super) fn triangulate(polygon: &[Point3]) -> Result<Vec<[usize; 3]>, PolygonError> {
+///
+/// # Errors
+/// [`PolygonError`]
+pub fn triangulate(polygon: &[Point3]) -> Result<Vec<[usize; 3]>, PolygonError> {
     if polygon.len() <= 3 {
         return Ok(vec![[0, 1, 2]]);
     }

@@ -1,7 +1,7 @@
 //! Sines and cosines that are the same on every machine: sums, products and quotients only.
 
 /// Sine and cosine of an angle in degrees: within 2^-50 of the true ones, and exact for whole quarters of a turn.
-pub(super) fn sin_cos(degrees: f64) -> [f64; 2] {
+pub fn sin_cos(degrees: f64) -> [f64; 2] {
     // Both the remainder and what is left of the quarter are exact.
     let mut rest = degrees % 360.0;
     if rest < 0.0 {

@@ -1,23 +1,26 @@
 //! Ranges of numbers, rounded outwards: what is computed of them holds for every number in them.
 
-use sightlines_cells::Point3;
-use sightlines_geometry::coordinate::MIN_MAGNITUDE;
-use sightlines_geometry::{Aabb, check_coordinate};
+use crate::coordinate::MIN_MAGNITUDE;
+use crate::{Aabb, Point3, check_coordinate};
 
 /// All numbers from `low` to `high`, in any unit. Not a number in either end makes it all numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Range {
-    pub(super) low: f64,
-    pub(super) high: f64,
+pub struct Range {
+    /// The smallest.
+    pub low: f64,
+    /// The largest.
+    pub high: f64,
 }
 
 /// A range for each axis.
-pub(super) type RangeBox = [Range; 3];
+pub type RangeBox = [Range; 3];
 
 impl Range {
-    pub(super) const ALL: Self = Self { low: f64::NEG_INFINITY, high: f64::INFINITY };
+    /// All numbers.
+    pub const ALL: Self = Self { low: f64::NEG_INFINITY, high: f64::INFINITY };
 
-    pub(super) const fn of(x: f64) -> Self {
+    /// One number.
+    pub const fn of(x: f64) -> Self {
         Self { low: x, high: x }
     }
 
@@ -26,7 +29,8 @@ impl Range {
         if low.is_nan() || high.is_nan() { Self::ALL } else { Self { low: low.next_down(), high: high.next_up() } }
     }
 
-    pub(super) fn with(self, other: Self) -> Self {
+    /// The smallest range with both.
+    pub fn with(self, other: Self) -> Self {
         if [self.low, self.high, other.low, other.high].iter().any(|x| x.is_nan()) {
             return Self::ALL;
         }
@@ -34,24 +38,28 @@ impl Range {
     }
 
     /// The part that is also in `other`; `self` if there is none, which rounding could cause.
-    pub(super) fn within(self, other: Self) -> Self {
+    pub fn within(self, other: Self) -> Self {
         let (low, high) = (self.low.max(other.low), self.high.min(other.high));
         if low <= high { Self { low, high } } else { self }
     }
 
-    pub(super) fn wider(self, by: f64) -> Self {
+    /// With all numbers that are at most `by` away.
+    pub fn wider(self, by: f64) -> Self {
         Self::outwards(self.low - by, self.high + by)
     }
 
-    pub(super) fn plus(self, other: Self) -> Self {
+    /// Sums.
+    pub fn plus(self, other: Self) -> Self {
         Self::outwards(self.low + other.low, self.high + other.high)
     }
 
-    pub(super) fn minus(self, other: Self) -> Self {
+    /// Differences.
+    pub fn minus(self, other: Self) -> Self {
         Self::outwards(self.low - other.high, self.high - other.low)
     }
 
-    pub(super) fn times(self, other: Self) -> Self {
+    /// Products.
+    pub fn times(self, other: Self) -> Self {
         Self::around([self.low * other.low, self.low * other.high, self.high * other.low, self.high * other.high])
     }
 
@@ -64,7 +72,8 @@ impl Range {
         Self::outwards(low, results.into_iter().fold(f64::NEG_INFINITY, f64::max))
     }
 
-    pub(super) fn square(self) -> Self {
+    /// Squares, none below 0.
+    pub fn square(self) -> Self {
         let [a, b] = [self.low * self.low, self.high * self.high];
         let low = if self.low <= 0.0 && self.high >= 0.0 { 0.0 } else { a.min(b) };
         let all = Self::outwards(low, a.max(b));
@@ -72,26 +81,29 @@ impl Range {
     }
 
     /// The quotient by numbers above 0.
-    pub(super) fn over(self, divisor: Self) -> Self {
+    pub fn over(self, divisor: Self) -> Self {
         let Self { low, high } = divisor;
         Self::around([self.low / low, self.low / high, self.high / low, self.high / high])
     }
 
-    pub(super) fn is_finite(self) -> bool {
+    /// Whether both ends are numbers.
+    pub fn is_finite(self) -> bool {
         self.low.is_finite() && self.high.is_finite()
     }
 }
 
-pub(super) fn box_of(p: Point3) -> RangeBox {
+/// A point as a box.
+pub fn box_of(p: Point3) -> RangeBox {
     p.map(Range::of)
 }
 
-pub(super) fn united(a: RangeBox, b: RangeBox) -> RangeBox {
+/// The smallest box with both.
+pub fn united(a: RangeBox, b: RangeBox) -> RangeBox {
     [a[0].with(b[0]), a[1].with(b[1]), a[2].with(b[2])]
 }
 
 /// The box as one of a scene, if its coordinates can be some of a scene.
-pub(super) fn bounded(b: RangeBox) -> Option<Aabb<3>> {
+pub fn bounded(b: RangeBox) -> Option<Aabb<3>> {
     // Numbers that are too small for a coordinate are rounded outwards too.
     let low = |x: f64| {
         if x.abs() >= MIN_MAGNITUDE {
@@ -108,12 +120,12 @@ pub(super) fn bounded(b: RangeBox) -> Option<Aabb<3>> {
 }
 
 /// Where the rows of an affine map put a box.
-pub(super) fn mapped(rows: &[[Range; 4]; 3], b: RangeBox) -> RangeBox {
+pub fn mapped(rows: &[[Range; 4]; 3], b: RangeBox) -> RangeBox {
     rows.map(|row| row[0].times(b[0]).plus(row[1].times(b[1])).plus(row[2].times(b[2])).plus(row[3]))
 }
 
 /// The rotations of all quaternions in a box, of any length but zero; all rotations if one of them may be zero.
-pub(super) fn rotations([x, y, z, w]: [Range; 4]) -> [[Range; 3]; 3] {
+pub fn rotations([x, y, z, w]: [Range; 4]) -> [[Range; 3]; 3] {
     const ANY: Range = Range { low: -1.0, high: 1.0 };
     let [xx, yy, zz, ww] = [x.square(), y.square(), z.square(), w.square()];
     let length = xx.plus(yy).plus(zz).plus(ww);

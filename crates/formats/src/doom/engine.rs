@@ -1,0 +1,58 @@
+//! What engines look through: which lines of a map hide nothing.
+
+use super::content::{Content, LineDef};
+use std::collections::BTreeMap;
+
+/// The game whose engines read a REJECT lump.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Game {
+    /// Its engines look through lines whose flag [`ML_TWOSIDED`](super::ML_TWOSIDED) is set.
+    Doom,
+    /// Its engines look through every line with a left side, whatever its flags.
+    Heretic,
+    /// As [`Game::Heretic`].
+    Hexen,
+}
+
+/// Specials of Hexen's lines: the first line of a polyobject, behind whose end the others go on, and a line that is one by itself.
+const POLYOBJ_START_LINE: i32 = 1;
+const POLYOBJ_EXPLICIT_LINE: i32 = 5;
+
+/// Which lines belong to polyobjects. Those of one that has a first line are all that can be reached from it along sides, each
+/// from its first vertex to its second: vertices at one place are one. Engines differ in which way they take where several begin.
+/// O(n log n).
+pub(super) fn in_polyobjects(content: &Content) -> Vec<bool> {
+    let mut found = vec![false; content.lines.len()];
+    let mut todo = Vec::new();
+    for (k, (line, &special)) in content.lines.iter().zip(&content.hexen_specials).enumerate() {
+        found[k] = matches!(special, POLYOBJ_START_LINE | POLYOBJ_EXPLICIT_LINE);
+        todo.extend((special == POLYOBJ_START_LINE).then_some(line.v2));
+    }
+    if todo.is_empty() {
+        return found;
+    }
+    // No place is -0.
+    let place = |vertex: u32| content.vertices[vertex as usize].map(|x| (x + 0.0).to_bits());
+    let mut from: BTreeMap<[u64; 2], Vec<(usize, u32)>> = BTreeMap::new();
+    for (k, line) in content.lines.iter().enumerate() {
+        from.entry(place(line.v1)).or_default().push((k, line.v2));
+        if line.left.is_some() {
+            from.entry(place(line.v2)).or_default().push((k, line.v1));
+        }
+    }
+    // Each place is left once.
+    while let Some(vertex) = todo.pop() {
+        for (k, end) in from.remove(&place(vertex)).unwrap_or_default() {
+            found[k] = true;
+            todo.push(end);
+        }
+    }
+    found
+}
+
+impl LineDef {
+    /// Whether some engine of these looks through the line: all there are, unless it is known to be one of Doom.
+    pub(super) fn is_seen_through(&self, game: Option<Game>) -> bool {
+        self.is_two_sided() || self.left.is_some() && game != Some(Game::Doom)
+    }
+}

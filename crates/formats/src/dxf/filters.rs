@@ -1,0 +1,97 @@
+//! Clipped inserts (XCLIP): which insert has which clip.
+//!
+//! The entry `ACAD_FILTER` of an insert's extension dictionary is a dictionary whose entry `SPATIAL` is the clip: a polygon, or two corners of
+//! a box. One that is inverted is stored as a polygon too, that of the rest, with a slit to its border. Its depth is ignored, as heights are.
+
+use super::affine::Affine;
+use super::entity::Fields;
+use super::groups::{Group, Groups, next_record};
+use crate::error::Malformed;
+use std::collections::HashMap;
+
+/// The clips of a drawing, and the dictionaries that lead to them, by handle.
+#[derive(Debug, Default)]
+pub(super) struct Filters {
+    dictionaries: HashMap<u64, Vec<(Vec<u8>, Option<u64>)>>,
+    clips: HashMap<u64, Clip>,
+}
+
+/// What is drawn of a block.
+#[derive(Debug, Clone)]
+pub(super) enum Clip {
+    /// All of it.
+    Off,
+    /// What is inside of a polygon in the coordinates of the block's entities.
+    Inside(Vec<[f64; 3]>),
+    /// Some of it.
+    NotUnderstood,
+}
+
+impl Filters {
+    /// Reads the section of objects.
+    pub(super) fn read(groups: &mut Groups<'_>) -> Result<Self, Malformed> {
+        let (mut found, mut fields) = (Self::default(), Vec::new());
+        loop {
+            let record = next_record(groups, &mut fields)?;
+            if record.is(0, "ENDSEC") {
+                return Ok(found);
+            }
+            let Some(own) = fields.iter().find(|group| group.code == 5).and_then(handle) else { continue };
+            if record.is(0, "DICTIONARY") {
+                let entries = fields.windows(2).filter(|pair| pair[0].code == 3);
+                let entries = entries.map(|pair| (pair[0].value.to_vec(), handle(&pair[1])));
+                found.dictionaries.insert(own, entries.collect());
+            } else if record.is(0, "SPATIAL_FILTER") {
+                let fields = Fields { kind: "SPATIAL_FILTER", line: record.line, groups: &fields };
+                found.clips.insert(own, read_clip(&fields).ok().flatten().unwrap_or(Clip::NotUnderstood));
+            }
+        }
+    }
+
+    /// The clip to which an extension dictionary leads. One that is not in the file may lead to anything, and mostly leads to no clip.
+    pub(super) fn of(&self, extension: Option<u64>) -> Clip {
+        let Some(extension) = extension.and_then(|handle| self.dictionaries.get(&handle)) else { return Clip::Off };
+        let Some(filters) = entry(extension, b"ACAD_FILTER") else { return Clip::Off };
+        let Some(filters) = filters.and_then(|handle| self.dictionaries.get(&handle)) else {
+            return Clip::NotUnderstood;
+        };
+        let Some(spatial) = entry(filters, b"SPATIAL") else { return Clip::Off };
+        spatial.and_then(|handle| self.clips.get(&handle)).cloned().unwrap_or(Clip::NotUnderstood)
+    }
+}
+
+fn entry(dictionary: &[(Vec<u8>, Option<u64>)], name: &[u8]) -> Option<Option<u64>> {
+    dictionary.iter().find(|(key, _)| key == name).map(|&(_, handle)| handle)
+}
+
+/// The number that a group has as a handle.
+fn handle(group: &Group<'_>) -> Option<u64> {
+    u64::from_str_radix(std::str::from_utf8(group.value).ok()?, 16).ok()
+}
+
+/// The handle of an entity's extension dictionary.
+pub(super) fn extension(fields: &[Group<'_>]) -> Option<u64> {
+    let begin = fields.iter().position(|group| group.is(102, "{ACAD_XDICTIONARY"))?;
+    handle(fields.get(begin + 1)?)
+}
+
+/// `None` if a part is missing, or if the clip has a plane of its own.
+fn read_clip(fields: &Fields<'_, '_>) -> Result<Option<Clip>, Malformed> {
+    if fields.find(71).is_some() && fields.integer(71)? == 0 {
+        return Ok(Some(Clip::Off));
+    }
+    let [x, y, numbers] = [fields.numbers(10)?, fields.numbers(20)?, fields.numbers(40)?];
+    // A distance of the depth may come before the two maps: from the coordinates around the insert to the block's, and to the plane's.
+    let maps = numbers.len().checked_sub(24).map(|start| numbers[start..].split_at(12));
+    let Some((to_block, to_plane)) = maps else { return Ok(None) };
+    let has_own_plane = fields.normal()? != [0.0, 0.0, 1.0] || Affine::of_rows(to_plane) != Affine::IDENTITY;
+    if x.len() != y.len() || x.len() < 2 || has_own_plane {
+        return Ok(None);
+    }
+    let corners = match (&x[..], &y[..]) {
+        (&[x0, x1], &[y0, y1]) => vec![[x0, y0], [x1, y0], [x1, y1], [x0, y1]],
+        _ => x.into_iter().zip(y).map(<[f64; 2]>::from).collect(),
+    };
+    let to_block = Affine::of_rows(to_block);
+    Ok(Some(Clip::Inside(corners.into_iter().map(|[x, y]| to_block.point([x, y, 0.0])).collect())))
+}
