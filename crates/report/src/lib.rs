@@ -38,7 +38,6 @@ mod table_info;
 mod theme;
 mod viewpoints;
 mod walk;
-pub mod words;
 
 pub use areas::{Area, AreaEdge, SeenInSpace, areas_csv, areas_geojson, areas_png, areas_svg, seen_csv};
 pub use buffer_chart::{BufferChart, buffer_chart_svg};
@@ -48,7 +47,7 @@ pub use draw::{
 };
 pub use export::{export_json, write_json};
 pub use faces::{MARK, NO_FACE, NOWHERE, face_colour, faces_png};
-pub use facts::{ALONG_THE_FILE, DigestFacts, DoorFacts, FrameFacts, InfoFacts, ObjectPlace, StabFacts, write_doors};
+pub use facts::{DigestFacts, DoorFacts, InfoFacts, ObjectPlace, StabFacts, write_doors};
 pub use field::{Field, field_colour, field_png, field_svg};
 pub use light::{LIT, LightPixel, UMBRA, light_png};
 pub use multifocal::{OPEN, buffer_png, distance_png, voronoi_png};
@@ -58,6 +57,8 @@ pub use png::svg_to_png;
 pub use point_table::{PointColumn, points_csv, points_geojson};
 pub use share::ViewerShare;
 pub use sheet::{SheetPicture, sheet_png, sheet_size};
+pub use sightlines_frame::{ALONG_THE_FILE, FrameFacts};
+pub use sightlines_progress::words;
 pub use summary::Summary;
 pub use table_info::{ObjectFacts, TableInfo, write_sources};
 pub use viewpoints::{cells_by_seen_floor, secluded_cell};

@@ -31,6 +31,15 @@ pub fn seconds_of(time: f64) -> String {
     seconds(Duration::try_from_secs_f64(time).unwrap_or_default())
 }
 
+/// A duration, rounded as an estimate should be.
+pub fn rough(time: Duration) -> String {
+    match time.as_secs() {
+        s @ 0..90 => format!("{s} s"),
+        s @ 90..5400 => format!("{} min", (s + 30) / 60),
+        s => format!("{:.1} h", s as f64 / 3600.0),
+    }
+}
+
 /// A number with its noun, in the plural unless it is one.
 pub fn count(n: impl Into<u64>, noun: &str) -> String {
     match n.into() {
@@ -124,5 +133,11 @@ mod tests {
         let times = [1_500, 250_000, 2_500_000].map(|us| seconds(Duration::from_micros(us)));
         assert_eq!(times, ["1.50 ms", "250 ms", "2.50 s"]);
         assert_eq!([count(0u64, "cell"), count(1u64, "cell"), count(2u64, "cell")], ["0 cells", "1 cell", "2 cells"]);
+    }
+
+    #[test]
+    fn estimates_are_rough() {
+        let text = |s: u64| rough(Duration::from_secs(s));
+        assert_eq!([text(0), text(89), text(90), text(3601), text(5400)], ["0 s", "89 s", "2 min", "60 min", "1.5 h"]);
     }
 }
