@@ -41,7 +41,6 @@ mod simplification;
 mod surfaces;
 mod tables;
 mod threads;
-mod unproven;
 mod up;
 mod view;
 mod vis_program;
