@@ -2,13 +2,14 @@
 
 use crate::commands::{
     build, demo, explain, generate, info, isovist, job, levels, light, multifocal, pack, plan, portals, query, reject,
-    render, simplify, tiles, vga, view, vis, walk,
+    render, simplify, tiles, vga, view, vis,
 };
 use schemars::JsonSchema;
 use schemars::generate::SchemaSettings;
 use serde_json::Value;
 use sightlines::bake::explain::json::Explained;
 use sightlines::checkpoint::report;
+use sightlines::report::WalkReport;
 use sightlines::verify::report::Outcome as Verified;
 
 /// Each type of results: the titles of its variants, or the one that it has, and its schema.
@@ -31,7 +32,7 @@ pub(crate) fn schemas() -> Vec<(&'static [&'static str], Value)> {
         of::<Verified>(&["`verify`"]),
         of::<query::Found>(&["`query` of a point"]),
         of::<query::sight::Seen>(&["`query` of a view"]),
-        of::<walk::outcome::Outcome>(&["`walk`"]),
+        of::<WalkReport>(&["`walk`"]),
         of::<view::Outcome>(&["`view`"]),
         of::<pack::Outcome>(&["`pack`"]),
         of::<pack::Unpacked>(&["`unpack`"]),

@@ -8,6 +8,16 @@ pub fn percent(share: f64) -> String {
     format!("{:.*} %", digits, 100.0 * share)
 }
 
+/// A share that may be very small.
+pub fn parts(share: f64) -> String {
+    if share == 0.0 || share >= 0.01 { percent(share) } else { format!("{:.3e}", share) }
+}
+
+/// A part of a whole; 0 of nothing.
+pub fn share(part: f64, whole: f64) -> f64 {
+    if whole > 0.0 { part / whole } else { 0.0 }
+}
+
 /// A number of bytes, rounded for the eye.
 pub fn bytes(n: u64) -> String {
     match n {

@@ -66,6 +66,7 @@ impl fmt::Display for LumpKind {
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schemars", schemars(description = "What was looked at."))]
 pub struct OwnSummary {
     /// Name of the lump.
     #[cfg_attr(feature = "serde", serde(serialize_with = "crate::as_json::text"))]
