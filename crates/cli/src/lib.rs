@@ -27,6 +27,7 @@ mod memory;
 mod named;
 mod numbers;
 mod output;
+mod output_kind;
 mod picture;
 mod place;
 mod plain;

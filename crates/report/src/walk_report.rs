@@ -120,6 +120,7 @@ impl WalkReport {
         cells: &impl TableFacts,
         polygons: &[u32],
         measured: &WalkMeasured,
+        levels: Option<WalkedLevels>,
     ) -> Self {
         let (n_cells, n_objects) = (cells.n_cells(), cells.n_objects());
         let n_polygons = polygons.iter().map(|&n| u64::from(n)).sum();
@@ -162,13 +163,8 @@ impl WalkReport {
             n_dropped: *n_dropped,
             packed_bytes: cells.bytes_in_memory().map(|(resident, blocks)| [resident, blocks]),
             methods: methods.iter().map(line).collect(),
-            levels: None,
+            levels,
         }
-    }
-
-    /// The same, with what is drawn with levels.
-    pub fn with_levels(self, levels: Option<WalkedLevels>) -> Self {
-        Self { levels, ..self }
     }
 
     /// The title of the chart.
@@ -209,12 +205,10 @@ impl WalkReport {
     }
 }
 
-/// A number kept and its shares, in a column.
-struct Column(Kept);
-
-impl fmt::Display for Column {
+/// In a column.
+impl fmt::Display for Kept {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Kept { mean, share_of_cell_to_cell, share_of_all } = self.0;
+        let Self { mean, share_of_cell_to_cell, share_of_all } = *self;
         let digits = if share_of_all < 0.01 { 3 } else { 1 };
         write!(f, "{mean:>9.1} {:>6.1} {:>6.*}", 100.0 * share_of_cell_to_cell, digits, 100.0 * share_of_all)
     }
@@ -241,8 +235,19 @@ impl fmt::Display for WalkReport {
             "left to draw", "coarser", "late"
         )?;
         for line in &self.methods {
-            let MethodLine { method, mean_us, median_us, p99_us, longest_us, n_fell_back, n_late, .. } = line;
-            let [cells, objects, polygons] = [line.cells, line.objects, line.polygons].map(Column);
+            let MethodLine {
+                method,
+                cells,
+                objects,
+                polygons,
+                mean_us,
+                median_us,
+                p99_us,
+                longest_us,
+                n_fell_back,
+                n_late,
+                ..
+            } = line;
             writeln!(
                 f,
                 "{method:<20} {cells} {objects} {polygons} {mean_us:>9.2} {median_us:>8.2} {p99_us:>8.2} {longest_us:>9.2} \

@@ -1,6 +1,5 @@
 //! Fields of results as JSON has them.
 
-use crate::ProofViolation;
 use serde::Serializer;
 use sightlines_geometry::Point3;
 use sightlines_pvs::CellId;
@@ -18,6 +17,6 @@ pub(crate) fn text<S: Serializer>(shown: &impl Display, out: S) -> Result<S::Ok,
     out.collect_str(shown)
 }
 
-pub(crate) fn texts<S: Serializer>(violations: &[ProofViolation], out: S) -> Result<S::Ok, S::Error> {
-    out.collect_seq(violations.iter().map(ToString::to_string))
+pub(crate) fn texts<T: Display, S: Serializer>(shown: &[T], out: S) -> Result<S::Ok, S::Error> {
+    out.collect_seq(shown.iter().map(ToString::to_string))
 }

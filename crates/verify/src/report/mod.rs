@@ -66,17 +66,8 @@ pub struct Outcome {
     n_segments_each: u64,
     /// The share of free segments from which on such a pair is found in 99 of 100 runs, unless a nearer pair is wrong as well; 1 if none were shot.
     share_found: f64,
-    /// Portals of plans that an opaque line crosses or runs along, where more is listed than needed; no violation.
-    n_portals_in_walls: u64,
-    /// Objects listed in a cell that they do not touch; no violation.
-    n_listed_apart: u64,
-    /// Cells from which no ray was shot: too thin to contain a place, or without a portal where only portals are known.
-    n_cells_without_places: u64,
-    /// Of the doors, those that were not compared with the scene, as it does not have them: doors that were given as boxes, and those of plans and
-    /// maps; no violation.
-    n_doors_as_boxes: u64,
-    /// Pairs of a door and a portal that its leaf covers, and that the door does not close; no violation.
-    n_unlisted_door_portals: u64,
+    #[serde(flatten)]
+    remarks: Remarks,
     /// With a frame: hidden pairs that rays join in the scene of the file and not along the frame, through openings narrower than the gap or past
     /// things thinner than it; no violation. Rays stop once they have found 1,000 hidden pairs, so there may be more.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -87,14 +78,8 @@ pub struct Outcome {
     /// How many times what single precision explains the gap is, if that is much.
     #[serde(skip)]
     wide_gap: Option<f64>,
-    /// Violations found, including those that are not listed.
-    n_violations: usize,
-    /// Whether there were so many that rays were stopped.
-    has_more_violations: bool,
-    /// The same number for each kind.
-    n_violations_by_kind: BTreeMap<&'static str, usize>,
-    /// Violations, a limited number of each kind.
-    violations: Vec<ReportedViolation>,
+    #[serde(flatten)]
+    found: Violations,
     /// With `--draw` and a violation to draw: the picture that was written.
     #[serde(skip_serializing_if = "Option::is_none")]
     picture: Option<String>,
@@ -182,8 +167,6 @@ impl Outcome {
             aimed_rays: found.cells.aimed + found.objects.aimed > 0,
             proofs: proofs.as_ref().is_some_and(|proofs| !proofs.is_stale),
         };
-        let remarks = found.remarks;
-        let Remarks { portals_in_walls, listed_apart, cells_without_places, cracks, flattened, .. } = remarks;
         Self {
             table: table.display().to_string(),
             scene: scene.display().to_string(),
@@ -204,18 +187,11 @@ impl Outcome {
             n_sampled_pairs: found.sampled.n_pairs,
             n_segments_each: found.sampled.n_each,
             share_found: found.sampled.share_found(),
-            n_portals_in_walls: portals_in_walls,
-            n_listed_apart: listed_apart,
-            n_cells_without_places: cells_without_places,
-            n_doors_as_boxes: remarks.doors_as_boxes,
-            n_unlisted_door_portals: remarks.unlisted_door_portals,
-            n_cracks: Some(cracks),
-            n_flattened: Some(flattened),
+            remarks: found.remarks,
+            n_cracks: None,
+            n_flattened: None,
             wide_gap: None,
-            n_violations: violations.n,
-            has_more_violations: violations.has_more,
-            n_violations_by_kind: violations.by_kind,
-            violations: violations.reported,
+            found: violations,
             picture: None,
             seconds: time.as_secs_f64(),
             proofs,
@@ -225,10 +201,9 @@ impl Outcome {
 
     /// The same for a table with a frame, whose gap is so many times what single precision explains, if that is much.
     pub fn in_frame(self, frame: Option<&Frame>, wide_gap: Option<f64>) -> Self {
-        match frame {
-            Some(frame) => Self { frame: Some(frame.into()), wide_gap, ..self },
-            None => Self { n_cracks: None, n_flattened: None, ..self },
-        }
+        let Some(frame) = frame else { return self };
+        let (n_cracks, n_flattened) = (Some(self.remarks.cracks), Some(self.remarks.flattened));
+        Self { frame: Some(frame.into()), n_cracks, n_flattened, wide_gap, ..self }
     }
 
     /// The same with a picture, if one was drawn.
@@ -308,14 +283,18 @@ impl fmt::Display for Outcome {
             }
         }
         let remarks = [
-            (self.n_portals_in_walls, "portal", "with a wall in it: more is shown there"),
-            (self.n_listed_apart, "object", "listed in a cell that it does not touch"),
-            (self.n_cells_without_places, "cell", "from which no ray was shot: too thin, or without a portal"),
-            (self.n_doors_as_boxes, "door", "that the scene does not have: what was given as a box is not compared"),
-            (self.n_unlisted_door_portals, "portal", "that a door could close and does not: more is shown there"),
-            (self.n_flattened.unwrap_or(0), "triangle", "thinner than the gap, which the table takes to be none"),
+            (self.remarks.portals_in_walls, "portal", "with a wall in it: more is shown there"),
+            (self.remarks.listed_apart, "object", "listed in a cell that it does not touch"),
+            (self.remarks.cells_without_places, "cell", "from which no ray was shot: too thin, or without a portal"),
             (
-                self.n_cracks.unwrap_or(0),
+                self.remarks.doors_as_boxes,
+                "door",
+                "that the scene does not have: what was given as a box is not compared",
+            ),
+            (self.remarks.unlisted_door_portals, "portal", "that a door could close and does not: more is shown there"),
+            (self.remarks.flattened, "triangle", "thinner than the gap, which the table takes to be none"),
+            (
+                self.remarks.cracks,
                 "hidden pair",
                 "joined by rays through openings narrower than the gap, or past things thinner than it",
             ),
@@ -330,21 +309,21 @@ impl fmt::Display for Outcome {
             writeln!(f, "remark         {} {what}", count(n, noun))?;
         }
         let mut shown: BTreeMap<&str, usize> = BTreeMap::new();
-        for v in &self.violations {
+        for v in &self.found.violations {
             let n = shown.entry(v.kind).or_default();
             *n += 1;
             if *n <= SHOWN {
                 writeln!(f, "violation      {}: {}", v.kind, v.text)?;
             }
         }
-        for (kind, n) in self.n_violations_by_kind.iter().filter(|(_, n)| **n > SHOWN) {
+        for (kind, n) in self.found.n_violations_by_kind.iter().filter(|(_, n)| **n > SHOWN) {
             writeln!(f, "               {kind}: {n} in all; --json has more of them")?;
         }
         if let Some(picture) = &self.picture {
             writeln!(f, "picture        {picture}")?;
         }
         writeln!(f, "time           {}", seconds_of(self.seconds))?;
-        match self.n_violations {
+        match self.found.n_violations {
             0 if self.is_true && !self.checked.has_any() => {
                 writeln!(
                     f,
@@ -356,7 +335,7 @@ impl fmt::Display for Outcome {
             0 => {
                 writeln!(f, "result         nothing found by structure and rays, but not all that is hidden is proven")
             }
-            n if self.n_violations_by_kind.get(Violation::CHANGED) == Some(&n) => {
+            n if self.found.n_violations_by_kind.get(Violation::CHANGED) == Some(&n) => {
                 writeln!(f, "result         the scene is not as when the table was made")?;
                 let found = if self.checked.has_any() {
                     "nothing else was found that contradicts the table"
@@ -365,7 +344,9 @@ impl fmt::Display for Outcome {
                 };
                 writeln!(f, "               {found}")
             }
-            n if self.has_more_violations => writeln!(f, "result         at least {}", count(n as u64, "violation")),
+            n if self.found.has_more_violations => {
+                writeln!(f, "result         at least {}", count(n as u64, "violation"))
+            }
             n => writeln!(f, "result         {}", count(n as u64, "violation")),
         }
     }

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 #[cfg_attr(feature = "schemars", derive(JsonSchema))]
 pub struct ReportedViolation {
     /// The kind, such as `hidden-cell`.
-    pub kind: &'static str,
+    pub(super) kind: &'static str,
     /// The cells concerned.
     cells: Vec<u32>,
     /// What the cells are in the map, of a map's own visibility.
@@ -24,47 +24,49 @@ pub struct ReportedViolation {
     #[serde(skip_serializing_if = "Option::is_none")]
     segment: Option<[[f64; 3]; 2]>,
     /// The violation in a sentence.
-    pub text: String,
+    pub(super) text: String,
 }
 
 /// All reported violations.
-#[derive(Debug, Default)]
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
 pub struct Violations {
-    /// How many.
-    pub n: usize,
-    /// Whether there may be more.
-    pub has_more: bool,
-    /// How many of each kind.
-    pub by_kind: BTreeMap<&'static str, usize>,
-    /// Those that are listed.
-    pub reported: Vec<ReportedViolation>,
+    /// Violations found, including those that are not listed.
+    pub(super) n_violations: usize,
+    /// Whether there were so many that rays were stopped.
+    pub(super) has_more_violations: bool,
+    /// The same number for each kind.
+    pub(super) n_violations_by_kind: BTreeMap<&'static str, usize>,
+    /// Violations, a limited number of each kind.
+    pub(super) violations: Vec<ReportedViolation>,
 }
 
 impl Violations {
     /// What was found of a map's own visibility, in terms of the map.
     pub fn of_own(found: &Findings, own: &OwnVisibility) -> Self {
-        let reported: Vec<_> = own.violations(found).into_iter().map(ReportedViolation::from).collect();
+        let violations: Vec<_> = own.violations(found).into_iter().map(ReportedViolation::from).collect();
         let mut by_kind = BTreeMap::new();
-        reported.iter().for_each(|v| *by_kind.entry(v.kind).or_default() += 1);
-        Self { n: reported.len(), has_more: has_more(found), by_kind, reported }
+        violations.iter().for_each(|v| *by_kind.entry(v.kind).or_default() += 1);
+        Self { n_violations: violations.len(), n_violations_by_kind: by_kind, violations, ..Self::from(found) }
     }
 
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
-        self.n == 0
+        self.n_violations == 0
     }
 }
 
 impl From<&Findings> for Violations {
     fn from(found: &Findings) -> Self {
-        let reported = found.violations.iter().map(ReportedViolation::from).collect();
-        Self { n: found.n_violations, has_more: has_more(found), by_kind: found.by_kind.clone(), reported }
+        let &Findings { n_violations, ref by_kind, ref violations, .. } = found;
+        Self {
+            n_violations,
+            // Rays found so much that no more were shot.
+            has_more_violations: by_kind.values().any(|&n| n >= VerifyOptions::MOST_VIOLATIONS),
+            n_violations_by_kind: by_kind.clone(),
+            violations: violations.iter().map(ReportedViolation::from).collect(),
+        }
     }
-}
-
-/// Whether rays found so much that no more were shot.
-fn has_more(found: &Findings) -> bool {
-    found.by_kind.values().any(|&n| n >= VerifyOptions::MOST_VIOLATIONS)
 }
 
 impl From<&Violation> for ReportedViolation {

@@ -126,7 +126,7 @@ fn walk<C: Cells>(cells: &C, args: &WalkArgs, show_progress: bool) -> Result<Don
         error => anyhow!("{}: {error}; this is a defect of the program", file.display()),
     })?;
     drop(bar);
-    let outcome = WalkReport::new(file, options, (lens.fov, step), cells, &polygons, &measured).with_levels(drawn);
+    let outcome = WalkReport::new(file, options, (lens.fov, step), cells, &polygons, &measured, drawn);
     if let Some(out) = &args.output {
         output::save(out, walk_svg(&outcome.title(), &outcome.bars()).as_bytes())?;
     }
