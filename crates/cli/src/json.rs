@@ -2,12 +2,15 @@
 
 use crate::commands::{
     build, demo, explain, generate, info, isovist, job, levels, light, multifocal, pack, plan, portals, query, reject,
-    render, simplify, tiles, verify, vga, view, vis, walk,
+    render, simplify, tiles, vga, view, vis,
 };
 use schemars::JsonSchema;
 use schemars::generate::SchemaSettings;
 use serde_json::Value;
 use sightlines::bake::explain::json::Explained;
+use sightlines::checkpoint::report;
+use sightlines::report::WalkReport;
+use sightlines::verify::report::Outcome as Verified;
 
 /// Each type of results: the titles of its variants, or the one that it has, and its schema.
 pub(crate) fn schemas() -> Vec<(&'static [&'static str], Value)> {
@@ -26,10 +29,10 @@ pub(crate) fn schemas() -> Vec<(&'static [&'static str], Value)> {
         of::<plan::Outcome>(&["`plan`"]),
         of::<isovist::Outcome>(&["`isovist` of a plan"]),
         of::<isovist::space::Outcome>(&["`isovist` of a scene"]),
-        of::<verify::outcome::With>(&["`verify`"]),
+        of::<Verified>(&["`verify`"]),
         of::<query::Found>(&["`query` of a point"]),
         of::<query::sight::Seen>(&["`query` of a view"]),
-        of::<walk::outcome::Outcome>(&["`walk`"]),
+        of::<WalkReport>(&["`walk`"]),
         of::<view::Outcome>(&["`view`"]),
         of::<pack::Outcome>(&["`pack`"]),
         of::<pack::Unpacked>(&["`unpack`"]),
@@ -60,11 +63,11 @@ pub(crate) fn schemas() -> Vec<(&'static [&'static str], Value)> {
         of::<tiles::check::Checked>(&["`tiles check`"]),
         of::<demo::office::Demo>(&["`demo` of the office"]),
         of::<demo::tower::Demo>(&["`demo tower`"]),
-        of::<job::outcome::Planned>(&["`job plan`"]),
-        of::<job::outcome::ShardsDone>(&["`job shard`"]),
-        of::<job::outcome::Merged>(&["`job work`", "`job merge`", "`job submit`"]),
-        of::<job::outcome::Submitted>(&["`job submit --dry-run`"]),
-        of::<job::outcome::Status>(&["`job status`"]),
+        of::<report::Planned>(&["`job plan`"]),
+        of::<report::ShardsDone>(&["`job shard`"]),
+        of::<report::Merged>(&["`job work`", "`job merge`", "`job submit`"]),
+        of::<job::submit::Submitted>(&["`job submit --dry-run`"]),
+        of::<report::Status>(&["`job status`"]),
     ]
 }
 

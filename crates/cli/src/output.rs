@@ -3,7 +3,9 @@
 // What the types of all results are derived from, and the words for their numbers.
 pub(crate) use schemars::JsonSchema;
 pub(crate) use serde::Serialize;
-pub(crate) use sightlines::report::words::{bytes, coordinate, count, distance, percent, point, seconds, seconds_of};
+pub(crate) use sightlines::report::words::{
+    bytes, coordinate, count, distance, percent, point, seconds, seconds_of, share,
+};
 
 use crate::error::{Result, StdoutError, anyhow};
 use sightlines::formats::{Hidden, WriteError, atomic_write, remove_left};
@@ -44,11 +46,6 @@ pub(crate) fn stdout(
 ) -> Result<()> {
     let mut out = BufWriter::new(std::io::stdout().lock());
     write(&mut out).and_then(|()| out.flush()).map_err(|error| StdoutError(error).into())
-}
-
-/// A part of a whole; 0 of nothing.
-pub(crate) fn share(part: f64, whole: f64) -> f64 {
-    if whole > 0.0 { part / whole } else { 0.0 }
 }
 
 /// Words about a number, and none about 0.

@@ -3,10 +3,17 @@
 use crate::error::Result;
 use crate::refuse::refuse;
 use sightlines::bake::Baked;
+use sightlines::cells::Plan;
 use sightlines::formats::input::read_plan_file;
 use sightlines::formats::{PlanFile, PlanReadOptions, detect_file};
+use sightlines::geometry::Segment2;
 use sightlines::pvs::Table;
 use std::path::Path;
+
+/// The lines of a plan that block sight.
+pub(crate) fn walls(plan: &Plan) -> Vec<Segment2> {
+    plan.lines().iter().filter(|line| line.opaque).map(|line| Segment2::new(line.a, line.b)).collect()
+}
 
 /// The key of a table's information for the layers, and that for the deviation of curves.
 const KEYS: [&str; 2] = ["layers", "curve-deviation"];

@@ -2,6 +2,7 @@
 
 use crate::interrupt;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use sightlines::progress::words::rough;
 use sightlines::progress::{Observer, Pace, Progress};
 use std::io::{IsTerminal, Write};
 use std::ops::ControlFlow;
@@ -129,15 +130,6 @@ impl Drop for Bar {
     }
 }
 
-/// A duration, rounded as an estimate should be.
-pub(crate) fn rough(time: Duration) -> String {
-    match time.as_secs() {
-        s @ 0..90 => format!("{s} s"),
-        s @ 90..5400 => format!("{} min", (s + 30) / 60),
-        s => format!("{:.1} h", s as f64 / 3600.0),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -157,11 +149,5 @@ mod tests {
             [line("lines", 1.5, "", None), line("lines", 0.0, "beams", None)],
             ["lines: 100 %", "lines: 0 %, beams"]
         );
-    }
-
-    #[test]
-    fn estimates_are_rough() {
-        let text = |s: u64| rough(Duration::from_secs(s));
-        assert_eq!([text(0), text(89), text(90), text(3601), text(5400)], ["0 s", "89 s", "2 min", "60 min", "1.5 h"]);
     }
 }

@@ -4,7 +4,7 @@
 //!
 //! - **Owns**: the [`Observer`] trait, its reports ([`Progress`]) and kinds of work ([`Work`]), the error of a cancelled search ([`Cancelled`]), and
 //!   the counter that threads of a search share ([`Counter`]), what a search may spend ([`Budget`]), how long it will take ([`Pace`]), how much memory a process may use ([`memory`]), the contract of stores that keep the
-//!   results of units of work ([`UnitStore`]), and the encoding of these ([`Kept`]).
+//!   results of units of work ([`UnitStore`]), and the encoding of these ([`Kept`]), words for numbers ([`words`]).
 //! - **Out of scope**: clocks, terminals, what is searched.
 
 mod budget;
@@ -12,6 +12,7 @@ mod kept;
 pub mod memory;
 mod pace;
 mod units;
+pub mod words;
 
 pub use budget::{Allowance, Budget, Shares, scattered};
 pub use kept::{Kept, read_whole, write_list};

@@ -1,9 +1,10 @@
 //! What a table holds, in full.
 
-use crate::facts::{DigestFacts, DoorFacts, FrameFacts, InfoFacts, ObjectPlace, StabFacts, write_doors};
+use crate::facts::{DigestFacts, DoorFacts, InfoFacts, ObjectPlace, StabFacts, write_doors};
 use crate::summary::Summary;
 use crate::words::{count, point};
 use serde::Serialize;
+use sightlines_frame::FrameFacts;
 use sightlines_pvs::{CellRecord, ObjectId, Table};
 use std::fmt;
 

@@ -5,7 +5,7 @@
 //! - **Owns**: the share of the view that a triangle can cover, as a proven upper bound ([`Intercepts`]) and as an
 //!   estimate by rays ([`HitEstimate`]); simplification within a budget ([`simplify`]); levels for the cells of a table
 //!   ([`levels()`]); the measurement of the change ([`measure`]); the ordinary geometric metric, for comparison
-//!   ([`geometric`]).
+//!   ([`geometric`]); with the feature `serde`, what rays find as a report (`report`).
 //! - **Out of scope**: how hidden things are proven (this is left to a
 //!   [`FromRegion`](sightlines_multifocal::FromRegion) method or a table), files.
 //! - **Invariants**: for every eye in the closed boxes of [`Views`] that lies on no surface, the share of the sphere of
@@ -38,6 +38,8 @@ mod measure;
 mod mesh;
 mod options;
 mod rays;
+#[cfg(feature = "serde")]
+pub mod report;
 mod select;
 mod simplified;
 mod simplify;

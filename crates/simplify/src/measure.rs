@@ -28,23 +28,24 @@ impl Default for MeasureOptions {
     }
 }
 
-/// Shares of changed rays.
+/// Shares of changed rays. A ray meets the same if that is on the same face, or on one of the same object exactly in the same plane: the share of others is
+/// what the guarantee bounds. Where another surface may look the same, the visible change is in depth and objects.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Measured {
-    /// Rays whose first hit is on another surface: not on the same face, nor on one of the same object exactly in the
-    /// same plane. This is the share that the guarantee bounds.
-    pub changed: f64,
-    /// The same, for the worst eye.
-    pub worst: f64,
-    /// The worst eye.
-    pub worst_eye: Point3,
-    /// Rays that hit another object, or nothing in place of something, or the other way round.
-    pub other_object: f64,
-    /// Rays that hit another object or at a distance that differs by more than a hundredth: the visible change, where
-    /// another surface may look the same.
-    pub moved: f64,
-    /// Number of rays.
+    /// Rays.
     pub n_rays: u64,
+    /// Share of the rays that meet another face first, of all eyes.
+    pub changed: f64,
+    /// The same for the worst eye.
+    pub worst: f64,
+    /// This eye.
+    pub worst_eye: Point3,
+    /// Share of the rays that meet another object.
+    pub other_object: f64,
+    /// Share of the rays that meet a place whose depth differs by more than a hundredth.
+    pub moved: f64,
 }
 
 /// Changes seen from one eye.

@@ -29,24 +29,35 @@ pub struct Simplified {
 
 /// Counts of triangles.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Counts {
-    /// Those of the scene.
+    /// Triangles before.
+    #[cfg_attr(feature = "serde", serde(rename = "n_before"))]
     pub before: usize,
-    /// Removed because they have no area.
+    /// Triangles without area, which were removed.
+    #[cfg_attr(feature = "serde", serde(rename = "n_without_area"))]
     pub without_area: usize,
-    /// Removed because they are proven hidden from every eye.
+    /// Triangles removed because no eye sees them.
+    #[cfg_attr(feature = "serde", serde(rename = "n_hidden"))]
     pub hidden: usize,
-    /// Left out within the budget.
+    /// Triangles removed for the budget.
+    #[cfg_attr(feature = "serde", serde(rename = "n_deleted"))]
     pub deleted: usize,
-    /// Removed or changed by collapsing.
+    /// Triangles removed or replaced by collapsing edges.
+    #[cfg_attr(feature = "serde", serde(rename = "n_collapsed"))]
     pub collapsed: usize,
-    /// Added by collapsing.
+    /// Triangles that replace collapsed ones.
+    #[cfg_attr(feature = "serde", serde(rename = "n_new"))]
     pub new: usize,
-    /// Saved by merging faces in one plane.
+    /// Triangles saved by merging coplanar ones.
+    #[cfg_attr(feature = "serde", serde(rename = "n_merged_away"))]
     pub merged_away: usize,
-    /// Added by merging: they cover what was covered before.
+    /// Triangles that are the result of merging.
+    #[cfg_attr(feature = "serde", serde(rename = "n_merged"))]
     pub merged: usize,
-    /// Remaining, new and merged ones included.
+    /// Triangles after.
+    #[cfg_attr(feature = "serde", serde(rename = "n_left"))]
     pub left: usize,
 }
 

@@ -356,21 +356,31 @@ impl Sampled {
 
 /// What is not tight, or was not looked at: nothing that a table must not have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Remarks {
-    /// Portals of plans that an opaque line crosses or runs along: more is shown there, such as where walls were left out by `--tau` or are not followed.
+    /// Portals of plans that an opaque line crosses or runs along, where more is listed than needed; no violation.
+    #[cfg_attr(feature = "serde", serde(rename = "n_portals_in_walls"))]
     pub portals_in_walls: u64,
-    /// Objects that are listed in cells which they do not touch.
+    /// Objects listed in a cell that they do not touch; no violation.
+    #[cfg_attr(feature = "serde", serde(rename = "n_listed_apart"))]
     pub listed_apart: u64,
-    /// Cells from which no ray was shot: too thin to have a place, or without a portal where only portals are known.
+    /// Cells from which no ray was shot: too thin to contain a place, or without a portal where only portals are known.
+    #[cfg_attr(feature = "serde", serde(rename = "n_cells_without_places"))]
     pub cells_without_places: u64,
+    /// Of the doors, those that were not compared with the scene, as it does not have them: doors that were given as boxes, and those of plans and
+    /// maps; no violation.
+    #[cfg_attr(feature = "serde", serde(rename = "n_doors_as_boxes"))]
+    pub doors_as_boxes: u64,
+    /// Pairs of a door and a portal that its leaf covers, and that the door does not close; no violation.
+    #[cfg_attr(feature = "serde", serde(rename = "n_unlisted_door_portals"))]
+    pub unlisted_door_portals: u64,
     /// Hidden pairs of a table with a frame that a ray joins in the scene as the file has it, and not in the scene along the frame: what they
     /// see of each other, they see through openings narrower than the gap or past things thinner than it, which the premise allows.
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub cracks: u64,
-    /// Doors that are not compared with the scene: those that were given as boxes, and those of tables of plans and maps.
-    pub doors_as_boxes: u64,
-    /// Pairs of a door and a portal that its leaf covers, and that the door does not close: it lets through what it could hide.
-    pub unlisted_door_portals: u64,
     /// Triangles that have an area in the file and none along the frame: they are thinner than the gap.
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub flattened: u64,
 }
 

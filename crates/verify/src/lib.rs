@@ -5,7 +5,7 @@
 //! - **Owns**: the checks of a table ([`verify`]) against the real geometry ([`Truth`]), and their results
 //!   ([`Findings`]) as [`Violation`]s with the segment that shows them; the comparison of a table with its proofs
 //!   ([`check_proofs`]), and of its walls with the scene ([`check_walls_of_plan`], [`check_walls_in_space`]); the visibility that a
-//!   map has of its own, as a table to check ([`OwnVisibility`]).
+//!   map has of its own, as a table to check ([`OwnVisibility`]); with the feature `serde`, all of it as a report for people and programs (`report`).
 //! - **Out of scope**: how tables are made (no code is shared with cutting, searching or baking), pictures.
 //! - **Invariants**: a violation that names a segment is proven, by exact signs or by margins that are wider than
 //!   the uncertainty of the scene; so a correct table has none. The same table, scene and options give the same findings, with any
@@ -14,6 +14,8 @@
 //! It has its own exact arithmetic on purpose and does not use `sightlines-exact`: what checks results must not share
 //! the errors of what makes them.
 
+#[cfg(feature = "serde")]
+mod as_json;
 mod borders;
 pub mod exact;
 mod findings;
@@ -24,6 +26,8 @@ mod oracle;
 mod own;
 mod proofs;
 mod rays;
+#[cfg(feature = "serde")]
+pub mod report;
 mod shapes;
 mod sight;
 mod structure;

@@ -69,34 +69,42 @@ impl fmt::Display for ProofViolation {
 }
 
 /// What proofs say about a table; counts are of unordered pairs of different cells but where they are of objects.
+///
+/// Without a proof nothing is known to be wrong, and nothing is certain. Showing too much hides nothing: tables of scenes in space give cells that are
+/// too thin to be decided the pairs of their neighbours, and some pairs are only assumed visible. In tables that no from-region method took part in, a
+/// hidden pair that a line through portals joins is a violation; such a method hides by walls that are no borders of cells, of which proofs do not speak.
+///
+/// A cell and an object are proven hidden by a proof of their own, or as every cell that the object touches is proven hidden, if there is any. Of plans
+/// and Quake maps the table says which cells those are; the check of its structure compares that with the scene.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct ProofFindings {
-    /// Pairs that the table shows and a line joins.
+    /// Pairs that the table lists as visible and that a line joins.
     pub n_visible: u64,
-    /// Pairs that the table hides, and that are proven to be hidden.
+    /// Pairs that the table lists as hidden and that are proven.
     pub n_hidden: u64,
-    /// Pairs that the table of a scene in space shows, though they are proven to be hidden: cells that are too thin to be decided have the
-    /// pairs of their neighbours, and some pairs are only assumed visible. Showing too much hides nothing.
+    /// Pairs listed as visible and proven to be hidden; only in tables of scenes in space, which show pairs that they do not decide.
     pub n_excess: u64,
-    /// Pairs that the table shows, without a proof: of cells that are too thin, or that are only assumed to see each other. No violation, as
-    /// showing too much hides nothing.
+    /// Pairs listed as visible without a proof.
     pub n_unproven_visible: u64,
-    /// Pairs that the table hides, without a proof: nothing is known to be wrong, and nothing is certain.
+    /// Pairs listed as hidden without a proof.
     pub n_unproven_hidden: u64,
-    /// The first of those, [`ProofFindings::MOST_LISTED`] at most.
-    pub unproven_hidden: Vec<[CellId; 2]>,
-    /// Of the pairs that are hidden without a proof: those that a line through portals joins. Only of tables that a from-region method took part
-    /// in: it hides by walls that are no borders of cells, of which proofs do not speak. In other tables such a pair is a violation.
+    /// Of the pairs listed as hidden without a proof, those that a line through portals joins: only a from-region method hides them.
     pub n_hidden_past_portals: u64,
-    /// Pairs of a cell and an object that the table hides, and that are proven to be hidden: by a proof of their own, or as every cell
-    /// that the object touches is proven hidden, if there is any. Of plans and Quake maps the table says which cells those are; the check of its
-    /// structure compares that with the scene.
+    /// Some of the pairs hidden without a proof, by their cells.
+    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::as_json::pairs"))]
+    #[cfg_attr(feature = "schemars", schemars(with = "Vec<[u32; 2]>"))]
+    pub unproven_hidden: Vec<[CellId; 2]>,
+    /// Pairs of a cell and an object listed as hidden, with a proof.
     pub n_hidden_objects: u64,
-    /// Pairs of a cell and an object that the table hides, without a proof.
+    /// Pairs of a cell and an object listed as hidden, without a proof.
     pub n_unproven_hidden_objects: u64,
-    /// Number of violations.
+    /// Violations.
     pub n_violations: u64,
-    /// The first of them, [`ProofFindings::MOST_LISTED`] at most.
+    /// Some of the violations, a sentence each.
+    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::as_json::texts"))]
+    #[cfg_attr(feature = "schemars", schemars(with = "Vec<String>"))]
     pub violations: Vec<ProofViolation>,
 }
 

@@ -17,12 +17,17 @@ use std::collections::BTreeMap;
 
 /// What was found about the borders of cells.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct WallFindings {
-    /// Parts of borders that are no portals, of which sight may not get out.
+    /// Parts of borders of cells that are not portals: the proofs rely on them as walls.
     pub n_walls: u64,
-    /// Of these, parts that lines or triangles of the scene do not cover wholly.
+    /// Of `n_walls`, parts that nothing in the scene covers exactly.
+    #[cfg_attr(feature = "serde", serde(rename = "n_bare_walls"))]
     pub n_bare: u64,
-    /// The first of those, [`WallFindings::MOST_LISTED`] at most: the cell, and a point that is not covered, rounded.
+    /// Some of the bare parts: the cell, and a point with three coordinates.
+    #[cfg_attr(feature = "serde", serde(rename = "bare_walls", serialize_with = "crate::as_json::places"))]
+    #[cfg_attr(feature = "schemars", schemars(with = "Vec<(u32, [f64; 3])>"))]
     pub bare: Vec<(CellId, Point3)>,
 }
 

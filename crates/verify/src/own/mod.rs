@@ -6,6 +6,7 @@ mod quake;
 use crate::{Findings, Violation};
 use sightlines_formats::quake::VisibilityError;
 use sightlines_formats::reject::RejectLengthError;
+use sightlines_progress::words::{bytes, count};
 use sightlines_pvs::{BitMatrix, CellId, Table};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -63,23 +64,49 @@ impl fmt::Display for LumpKind {
 
 /// What a lump is like. Its *sides* are what it hides from each other: clusters of leafs, or sectors.
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schemars", schemars(description = "What was looked at."))]
 pub struct OwnSummary {
-    /// Which lump it is.
+    /// Name of the lump.
+    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::as_json::text"))]
+    #[cfg_attr(feature = "schemars", schemars(with = "String"))]
     pub lump: LumpKind,
-    /// Its size.
+    /// Size of the lump.
     pub n_bytes: usize,
     /// Leafs of a Quake map.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub n_leafs: Option<usize>,
-    /// What its sides are: `cluster` or `sector`.
+    /// What is hidden from each other: clusters of leafs, or sectors.
     pub sides: &'static str,
-    /// Number of sides.
+    /// How many clusters or sectors there are.
     pub n_sides: usize,
-    /// Unordered pairs of sides of which one is hidden from the other, or both.
+    /// Unordered pairs of sides of which at least one is hidden from the other.
     pub n_hidden_pairs: u64,
-    /// Of these, pairs of which only one is hidden from the other.
+    /// Of the hidden pairs, those of which only one is hidden from the other.
     pub n_hidden_one_way: u64,
-    /// Clusters whose leafs have different rows; what one of them sees counts for all.
+    /// Clusters whose leafs have different rows; what is visible from one leaf counts for all.
     pub n_uneven_clusters: usize,
+}
+
+impl fmt::Display for OwnSummary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let sides = count(self.n_sides as u64, self.sides);
+        let sides = self.n_leafs.map_or(sides.clone(), |n| format!("{} in {sides}", count(n as u64, "leaf")));
+        writeln!(f, "lump           {} of the map, {}, for {sides}", self.lump, bytes(self.n_bytes as u64))?;
+        writeln!(f, "               {} hidden", count(self.n_hidden_pairs, "pair"))?;
+        if self.n_hidden_one_way > 0 {
+            writeln!(f, "remark         {} hidden one way only", count(self.n_hidden_one_way, "pair"))?;
+        }
+        if self.n_uneven_clusters > 0 {
+            let n = count(self.n_uneven_clusters as u64, "cluster");
+            writeln!(
+                f,
+                "remark         {n} with leafs that do not see the same: what one of them sees counts for all"
+            )?;
+        }
+        Ok(())
+    }
 }
 
 /// Why the own visibility of a map cannot be checked.

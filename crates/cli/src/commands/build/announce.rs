@@ -2,8 +2,9 @@
 
 use super::auto::Chosen;
 use crate::output::seconds;
-use crate::progress::{Bar, rough};
+use crate::progress::Bar;
 use sightlines::bake::{Bakeable, CellsFrom, Recipe, SceneMethod};
+use sightlines::progress::words::rough;
 use sightlines::progress::{Observer, Pace, Progress, Work};
 use sightlines::report::{ALONG_THE_FILE, FrameFacts};
 use std::ops::ControlFlow;

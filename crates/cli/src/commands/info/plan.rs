@@ -40,7 +40,7 @@ impl PlanInfo {
     pub(super) fn read(path: &Path, options: &PlanReadOptions) -> Result<Self> {
         let file = plans::read(path, options)?;
         let plan = file.plan;
-        let n_walls = plan.lines().iter().filter(|line| line.opaque).count();
+        let n_walls = plans::walls(&plan).len();
         let bounds = Some(plan.bounds()).filter(|bounds| !bounds.is_empty());
         Ok(Self {
             file: path.display().to_string(),

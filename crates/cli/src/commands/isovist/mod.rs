@@ -3,18 +3,19 @@
 pub(crate) mod space;
 
 use crate::command::{Done, JsonArg, Verbosity};
-use crate::error::{ErrorAbout, Result, anyhow, bail};
+use crate::error::{ErrorAbout, Result, anyhow};
 use crate::input::{self, refuse};
 use crate::output::{self, JsonSchema, Serialize, bytes, count};
+use crate::output_kind::OutputKind as Kind;
 use crate::place::Point;
-use crate::plans::PlanArgs;
+use crate::plans::{PlanArgs, walls};
 use crate::surfaces::SurfaceArgs;
 use sightlines::bake::Bakeable;
 use sightlines::cells::Plan;
 use sightlines::formats::points::read_points;
 use sightlines::formats::scene::SceneReadOptions;
 use sightlines::formats::{Input, InputKind};
-use sightlines::geometry::{Point2, Segment2};
+use sightlines::geometry::Point2;
 use sightlines::isovist::{Boundary, Isovist, IsovistFinder, LimitError, Limits, Measures, Sector, WallMesh};
 use sightlines::report::{Area, AreaEdge, MAX_SIZE, MIN_SIZE, areas_csv, areas_geojson, areas_png, areas_svg};
 use std::fmt;
@@ -73,27 +74,6 @@ pub(crate) struct IsovistArgs {
     json: JsonArg,
 }
 
-/// What is written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
-    GeoJson,
-    Csv,
-    Svg,
-    Png,
-}
-
-impl Kind {
-    fn of(path: &Path) -> Result<Self> {
-        match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
-            Some("geojson" | "json") => Ok(Self::GeoJson),
-            Some("csv") => Ok(Self::Csv),
-            Some("svg") => Ok(Self::Svg),
-            Some("png") => Ok(Self::Png),
-            _ => bail!("{}: the name of the result ends in .geojson, .json, .csv, .svg or .png", path.display()),
-        }
-    }
-}
-
 /// A point to look from, and how errors name it.
 struct Eye {
     at: Point2,
@@ -102,7 +82,7 @@ struct Eye {
 }
 
 pub(crate) fn run(args: &IsovistArgs, _: Verbosity) -> Result<Done> {
-    let kind = Kind::of(&args.output)?;
+    let kind = Kind::of(&args.output, "result ends in .geojson, .json, .csv, .svg or .png")?;
     let inputs = std::iter::once(&args.plan).chain(&args.points).chain(&args.table).map(PathBuf::as_path);
     output::check(&inputs.collect::<Vec<_>>(), &[&args.output])?;
     if input::kind_of(&args.plan)? == Some(InputKind::Scene) {
@@ -140,10 +120,6 @@ pub(crate) fn run(args: &IsovistArgs, _: Verbosity) -> Result<Done> {
 fn save(path: &Path, text: &str) -> Result<u64> {
     output::save(path, text.as_bytes())?;
     Ok(text.len() as u64)
-}
-
-fn walls(plan: &Plan) -> Vec<Segment2> {
-    plan.lines().iter().filter(|line| line.opaque).map(|line| Segment2::new(line.a, line.b)).collect()
 }
 
 fn legend(areas: &[Area]) -> String {

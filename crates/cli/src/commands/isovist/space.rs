@@ -1,10 +1,11 @@
 //! `isovist` of a scene in space: volumes, and how much is seen of each object.
 
-use super::{IsovistArgs, Kind};
+use super::IsovistArgs;
 use crate::command::Done;
 use crate::error::{Result, bail};
 use crate::input::{self, refuse};
 use crate::output::{self, JsonSchema, Serialize, bytes, count};
+use crate::output_kind::OutputKind as Kind;
 use crate::same_scene::difference;
 use sightlines::isovist::{Estimate, Surroundings};
 use sightlines::report::{SeenInSpace, seen_csv};

@@ -1,12 +1,12 @@
 //! `job merge`: the output, from all parts.
 
-use super::outcome::{Merged, Missing};
 use super::task::{Made, Task};
 use super::{absolute, open, stopped};
 use crate::command::{Answer, Done, JsonArg, Verbosity};
 use crate::error::Result;
 use crate::interrupt;
 use crate::kept::Keeping;
+use sightlines::checkpoint::report::{Merged, Missing};
 use sightlines::checkpoint::{Identity, Job, JobProgress, JobRole, JobSlot, JobStore, ShardState};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -92,8 +92,8 @@ pub(crate) fn run(args: &MergeArgs, Verbosity { show_progress, verbose }: Verbos
 pub(super) fn report(job: &Path, found: Progress, json: JsonArg) -> Done {
     let name = job.display().to_string();
     let (merged, answer) = match found {
-        Progress::Written(made, out) => (Merged::written(name, &out, &made), Answer::Yes),
-        Progress::Elsewhere(out, said) => (Merged::elsewhere(name, &out, said), Answer::Yes),
+        Progress::Written(made, out) => (Merged::written(name, &out, Some(made.to_string())), Answer::Yes),
+        Progress::Elsewhere(out, said) => (Merged::written(name, &out, said), Answer::Yes),
         Progress::Shared(out) => (Merged::shared(name, &out), Answer::Yes),
         Progress::Planned(job, phase) => (Merged::planned(name, &job, phase), Answer::Incomplete),
         Progress::Missing { job, phase, shards } => {

@@ -1,11 +1,10 @@
 //! `job`: a build that processes share, on one machine or on many.
 
 mod merge;
-pub(crate) mod outcome;
 mod plan;
 mod shard;
 mod status;
-mod submit;
+pub(crate) mod submit;
 mod task;
 mod work;
 

@@ -1,11 +1,11 @@
 //! `job plan`: which shards a build has.
 
 use super::absolute;
-use super::outcome::Planned;
 use super::task::Task;
 use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::Result;
 use crate::kept::{Keeping, PROGRAM};
+use sightlines::checkpoint::report::Planned;
 use sightlines::checkpoint::{Identity, Job, JobProgress, JobRole, JobSlot, JobStore, Manifest};
 use std::path::PathBuf;
 use std::time::Duration;

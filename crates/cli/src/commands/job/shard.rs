@@ -1,6 +1,5 @@
 //! `job shard`: the parts of some shards.
 
-use super::outcome::{ShardDone, ShardsDone};
 use super::task::Task;
 use super::{absolute, open, stopped};
 use crate::command::{Done, JsonArg, Verbosity};
@@ -8,6 +7,7 @@ use crate::error::{Result, anyhow};
 use crate::interrupt;
 use crate::kept::Keeping;
 use crate::memory::MemoryArgs;
+use sightlines::checkpoint::report::{ShardDone, ShardsDone};
 use sightlines::checkpoint::{Identity, Job, JobProgress, JobRole, JobSlot, JobStore, ShardRun, ShardState, in_words};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

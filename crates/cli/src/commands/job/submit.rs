@@ -1,19 +1,21 @@
 //! `job submit`: has all shards done, round by round, and merges them.
 
 use super::merge::{Progress, merge, report};
-use super::outcome::Submitted;
 use super::task::Task;
 use super::{absolute, interrupted, open};
 use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::{ErrorAbout, Result, bail};
 use crate::interrupt;
 use crate::kept::PROGRAM;
+use crate::output::{JsonSchema, Serialize};
 use crate::progress::Bar;
 use sightlines::checkpoint::engine::{
     Did, Engine, EngineError, Host, Local, Merge, Round, Rounds, ShellCommand, Slurm, quoted, run_rounds,
 };
+use sightlines::checkpoint::report::Merged;
 use sightlines::checkpoint::{Job, ShardRun};
 use sightlines::progress::{Observer, memory::n_threads};
+use std::fmt;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -64,6 +66,21 @@ pub(crate) struct SubmitArgs {
     json: JsonArg,
 }
 
+/// The files that would be given to Slurm.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct Submitted {
+    /// The folder of the job.
+    job: String,
+    /// With `--dry-run`: the files that were written.
+    files: Vec<String>,
+}
+
+impl fmt::Display for Submitted {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.files.iter().try_for_each(|file| writeln!(f, "wrote {file}"))
+    }
+}
+
 pub(crate) fn run(args: &SubmitArgs, Verbosity { show_progress, verbose }: Verbosity) -> Result<Done> {
     let (folder, out) = (absolute(&args.job)?, args.output.as_deref().map(absolute).transpose()?);
     let program = std::env::current_exe().in_file(&folder)?;
@@ -95,7 +112,7 @@ pub(crate) fn run(args: &SubmitArgs, Verbosity { show_progress, verbose }: Verbo
     let engine: Box<dyn Engine + '_> = match (args.engine, &args.command) {
         (Kind::Slurm, _) => Box::new(slurm),
         (Kind::Command, Some(template)) => Box::new(ShellCommand { template, program: &program, workers }),
-        _ => Box::new(Local { workers, worker: &worker, shards: &shards, told }),
+        _ => Box::new(Local { workers, worker: &worker, shards: &shards, told: Merged::told }),
     };
     let engine = Watched(&*engine);
     let observe = || -> Box<dyn Observer> { Box::new(Bar::new("shards", show_progress)) };
@@ -140,27 +157,8 @@ fn slurm_lines(program: &Path, job: &Path, output: Option<&Path>) -> [String; 2]
     ]
 }
 
-/// What a worker has printed that has written the output.
-fn told(printed: &[u8]) -> Option<String> {
-    let found: serde_json::Value = serde_json::from_slice(printed).ok()?;
-    found["text"].as_str().filter(|_| found["status"] == "written").map(str::to_owned)
-}
-
 /// What the command of a job writes, or what was given in place of it.
 fn output_of(job: &Job, given: Option<&Path>) -> Result<PathBuf> {
     let planned = || Ok(Path::new(&job.manifest().folder).join(Task::parse(&job.manifest().command)?.output()));
     given.map_or_else(planned, |given| Ok(given.to_owned()))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_worker_that_has_written_says_so() {
-        for other in [&b""[..], b"what?", br#"{"status": "shared", "text": "done"}"#, b"[]"] {
-            assert_eq!(told(other), None);
-        }
-        assert_eq!(told(br#"{"status": "written", "text": "wrote it"}"#).as_deref(), Some("wrote it"));
-    }
 }

@@ -9,9 +9,10 @@ use crate::output;
 use crate::progress::Bar;
 use crate::simplification::{self, HowArgs, OutFormat, ReadScene, read, written};
 use eyes::EyesArgs;
-use outcome::{Outcome, Report};
+use outcome::Outcome;
 use sightlines::multifocal::FromRegion;
-use sightlines::simplify::{HiddenBy, MakeMethod, MeasureOptions, SimplifyError, SimplifyOptions, measure, simplify};
+use sightlines::simplify::report::RayReport;
+use sightlines::simplify::{HiddenBy, MakeMethod, SimplifyError, SimplifyOptions, simplify};
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -80,13 +81,8 @@ pub(crate) fn run(args: &SimplifyArgs, Verbosity { show_progress, .. }: Verbosit
     drop(bar);
     let time = start.elapsed();
     let file = written(&args.scene, &file.scene, source.as_ref(), &simplified, along.is_some(), format)?;
-    let report = if args.report {
-        let rays = MeasureOptions { threads: args.how.threads, ..MeasureOptions::default() };
-        let measured = measure(scene, &simplified, &views, &rays).map_err(failed)?;
-        Some(Report::new(scene, &views, &simplified, &measured, &options).map_err(failed)?)
-    } else {
-        None
-    };
+    let report = args.report.then(|| RayReport::new(scene, &views, &simplified, &options));
+    let report = report.transpose().map_err(failed)?;
     let outcome = Outcome::new(args, method, (scene, &simplified), views.parts().len(), &file, report, time);
     output::save(&args.output, &file.bytes)?;
     Ok(Done::new(args.json, outcome))

@@ -1,11 +1,9 @@
 //! `verify`: is a table true to its scene?
 
 mod drawing;
-pub(crate) mod outcome;
 mod own;
 mod proofs;
 mod truth;
-mod violations;
 
 use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::{Result, anyhow};
@@ -15,14 +13,11 @@ use crate::picture::PictureKind;
 use crate::plans::PlanArgs;
 use crate::progress::Bar;
 use crate::surfaces::SurfaceArgs;
-use crate::unproven::Unproven;
 use crate::{output, tables};
-use outcome::{Outcome, With};
-use sightlines::pvs::Table;
-use sightlines::verify::{ProofFindings, VerifyOptions, can_be_proven, verify};
+use sightlines::verify::report::{Outcome, Unproven, Violations};
+use sightlines::verify::{VerifyOptions, verify};
 use std::path::PathBuf;
 use std::time::Instant;
-use violations::Violations;
 
 /// Arguments of `verify`.
 #[derive(Debug, clap::Args)]
@@ -115,26 +110,19 @@ pub(crate) fn run(args: &VerifyArgs, Verbosity { show_progress, .. }: Verbosity)
         Some(_) => None,
         None => proofs::check(&args.proofs, &args.table, table, &scene.truth())?,
     };
-    let unproven = unproven(table).filter(|_| own.is_none());
+    let unproven = Unproven::without_proofs(table).filter(|_| own.is_none());
     let drawn = match &args.draw {
         Some(out) => drawing::draw(&args.table, table, &findings, out)?,
         None => None,
     };
     let violations = own.as_ref().map_or_else(|| Violations::from(&findings), |own| Violations::of_own(&findings, own));
-    let about = own.as_ref().map(|own| own::About::from(&own.about));
+    let about = own.as_ref().map(|own| own.about.clone());
     let files = [args.table.as_path(), &args.scene];
-    let outcome =
-        Outcome::new(files, has_digests, &findings, violations, about, proofs.as_ref(), time).with_picture(drawn);
     let wide_gap = frame.and_then(|frame| scene.times_too_wide(frame.gap()));
-    let outcome = outcome.in_frame(frame.as_ref(), wide_gap);
-    let is_proven = unproven.is_none_or(|unproven| unproven.hides_none());
-    let outcome = outcome.only_if(is_proven || !args.proofs.is_strict());
+    let outcome = Outcome::new(files, has_digests, &findings, violations, about, proofs, time)
+        .with_picture(drawn)
+        .in_frame(frame.as_ref(), wide_gap)
+        .with_unproven(unproven, args.proofs.is_strict());
     let is_true = outcome.is_true();
-    Ok(Done::new(args.json, With { outcome, proofs, unproven }).answering_whether(is_true))
-}
-
-/// What a table states that can have no proofs.
-fn unproven(table: &Table) -> Option<Unproven> {
-    let found = || ProofFindings::without_proofs(table);
-    (!can_be_proven(table)).then(|| Unproven::new(table, &found()))
+    Ok(Done::new(args.json, outcome).answering_whether(is_true))
 }

@@ -3,73 +3,13 @@
 use crate::error::{Result, anyhow, bail};
 use crate::input;
 use crate::map_portals::{do_not_fit, portals_for};
-use crate::output::{JsonSchema, Serialize, bytes, count};
 use sightlines::bake::BakeError;
 use sightlines::formats::InputKind;
 use sightlines::formats::doom::Game;
 use sightlines::formats::quake::{Prt, read_bsp, read_prt};
 use sightlines::triangulation::subdivide;
-use sightlines::verify::{OwnError, OwnSummary, OwnVisibility};
-use std::fmt;
+use sightlines::verify::{OwnError, OwnVisibility};
 use std::path::{Path, PathBuf};
-
-/// What was looked at.
-#[derive(Debug, Clone, Serialize, JsonSchema)]
-pub(super) struct About {
-    /// Name of the lump.
-    lump: &'static str,
-    /// Size of the lump.
-    n_bytes: usize,
-    /// Leafs of a Quake map.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    n_leafs: Option<usize>,
-    /// What is hidden from each other: clusters of leafs, or sectors.
-    sides: &'static str,
-    /// How many clusters or sectors there are.
-    n_sides: usize,
-    /// Unordered pairs of sides of which at least one is hidden from the other.
-    n_hidden_pairs: u64,
-    /// Of the hidden pairs, those of which only one is hidden from the other.
-    n_hidden_one_way: u64,
-    /// Clusters whose leafs have different rows; what is visible from one leaf counts for all.
-    n_uneven_clusters: usize,
-}
-
-impl From<&OwnSummary> for About {
-    fn from(summary: &OwnSummary) -> Self {
-        let OwnSummary { lump, n_bytes, n_leafs, sides, n_sides, .. } = *summary;
-        Self {
-            lump: lump.name(),
-            n_bytes,
-            n_leafs,
-            sides,
-            n_sides,
-            n_hidden_pairs: summary.n_hidden_pairs,
-            n_hidden_one_way: summary.n_hidden_one_way,
-            n_uneven_clusters: summary.n_uneven_clusters,
-        }
-    }
-}
-
-impl fmt::Display for About {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let sides = count(self.n_sides as u64, self.sides);
-        let sides = self.n_leafs.map_or(sides.clone(), |n| format!("{} in {sides}", count(n as u64, "leaf")));
-        writeln!(f, "lump           {} of the map, {}, for {sides}", self.lump, bytes(self.n_bytes as u64))?;
-        writeln!(f, "               {} hidden", count(self.n_hidden_pairs, "pair"))?;
-        if self.n_hidden_one_way > 0 {
-            writeln!(f, "remark         {} hidden one way only", count(self.n_hidden_one_way, "pair"))?;
-        }
-        if self.n_uneven_clusters > 0 {
-            let n = count(self.n_uneven_clusters as u64, "cluster");
-            writeln!(
-                f,
-                "remark         {n} with leafs that do not see the same: what one of them sees counts for all"
-            )?;
-        }
-        Ok(())
-    }
-}
 
 /// The own visibility of a map, if `path` is one; `scene` is what it will be checked against.
 ///

@@ -1,6 +1,5 @@
 //! `vga`: visibility graph analysis of a floor plan.
 
-mod kind;
 pub(crate) mod outcome;
 mod points;
 
@@ -11,17 +10,17 @@ use crate::kept::{self, Keeping, Kept, ResumeArgs};
 use crate::memory::MemoryArgs;
 use crate::named::one_of;
 use crate::output;
+use crate::output_kind::OutputKind as Kind;
 use crate::place::Point;
-use crate::plans::PlanArgs;
+use crate::plans::{PlanArgs, walls};
 use crate::progress::Bar;
-use kind::Kind;
 use outcome::{Outcome, Range};
 use sightlines::bake::Bakeable;
 use sightlines::cells::Plan;
 use sightlines::checkpoint::{Identity, Inputs};
 use sightlines::formats::InputKind;
 use sightlines::formats::scene::SceneReadOptions;
-use sightlines::geometry::{Point2, Segment2};
+use sightlines::geometry::Point2;
 use sightlines::isovist::{Touch, WallMesh};
 use sightlines::progress::memory::{self, Needs};
 use sightlines::report::{Field, MAX_SIZE, MIN_SIZE, PointColumn, field_png, field_svg, points_csv, points_geojson};
@@ -134,7 +133,7 @@ const fn touch_about(touch: Touch) -> &'static str {
 
 pub(crate) fn run(args: &VgaArgs, Verbosity { show_progress, .. }: Verbosity) -> Result<Done> {
     args.memory.watch();
-    let kind = Kind::of(&args.output)?;
+    let kind = Kind::of(&args.output, "output ends in .csv, .geojson, .svg or .png")?;
     let inputs: Vec<&Path> = std::iter::once(&args.plan).chain(&args.points).map(PathBuf::as_path).collect();
     output::check(&inputs, &[&args.output])?;
     if kind.is_picture() && args.spacing.is_none() {
@@ -276,10 +275,6 @@ fn seeds(args: &VgaArgs) -> Result<Vec<Point2>> {
         Ok(Point2::new(at[0], at[1]))
     };
     args.seed.iter().map(seed).collect()
-}
-
-fn walls(plan: &Plan) -> Vec<Segment2> {
-    plan.lines().iter().filter(|line| line.opaque).map(|line| Segment2::new(line.a, line.b)).collect()
 }
 
 /// What is computed: what is named; else the measure of a picture, and of tables local measures.

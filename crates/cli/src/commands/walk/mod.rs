@@ -1,7 +1,6 @@
 //! `walk`: what each method leaves to draw along a walk, and what it costs.
 
 mod levels;
-pub(crate) mod outcome;
 
 use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::{ErrorAbout, Result, anyhow, bail};
@@ -10,9 +9,8 @@ use crate::progress::Bar;
 use crate::tables::{self, Cells, Opened};
 use crate::view::{LensArgs, Methods, method_help};
 use crate::walk_path;
-use outcome::Outcome;
 use sightlines::eye_to_cell::{CellSource, Method, StepBudget, View};
-use sightlines::report::walk_svg;
+use sightlines::report::{WalkReport, walk_svg};
 use sightlines::walkthrough::{CameraPose, MeasureError, WalkMeasure, WalkOptions, usual_step, wander};
 use std::path::{Path, PathBuf};
 
@@ -128,7 +126,7 @@ fn walk<C: Cells>(cells: &C, args: &WalkArgs, show_progress: bool) -> Result<Don
         error => anyhow!("{}: {error}; this is a defect of the program", file.display()),
     })?;
     drop(bar);
-    let outcome = Outcome::new(args, lens.fov, step, cells, &polygons, &measured).with_levels(drawn);
+    let outcome = WalkReport::new(file, options, (lens.fov, step), cells, &polygons, &measured, drawn);
     if let Some(out) = &args.output {
         output::save(out, walk_svg(&outcome.title(), &outcome.bars()).as_bytes())?;
     }

@@ -1,21 +1,29 @@
-//! The report of `verify`.
+//! What was checked and found, as fields for programs and as lines for people.
 
-use super::own::About;
-use super::proofs::ProofOutcome;
-use super::violations::{ReportedViolation, Violations};
-use crate::output::{JsonSchema, Serialize, count, percent, seconds_of};
-use crate::unproven::Unproven;
-use sightlines::pvs::Frame;
-use sightlines::report::FrameFacts;
-use sightlines::verify::{Confirmed, Findings, Remarks, Violation};
+mod proofs;
+mod unproven;
+mod violations;
+
+pub use proofs::ProofOutcome;
+pub use unproven::Unproven;
+pub use violations::{ReportedViolation, Violations};
+
+use crate::{Confirmed, Findings, OwnSummary, Remarks, Violation};
+#[cfg(feature = "schemars")]
+use schemars::JsonSchema;
+use serde::Serialize;
+use sightlines_frame::FrameFacts;
+use sightlines_progress::words::{count, percent, seconds_of};
+use sightlines_pvs::Frame;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// What was looked at and found.
-#[derive(Debug, Serialize, JsonSchema)]
-pub(crate) struct Outcome {
+/// Exit code 1 if `is_true` is false.
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
+pub struct Outcome {
     /// What was checked: a table, or a map with its own visibility.
     table: String,
     /// What it was checked against.
@@ -43,7 +51,7 @@ pub(crate) struct Outcome {
     checked: Checked,
     /// The lump that was checked, of a map's own visibility.
     #[serde(skip_serializing_if = "Option::is_none")]
-    own: Option<About>,
+    own: Option<OwnSummary>,
     /// Why no rays were shot.
     #[serde(skip_serializing_if = "Option::is_none")]
     no_rays: Option<&'static str>,
@@ -58,17 +66,8 @@ pub(crate) struct Outcome {
     n_segments_each: u64,
     /// The share of free segments from which on such a pair is found in 99 of 100 runs, unless a nearer pair is wrong as well; 1 if none were shot.
     share_found: f64,
-    /// Portals of plans that an opaque line crosses or runs along, where more is listed than needed; no violation.
-    n_portals_in_walls: u64,
-    /// Objects listed in a cell that they do not touch; no violation.
-    n_listed_apart: u64,
-    /// Cells from which no ray was shot: too thin to contain a place, or without a portal where only portals are known.
-    n_cells_without_places: u64,
-    /// Of the doors, those that were not compared with the scene, as it does not have them: doors that were given as boxes, and those of plans and
-    /// maps; no violation.
-    n_doors_as_boxes: u64,
-    /// Pairs of a door and a portal that its leaf covers, and that the door does not close; no violation.
-    n_unlisted_door_portals: u64,
+    #[serde(flatten)]
+    remarks: Remarks,
     /// With a frame: hidden pairs that rays join in the scene of the file and not along the frame, through openings narrower than the gap or past
     /// things thinner than it; no violation. Rays stop once they have found 1,000 hidden pairs, so there may be more.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -79,23 +78,24 @@ pub(crate) struct Outcome {
     /// How many times what single precision explains the gap is, if that is much.
     #[serde(skip)]
     wide_gap: Option<f64>,
-    /// Violations found, including those that are not listed.
-    n_violations: usize,
-    /// Whether there were so many that rays were stopped.
-    has_more_violations: bool,
-    /// The same number for each kind.
-    n_violations_by_kind: BTreeMap<&'static str, usize>,
-    /// Violations, a limited number of each kind.
-    violations: Vec<ReportedViolation>,
+    #[serde(flatten)]
+    found: Violations,
     /// With `--draw` and a violation to draw: the picture that was written.
     #[serde(skip_serializing_if = "Option::is_none")]
     picture: Option<String>,
     /// Seconds in all.
     seconds: f64,
+    /// What the proofs show, if there are any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    proofs: Option<ProofOutcome>,
+    /// Of a table of cells without portals, which can have no proofs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    unproven: Option<Unproven>,
 }
 
 /// Checks besides the structure of the table.
-#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, Serialize)]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
 struct Checked {
     /// Whether the scene was compared with the digests of what the table was made of; older tables have none.
     digests: bool,
@@ -120,7 +120,8 @@ impl Checked {
 }
 
 /// Checked pairs, and what rays did with them.
-#[derive(Debug, Serialize, JsonSchema)]
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
 struct Pairs {
     /// Pairs that the table lists as visible.
     n_visible: u64,
@@ -148,25 +149,24 @@ impl From<Confirmed> for Pairs {
 }
 
 impl Outcome {
-    pub(super) fn new(
+    /// What was found of a table, or of a map with its `own` visibility, in the file `table`, checked against that of the `scene`.
+    pub fn new(
         [table, scene]: [&Path; 2],
         has_digests: bool,
         found: &Findings,
         violations: Violations,
-        own: Option<About>,
-        proofs: Option<&ProofOutcome>,
+        own: Option<OwnSummary>,
+        proofs: Option<ProofOutcome>,
         time: Duration,
     ) -> Self {
-        let is_true = violations.is_empty() && proofs.is_none_or(|proofs| proofs.is_true);
+        let is_true = violations.is_empty() && proofs.as_ref().is_none_or(|proofs| proofs.is_true);
         let checked = Checked {
             digests: has_digests,
             random_rays: found.n_rays > 0,
             random_segments: found.sampled.n_pairs > 0 && found.sampled.n_each > 0,
             aimed_rays: found.cells.aimed + found.objects.aimed > 0,
-            proofs: proofs.is_some_and(|proofs| !proofs.is_stale),
+            proofs: proofs.as_ref().is_some_and(|proofs| !proofs.is_stale),
         };
-        let remarks = found.remarks;
-        let Remarks { portals_in_walls, listed_apart, cells_without_places, cracks, flattened, .. } = remarks;
         Self {
             table: table.display().to_string(),
             scene: scene.display().to_string(),
@@ -187,43 +187,38 @@ impl Outcome {
             n_sampled_pairs: found.sampled.n_pairs,
             n_segments_each: found.sampled.n_each,
             share_found: found.sampled.share_found(),
-            n_portals_in_walls: portals_in_walls,
-            n_listed_apart: listed_apart,
-            n_cells_without_places: cells_without_places,
-            n_doors_as_boxes: remarks.doors_as_boxes,
-            n_unlisted_door_portals: remarks.unlisted_door_portals,
-            n_cracks: Some(cracks),
-            n_flattened: Some(flattened),
+            remarks: found.remarks,
+            n_cracks: None,
+            n_flattened: None,
             wide_gap: None,
-            n_violations: violations.n,
-            has_more_violations: violations.has_more,
-            n_violations_by_kind: violations.by_kind,
-            violations: violations.reported,
+            found: violations,
             picture: None,
             seconds: time.as_secs_f64(),
+            proofs,
+            unproven: None,
         }
     }
 
     /// The same for a table with a frame, whose gap is so many times what single precision explains, if that is much.
-    pub(super) fn in_frame(self, frame: Option<&Frame>, wide_gap: Option<f64>) -> Self {
-        match frame {
-            Some(frame) => Self { frame: Some(frame.into()), wide_gap, ..self },
-            None => Self { n_cracks: None, n_flattened: None, ..self },
-        }
+    pub fn in_frame(self, frame: Option<&Frame>, wide_gap: Option<f64>) -> Self {
+        let Some(frame) = frame else { return self };
+        let (n_cracks, n_flattened) = (Some(self.remarks.cracks), Some(self.remarks.flattened));
+        Self { frame: Some(frame.into()), n_cracks, n_flattened, wide_gap, ..self }
     }
 
     /// The same with a picture, if one was drawn.
-    pub(super) fn with_picture(self, picture: Option<PathBuf>) -> Self {
+    pub fn with_picture(self, picture: Option<PathBuf>) -> Self {
         Self { picture: picture.map(|p| p.display().to_string()), ..self }
     }
 
-    /// The same, but not true unless that holds.
-    pub(super) fn only_if(self, holds: bool) -> Self {
-        Self { is_true: self.is_true && holds, ..self }
+    /// The same of a table with pairs that can have no proof; where this is `strict`, it is only true if none of them is hidden.
+    pub fn with_unproven(self, unproven: Option<Unproven>, strict: bool) -> Self {
+        let is_true = self.is_true && !(strict && unproven.is_some_and(|unproven| !unproven.hides_none()));
+        Self { is_true, unproven, ..self }
     }
 
     /// Whether nothing was found that a true table must not have.
-    pub(super) fn is_true(&self) -> bool {
+    pub fn is_true(&self) -> bool {
         self.is_true
     }
 
@@ -239,6 +234,8 @@ const SHOWN: usize = 5;
 
 impl fmt::Display for Outcome {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.proofs.iter().try_for_each(|proofs| write!(f, "{proofs}"))?;
+        self.unproven.iter().try_for_each(|unproven| write!(f, "{unproven}"))?;
         writeln!(f, "checked        {} against {}", self.table, self.scene)?;
         let things = [(self.n_cells, "cell"), (self.n_portals, "portal"), (self.n_objects, "object")];
         let mut things = things.map(|(n, noun)| count(n as u64, noun)).join(", ");
@@ -286,14 +283,18 @@ impl fmt::Display for Outcome {
             }
         }
         let remarks = [
-            (self.n_portals_in_walls, "portal", "with a wall in it: more is shown there"),
-            (self.n_listed_apart, "object", "listed in a cell that it does not touch"),
-            (self.n_cells_without_places, "cell", "from which no ray was shot: too thin, or without a portal"),
-            (self.n_doors_as_boxes, "door", "that the scene does not have: what was given as a box is not compared"),
-            (self.n_unlisted_door_portals, "portal", "that a door could close and does not: more is shown there"),
-            (self.n_flattened.unwrap_or(0), "triangle", "thinner than the gap, which the table takes to be none"),
+            (self.remarks.portals_in_walls, "portal", "with a wall in it: more is shown there"),
+            (self.remarks.listed_apart, "object", "listed in a cell that it does not touch"),
+            (self.remarks.cells_without_places, "cell", "from which no ray was shot: too thin, or without a portal"),
             (
-                self.n_cracks.unwrap_or(0),
+                self.remarks.doors_as_boxes,
+                "door",
+                "that the scene does not have: what was given as a box is not compared",
+            ),
+            (self.remarks.unlisted_door_portals, "portal", "that a door could close and does not: more is shown there"),
+            (self.remarks.flattened, "triangle", "thinner than the gap, which the table takes to be none"),
+            (
+                self.remarks.cracks,
                 "hidden pair",
                 "joined by rays through openings narrower than the gap, or past things thinner than it",
             ),
@@ -308,21 +309,21 @@ impl fmt::Display for Outcome {
             writeln!(f, "remark         {} {what}", count(n, noun))?;
         }
         let mut shown: BTreeMap<&str, usize> = BTreeMap::new();
-        for v in &self.violations {
+        for v in &self.found.violations {
             let n = shown.entry(v.kind).or_default();
             *n += 1;
             if *n <= SHOWN {
                 writeln!(f, "violation      {}: {}", v.kind, v.text)?;
             }
         }
-        for (kind, n) in self.n_violations_by_kind.iter().filter(|(_, n)| **n > SHOWN) {
+        for (kind, n) in self.found.n_violations_by_kind.iter().filter(|(_, n)| **n > SHOWN) {
             writeln!(f, "               {kind}: {n} in all; --json has more of them")?;
         }
         if let Some(picture) = &self.picture {
             writeln!(f, "picture        {picture}")?;
         }
         writeln!(f, "time           {}", seconds_of(self.seconds))?;
-        match self.n_violations {
+        match self.found.n_violations {
             0 if self.is_true && !self.checked.has_any() => {
                 writeln!(
                     f,
@@ -334,7 +335,7 @@ impl fmt::Display for Outcome {
             0 => {
                 writeln!(f, "result         nothing found by structure and rays, but not all that is hidden is proven")
             }
-            n if self.n_violations_by_kind.get(Violation::CHANGED) == Some(&n) => {
+            n if self.found.n_violations_by_kind.get(Violation::CHANGED) == Some(&n) => {
                 writeln!(f, "result         the scene is not as when the table was made")?;
                 let found = if self.checked.has_any() {
                     "nothing else was found that contradicts the table"
@@ -343,29 +344,10 @@ impl fmt::Display for Outcome {
                 };
                 writeln!(f, "               {found}")
             }
-            n if self.has_more_violations => writeln!(f, "result         at least {}", count(n as u64, "violation")),
+            n if self.found.has_more_violations => {
+                writeln!(f, "result         at least {}", count(n as u64, "violation"))
+            }
             n => writeln!(f, "result         {}", count(n as u64, "violation")),
         }
-    }
-}
-
-/// Exit code 1 if `is_true` is false.
-#[derive(Debug, Serialize, JsonSchema)]
-pub(crate) struct With {
-    #[serde(flatten)]
-    pub(super) outcome: Outcome,
-    /// What the proofs show, if there are any.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) proofs: Option<ProofOutcome>,
-    /// Of a table of cells without portals, which can have no proofs.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) unproven: Option<Unproven>,
-}
-
-impl fmt::Display for With {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.proofs.iter().try_for_each(|proofs| write!(f, "{proofs}"))?;
-        self.unproven.iter().try_for_each(|unproven| write!(f, "{unproven}"))?;
-        write!(f, "{}", self.outcome)
     }
 }

@@ -8,6 +8,16 @@ pub fn percent(share: f64) -> String {
     format!("{:.*} %", digits, 100.0 * share)
 }
 
+/// A share that may be very small.
+pub fn parts(share: f64) -> String {
+    if share == 0.0 || share >= 0.01 { percent(share) } else { format!("{:.3e}", share) }
+}
+
+/// A part of a whole; 0 of nothing.
+pub fn share(part: f64, whole: f64) -> f64 {
+    if whole > 0.0 { part / whole } else { 0.0 }
+}
+
 /// A number of bytes, rounded for the eye.
 pub fn bytes(n: u64) -> String {
     match n {
@@ -29,6 +39,15 @@ pub fn seconds(time: Duration) -> String {
 /// The same of a number of seconds; 0 of what is no duration.
 pub fn seconds_of(time: f64) -> String {
     seconds(Duration::try_from_secs_f64(time).unwrap_or_default())
+}
+
+/// A duration, rounded as an estimate should be.
+pub fn rough(time: Duration) -> String {
+    match time.as_secs() {
+        s @ 0..90 => format!("{s} s"),
+        s @ 90..5400 => format!("{} min", (s + 30) / 60),
+        s => format!("{:.1} h", s as f64 / 3600.0),
+    }
 }
 
 /// A number with its noun, in the plural unless it is one.
@@ -124,5 +143,11 @@ mod tests {
         let times = [1_500, 250_000, 2_500_000].map(|us| seconds(Duration::from_micros(us)));
         assert_eq!(times, ["1.50 ms", "250 ms", "2.50 s"]);
         assert_eq!([count(0u64, "cell"), count(1u64, "cell"), count(2u64, "cell")], ["0 cells", "1 cell", "2 cells"]);
+    }
+
+    #[test]
+    fn estimates_are_rough() {
+        let text = |s: u64| rough(Duration::from_secs(s));
+        assert_eq!([text(0), text(89), text(90), text(3601), text(5400)], ["0 s", "89 s", "2 min", "60 min", "1.5 h"]);
     }
 }

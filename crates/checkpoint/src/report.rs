@@ -1,16 +1,19 @@
-//! What is printed about a job.
+//! What is done of a job and what is left, as fields for programs and as lines for people.
 
-use super::task::Made;
-use crate::output::{JsonSchema, Serialize, count, percent, seconds_of};
-use crate::progress::rough;
-use sightlines::checkpoint::{Job, PhasePlan, ShardState, in_words};
+use crate::{Job, JobError, PhasePlan, ShardState, in_words};
+#[cfg(feature = "schemars")]
+use schemars::JsonSchema;
+use serde::Serialize;
+use serde_json::Value;
+use sightlines_progress::words::{count, percent, rough, seconds_of};
 use std::fmt;
 use std::path::Path;
 use std::time::Duration;
 
 /// A phase of a job, and its shards.
-#[derive(Debug, Clone, Serialize, JsonSchema)]
-pub(super) struct PhaseFacts {
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
+struct PhaseFacts {
     /// Name of the phase.
     phase: String,
     /// Units of work of the phase.
@@ -24,7 +27,7 @@ pub(super) struct PhaseFacts {
 }
 
 impl PhaseFacts {
-    pub(super) fn new(job: &Job, phase: usize) -> Self {
+    fn new(job: &Job, phase: usize) -> Self {
         let PhasePlan { name, n_units, shards } = &job.manifest().phases[phase];
         let all: f64 = shards.iter().map(|shard| shard.cost).sum();
         let largest = shards.iter().map(|shard| shard.cost).fold(0.0, f64::max);
@@ -48,8 +51,9 @@ impl fmt::Display for PhaseFacts {
 }
 
 /// What was planned.
-#[derive(Debug, Serialize, JsonSchema)]
-pub(crate) struct Planned {
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
+pub struct Planned {
     /// The folder of the job.
     job: String,
     /// None if the work has nothing that can be shared.
@@ -61,7 +65,8 @@ pub(crate) struct Planned {
 }
 
 impl Planned {
-    pub(super) fn new(name: String, job: &Job, phase: Option<usize>, out: Option<&Path>) -> Self {
+    /// The shards of `phase`, or else that the output was written.
+    pub fn new(name: String, job: &Job, phase: Option<usize>, out: Option<&Path>) -> Self {
         let phase = phase.map(|phase| PhaseFacts::new(job, phase));
         Self { job: name, phase, out: out.map(|out| out.display().to_string()) }
     }
@@ -78,29 +83,31 @@ impl fmt::Display for Planned {
 }
 
 /// What `job shard` has done.
-#[derive(Debug, Serialize, JsonSchema)]
-pub(crate) struct ShardsDone {
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
+pub struct ShardsDone {
     /// The folder of the job.
-    pub(super) job: String,
+    pub job: String,
     /// Each shard, in ascending order.
-    pub(super) shards: Vec<ShardDone>,
+    pub shards: Vec<ShardDone>,
     /// Seconds in all.
-    pub(super) seconds: f64,
+    pub seconds: f64,
 }
 
 /// What one shard gave.
-#[derive(Debug, Serialize, JsonSchema)]
-pub(super) struct ShardDone {
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
+pub struct ShardDone {
     /// The number of the shard.
-    pub(super) shard: usize,
+    pub shard: usize,
     /// Its phase.
-    pub(super) phase: String,
+    pub phase: String,
     /// Its first unit.
-    pub(super) begin: usize,
+    pub begin: usize,
     /// The unit behind its last one.
-    pub(super) end: usize,
+    pub end: usize,
     /// Whether its part was there already.
-    pub(super) was_done: bool,
+    pub was_done: bool,
 }
 
 impl fmt::Display for ShardsDone {
@@ -115,10 +122,33 @@ impl fmt::Display for ShardsDone {
 }
 
 /// Shards of a phase that are not done.
-#[derive(Debug, Clone, Serialize, JsonSchema)]
-pub(super) struct Missing {
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
+pub struct Missing {
     /// Their phase.
     phase: String,
+    #[serde(flatten)]
+    undone: Undone,
+}
+
+impl Missing {
+    /// Of a phase; `shards` has what there is of each.
+    pub fn new(job: &Job, phase: usize, shards: Vec<(usize, ShardState)>) -> Self {
+        Self { phase: job.manifest().phases[phase].name.clone(), undone: Undone::of(shards) }
+    }
+}
+
+impl fmt::Display for Missing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.undone.write_missing(f)?;
+        self.undone.write_broken(f)
+    }
+}
+
+/// Shards that are not done.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
+struct Undone {
     /// Numbers of shards without a part.
     missing: Vec<usize>,
     /// Shards whose part cannot be used.
@@ -126,16 +156,17 @@ pub(super) struct Missing {
 }
 
 /// A shard whose part cannot be used.
-#[derive(Debug, Clone, Serialize, JsonSchema)]
-pub(super) struct Broken {
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
+struct Broken {
     /// The number of the shard.
     shard: usize,
     /// What is wrong, with the name of the file.
     reason: String,
 }
 
-impl Missing {
-    pub(super) fn new(job: &Job, phase: usize, shards: Vec<(usize, ShardState)>) -> Self {
+impl Undone {
+    fn of(shards: Vec<(usize, ShardState)>) -> Self {
         let (mut missing, mut broken) = (Vec::new(), Vec::new());
         for (shard, state) in shards {
             match state {
@@ -144,15 +175,14 @@ impl Missing {
                 ShardState::Done => {}
             }
         }
-        Self { phase: job.manifest().phases[phase].name.clone(), missing, broken }
+        Self { missing, broken }
     }
-}
 
-impl fmt::Display for Missing {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if !self.missing.is_empty() {
-            writeln!(f, "missing        {}", in_words(&self.missing))?;
-        }
+    fn write_missing(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.missing.is_empty() { Ok(()) } else { writeln!(f, "missing        {}", in_words(&self.missing)) }
+    }
+
+    fn write_broken(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.broken
             .iter()
             .try_for_each(|Broken { shard, reason }| writeln!(f, "broken         shard {shard}: {reason}"))
@@ -160,8 +190,9 @@ impl fmt::Display for Missing {
 }
 
 /// Exit code 3 if shards are to be done, first or again.
-#[derive(Debug, Serialize, JsonSchema)]
-pub(crate) struct Merged {
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
+pub struct Merged {
     /// The folder of the job.
     job: String,
     /// `written`, `shared` (of `job work`: all is done, and another worker has written the output), `planned` (the shards of the next phase are to
@@ -182,28 +213,33 @@ pub(crate) struct Merged {
 }
 
 impl Merged {
-    pub(super) fn written(job: String, out: &Path, made: &Made) -> Self {
-        Self::elsewhere(job, out, Some(made.to_string()))
-    }
-
-    /// Written by another process, which has printed this.
-    pub(super) fn elsewhere(job: String, out: &Path, text: Option<String>) -> Self {
+    /// The output was written, and the process that wrote it printed this.
+    pub fn written(job: String, out: &Path, text: Option<String>) -> Self {
         let out = Some(out.display().to_string());
         Self { job, status: "written", out, next: None, undone: None, text }
     }
 
-    pub(super) fn shared(job: String, out: &Path) -> Self {
+    /// All is done, and another worker has written the output.
+    pub fn shared(job: String, out: &Path) -> Self {
         let text = format!("done; another worker has written {}\n", out.display());
-        Self { status: "shared", ..Self::elsewhere(job, out, Some(text)) }
+        Self { status: "shared", ..Self::written(job, out, Some(text)) }
     }
 
-    pub(super) fn planned(name: String, job: &Job, phase: usize) -> Self {
+    /// The shards of a phase are to be done.
+    pub fn planned(name: String, job: &Job, phase: usize) -> Self {
         let next = Some(PhaseFacts::new(job, phase));
         Self { job: name, status: "planned", out: None, next, undone: None, text: None }
     }
 
-    pub(super) fn missing(job: String, undone: Missing) -> Self {
+    /// Shards of a phase are not done.
+    pub fn missing(job: String, undone: Missing) -> Self {
         Self { job, status: "missing", out: None, next: None, undone: Some(undone), text: None }
+    }
+
+    /// What a worker has printed that has written the output, from the JSON of this.
+    pub fn told(printed: &[u8]) -> Option<String> {
+        let found: Value = serde_json::from_slice(printed).ok()?;
+        found["text"].as_str().filter(|_| found["status"] == "written").map(str::to_owned)
     }
 }
 
@@ -220,46 +256,52 @@ impl fmt::Display for Merged {
 }
 
 /// What there is of a phase.
-#[derive(Debug, Serialize, JsonSchema)]
-pub(super) struct PhaseStatus {
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
+struct PhaseStatus {
     #[serde(flatten)]
-    pub(super) facts: PhaseFacts,
+    facts: PhaseFacts,
     /// Shards with a part that can be used.
-    pub(super) n_done: usize,
+    n_done: usize,
     /// The share of the phase's predicted cost that is done.
-    pub(super) done_share: f64,
+    done_share: f64,
     /// Numbers of shards without a part that were begun.
-    pub(super) begun: Vec<usize>,
+    begun: Vec<usize>,
     #[serde(flatten)]
-    pub(super) undone: Undone,
+    undone: Undone,
     /// Seconds that are left, if the rest takes as long as what was done since the phase was planned; null if unknown.
-    pub(super) seconds_left: Option<f64>,
-}
-
-/// The same as [`Missing`], without the name of the phase.
-#[derive(Debug, Serialize, JsonSchema)]
-pub(super) struct Undone {
-    /// Numbers of shards without a part.
-    pub(super) missing: Vec<usize>,
-    /// Shards whose part cannot be used.
-    pub(super) broken: Vec<Broken>,
-}
-
-impl From<Missing> for Undone {
-    fn from(Missing { missing, broken, .. }: Missing) -> Self {
-        Self { missing, broken }
-    }
+    seconds_left: Option<f64>,
 }
 
 /// What there is of a job.
-#[derive(Debug, Serialize, JsonSchema)]
-pub(crate) struct Status {
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
+pub struct Status {
     /// The folder of the job.
-    pub(super) job: String,
+    job: String,
     /// The command, in words.
-    pub(super) command: Vec<String>,
+    command: Vec<String>,
     /// The phases that are known.
-    pub(super) phases: Vec<PhaseStatus>,
+    phases: Vec<PhaseStatus>,
+}
+
+impl Status {
+    /// Of a job, which users call `name`. Reads all of its parts.
+    ///
+    /// # Errors
+    /// [`JobError::Read`].
+    pub fn of(job: &Job, name: String) -> Result<Self, JobError> {
+        let phase = |phase| {
+            let (status, facts) = (job.status(phase)?, PhaseFacts::new(job, phase));
+            let begun = status.shards.iter().filter(|(_, state)| matches!(state, ShardState::Partial(_)));
+            let begun = begun.map(|(shard, _)| *shard).collect();
+            let crate::PhaseStatus { n_done, done_share, seconds_left, shards } = status;
+            Ok(PhaseStatus { facts, n_done, done_share, begun, undone: Undone::of(shards), seconds_left })
+        };
+        let manifest = job.manifest();
+        let phases = (0..manifest.phases.len()).map(phase).collect::<Result<_, JobError>>()?;
+        Ok(Self { job: name, command: manifest.command.clone(), phases })
+    }
 }
 
 impl fmt::Display for Status {
@@ -272,31 +314,25 @@ impl fmt::Display for Status {
             if let Some(left) = seconds_left.and_then(|left| Duration::try_from_secs_f64(left).ok()) {
                 writeln!(f, "               about {} left, at the pace since it was planned", rough(left))?;
             }
-            if !undone.missing.is_empty() {
-                writeln!(f, "missing        {}", in_words(&undone.missing))?;
-            }
+            undone.write_missing(f)?;
             if !begun.is_empty() {
                 writeln!(f, "begun          {}", in_words(begun))?;
             }
-            for Broken { shard, reason } in &undone.broken {
-                writeln!(f, "broken         shard {shard}: {reason}")?;
-            }
+            undone.write_broken(f)?;
         }
         Ok(())
     }
 }
 
-/// The files that would be given to Slurm.
-#[derive(Debug, Serialize, JsonSchema)]
-pub(crate) struct Submitted {
-    /// The folder of the job.
-    pub(super) job: String,
-    /// With `--dry-run`: the files that were written.
-    pub(super) files: Vec<String>,
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-impl fmt::Display for Submitted {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.files.iter().try_for_each(|file| writeln!(f, "wrote {file}"))
+    #[test]
+    fn the_worker_that_has_written_says_so() {
+        for other in [&b""[..], b"what?", br#"{"status": "shared", "text": "done"}"#, b"[]"] {
+            assert_eq!(Merged::told(other), None);
+        }
+        assert_eq!(Merged::told(br#"{"status": "written", "text": "wrote it"}"#).as_deref(), Some("wrote it"));
     }
 }

@@ -1,14 +1,18 @@
 //! What of a table no proof speaks of.
 
-use crate::output::{JsonSchema, Serialize, count};
-use sightlines::pvs::Table;
-use sightlines::verify::{ProofFindings, can_be_proven};
+use crate::{ProofFindings, can_be_proven};
+#[cfg(feature = "schemars")]
+use schemars::JsonSchema;
+use serde::Serialize;
+use sightlines_progress::words::count;
+use sightlines_pvs::Table;
 use std::fmt;
 
 /// Pairs without a proof. Nothing is known to be wrong with them. What from-region methods hide has a proof only if walls between cells hide it as
 /// well.
-#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
-pub(crate) struct Unproven {
+#[derive(Debug, Clone, Copy, Serialize)]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
+pub struct Unproven {
     /// Unordered pairs of different cells that the table hides.
     n_hidden: u64,
     /// Of the hidden pairs of cells, those that a line through portals joins: only a from-region method hides them.
@@ -24,7 +28,7 @@ pub(crate) struct Unproven {
 
 impl Unproven {
     /// Counts, after the proofs were checked.
-    pub(crate) fn new(table: &Table, found: &ProofFindings) -> Self {
+    pub fn new(table: &Table, found: &ProofFindings) -> Self {
         Self {
             n_hidden: found.n_unproven_hidden,
             n_hidden_past_portals: found.n_hidden_past_portals,
@@ -34,8 +38,13 @@ impl Unproven {
         }
     }
 
+    /// Of a table that can have no proofs.
+    pub fn without_proofs(table: &Table) -> Option<Self> {
+        (!can_be_proven(table)).then(|| Self::new(table, &ProofFindings::without_proofs(table)))
+    }
+
     /// Whether all that is hidden, cells and objects, is proven to be.
-    pub(crate) fn hides_none(&self) -> bool {
+    pub fn hides_none(&self) -> bool {
         self.n_hidden + self.n_hidden_objects == 0
     }
 }

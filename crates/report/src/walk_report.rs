@@ -1,19 +1,21 @@
-//! What was measured, as text, CSV and bars of a chart.
+//! What was measured of a walk, as fields for programs, text, CSV, and bars of a chart.
 
-use super::WalkArgs;
-use super::levels::Drawn;
-use crate::output::{JsonSchema, Serialize, bytes, count, share};
-use crate::tables::Cells;
-use sightlines::eye_to_cell::StepBudget;
-use sightlines::report::WalkBar;
-use sightlines::walkthrough::{LeftToDraw, MethodSums, WalkMeasured};
+use crate::walk::WalkBar;
+#[cfg(feature = "schemars")]
+use schemars::JsonSchema;
+use serde::Serialize;
+use sightlines_eye_to_cell::StepBudget;
+use sightlines_progress::words::{bytes, count, percent, share};
+use sightlines_walkthrough::{LeftToDraw, LevelsDrawn, MethodSums, TableFacts, WalkMeasured, WalkOptions};
 use std::fmt;
 use std::fmt::Write;
+use std::path::Path;
 use std::time::Duration;
 
 /// Averages are over the frames that every method answered in full.
-#[derive(Debug, Serialize, JsonSchema)]
-pub(crate) struct Outcome {
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
+pub struct WalkReport {
     /// The table.
     file: String,
     /// Its cells.
@@ -50,11 +52,12 @@ pub(crate) struct Outcome {
     methods: Vec<MethodLine>,
     /// With `--levels`: triangles drawn with levels of detail.
     #[serde(skip_serializing_if = "Option::is_none")]
-    levels: Option<Drawn>,
+    levels: Option<WalkedLevels>,
 }
 
 /// Method on a walk: what it leaves to draw, and what it costs, on average.
-#[derive(Debug, Serialize, JsonSchema)]
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
 struct MethodLine {
     /// Name of the method.
     method: &'static str,
@@ -83,7 +86,8 @@ struct MethodLine {
 }
 
 /// How much is kept in a frame.
-#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, Serialize)]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
 struct Kept {
     /// Number in a frame, on average.
     mean: f64,
@@ -103,16 +107,22 @@ fn quantile(times: &[Duration], q: f64) -> f64 {
     times.get((q * last as f64).ceil() as usize).map_or(0.0, |&time| micros(time))
 }
 
-impl Outcome {
-    pub(super) fn new(
-        args: &WalkArgs,
-        fov: f64,
-        step: Option<f64>,
-        cells: &impl Cells,
+impl WalkReport {
+    /// Of a walk through the table in a file.
+    ///
+    /// * `fov`: the angle of view in degrees
+    /// * `step`: the distance from frame to frame, if it is always the same
+    /// * `polygons`: of each object
+    pub fn new(
+        file: &Path,
+        WalkOptions { budget, steps, .. }: WalkOptions,
+        (fov, step): (f64, Option<f64>),
+        cells: &impl TableFacts,
         polygons: &[u32],
         measured: &WalkMeasured,
+        levels: Option<WalkedLevels>,
     ) -> Self {
-        let [n_cells, n_objects] = cells.counts();
+        let (n_cells, n_objects) = (cells.n_cells(), cells.n_objects());
         let n_polygons = polygons.iter().map(|&n| u64::from(n)).sum();
         let WalkMeasured { methods, n_full, n_outside, n_starved, most_bytes, n_prepared, n_dropped } = measured;
         let mean = |sum: u64| share(sum as f64, *n_full as f64);
@@ -136,7 +146,7 @@ impl Outcome {
             n_late: sums.n_late,
         };
         Self {
-            file: args.table.display().to_string(),
+            file: file.display().to_string(),
             n_cells,
             n_objects,
             n_polygons,
@@ -146,29 +156,24 @@ impl Outcome {
             n_full: *n_full,
             n_outside: *n_outside,
             n_starved: *n_starved,
-            budget: args.budget,
-            steps: (args.steps != StepBudget::UNLIMITED).then(|| args.steps.n_steps()),
+            budget,
+            steps: (steps != StepBudget::UNLIMITED).then(|| steps.n_steps()),
             most_bytes_kept: *most_bytes,
             n_prepared: *n_prepared,
             n_dropped: *n_dropped,
             packed_bytes: cells.bytes_in_memory().map(|(resident, blocks)| [resident, blocks]),
             methods: methods.iter().map(line).collect(),
-            levels: None,
+            levels,
         }
     }
 
-    /// The same, with what is drawn with levels.
-    pub(super) fn with_levels(self, levels: Option<Drawn>) -> Self {
-        Self { levels, ..self }
-    }
-
     /// The title of the chart.
-    pub(super) fn title(&self) -> String {
+    pub fn title(&self) -> String {
         format!("{}: {}, {} degrees", self.file, count(self.n_full as u64, "frame"), self.fov)
     }
 
     /// The bars of the chart.
-    pub(super) fn bars(&self) -> Vec<WalkBar<'_>> {
+    pub fn bars(&self) -> Vec<WalkBar<'_>> {
         let bar = |line: &'_ MethodLine| WalkBar {
             name: line.method,
             shares: [&line.cells, &line.objects, &line.polygons].map(|kept| kept.share_of_all),
@@ -179,7 +184,7 @@ impl Outcome {
     }
 
     /// A line for each method, behind one with names.
-    pub(super) fn csv(&self) -> String {
+    pub fn csv(&self) -> String {
         let mut out = String::from(
             "file,fov,frames,method,cells,cells_of_cell_to_cell,cells_of_all,objects,objects_of_cell_to_cell,\
              objects_of_all,polygons,polygons_of_cell_to_cell,polygons_of_all,images,image_polygons,mean_us,median_us,\
@@ -200,18 +205,16 @@ impl Outcome {
     }
 }
 
-/// A number kept and its shares, in a column.
-struct Column(Kept);
-
-impl fmt::Display for Column {
+/// In a column.
+impl fmt::Display for Kept {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Kept { mean, share_of_cell_to_cell, share_of_all } = self.0;
+        let Self { mean, share_of_cell_to_cell, share_of_all } = *self;
         let digits = if share_of_all < 0.01 { 3 } else { 1 };
         write!(f, "{mean:>9.1} {:>6.1} {:>6.*}", 100.0 * share_of_cell_to_cell, digits, 100.0 * share_of_all)
     }
 }
 
-impl fmt::Display for Outcome {
+impl fmt::Display for WalkReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let all = [(self.n_cells, "cell"), (self.n_objects, "object")].map(|(n, noun)| count(n as u64, noun));
         let [frames, polygons] = [count(self.n_frames as u64, "frame"), count(self.n_polygons, "polygon")];
@@ -232,8 +235,19 @@ impl fmt::Display for Outcome {
             "left to draw", "coarser", "late"
         )?;
         for line in &self.methods {
-            let MethodLine { method, mean_us, median_us, p99_us, longest_us, n_fell_back, n_late, .. } = line;
-            let [cells, objects, polygons] = [line.cells, line.objects, line.polygons].map(Column);
+            let MethodLine {
+                method,
+                cells,
+                objects,
+                polygons,
+                mean_us,
+                median_us,
+                p99_us,
+                longest_us,
+                n_fell_back,
+                n_late,
+                ..
+            } = line;
             writeln!(
                 f,
                 "{method:<20} {cells} {objects} {polygons} {mean_us:>9.2} {median_us:>8.2} {p99_us:>8.2} {longest_us:>9.2} \
@@ -266,5 +280,46 @@ impl fmt::Display for Outcome {
             "late           frames whose answer was not ready in time, so that they showed more; of a second walk that does not wait \
              for answers, at the pace of --fps"
         )
+    }
+}
+
+/// Triangles that are drawn, on average over the frames with the eye in a cell.
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schemars", derive(JsonSchema))]
+pub struct WalkedLevels {
+    /// The folder of levels.
+    folder: String,
+    /// Levels in it.
+    n_levels: usize,
+    /// Frames.
+    n_frames: usize,
+    /// Of these, frames in which all cells of the eye have the same level.
+    n_with_level: usize,
+    /// Triangles drawn in each frame without levels: all of the scene.
+    without: u64,
+    /// Triangles drawn in a frame with levels, on average.
+    with_mean: f64,
+    /// Triangles drawn in a frame with levels, at most.
+    with_most: u64,
+}
+
+impl WalkedLevels {
+    /// With so many levels in a folder, of a scene with `n_triangles`.
+    pub fn new(folder: &Path, n_levels: usize, n_triangles: u64, drawn: &LevelsDrawn) -> Self {
+        let LevelsDrawn { n_frames, n_with_level, n_triangles: with, most: with_most } = *drawn;
+        let (folder, with_mean) = (folder.display().to_string(), share(with as f64, n_frames as f64));
+        Self { folder, n_levels, n_frames, n_with_level, without: n_triangles, with_mean, with_most }
+    }
+}
+
+impl fmt::Display for WalkedLevels {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [of_mean, of_most] =
+            [self.with_mean, self.with_most as f64].map(|n| percent(share(n, self.without as f64)));
+        let (mean, most) = (self.with_mean, self.with_most);
+        let Self { folder, n_levels, n_frames, n_with_level, .. } = self;
+        writeln!(f, "levels         {n_levels} of {folder}, in {n_with_level} of {n_frames} frames inside")?;
+        writeln!(f, "triangles      {} a frame without levels", self.without)?;
+        writeln!(f, "               {mean:.1} with levels on average, {of_mean}; at most {most}, {of_most}")
     }
 }
