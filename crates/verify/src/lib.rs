@@ -17,6 +17,7 @@
 #[cfg(feature = "serde")]
 mod as_json;
 mod borders;
+mod counts;
 pub mod exact;
 mod findings;
 mod framed;
@@ -35,7 +36,8 @@ mod truth;
 mod walls;
 mod witness;
 
-pub use findings::{Confirmed, Findings, Geometry, Remarks, Sampled, Violation};
+pub use counts::{Confirmed, Remarks, Sampled};
+pub use findings::{Findings, Geometry, Violation};
 pub use framed::along_frame;
 pub use options::VerifyOptions;
 pub use own::{LumpKind, OwnError, OwnSummary, OwnViolation, OwnVisibility};

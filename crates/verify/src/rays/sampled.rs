@@ -7,7 +7,7 @@
 use super::mixed;
 use super::seen::Seen;
 use super::ways::Ways;
-use crate::findings::Sampled;
+use crate::counts::Sampled;
 use crate::options::VerifyOptions;
 use crate::oracle::{RayOracle, Sample};
 use crate::sight::{SightSegment, Target};

@@ -1,6 +1,7 @@
 //! What the table shows, and what of that was confirmed.
 
-use crate::findings::{Confirmed, Findings};
+use crate::counts::Confirmed;
+use crate::findings::Findings;
 use crate::sight::Target;
 use sightlines_pvs::{BitMatrix, CellId, Table};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
