@@ -82,8 +82,8 @@ fn tables_for_doom_are_wrong_for_heretic() {
         let map = read(&wad_of(sketch));
         table(&map, Some(Game::Doom)) != table(&map, Some(Game::Heretic))
     };
-    let n = draw(&crossing_map(), 40).iter().filter(differ).count();
-    assert!(n > 10, "{n} of 40");
+    let n = draw(&crossing_map(), 100).iter().filter(differ).count();
+    assert!(n > 3, "{n} of 100");
 }
 
 /// Rooms 0, 1 and 2 in a row, and a polyobject in the middle one: the lines from the tenth on.
