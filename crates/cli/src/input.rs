@@ -5,10 +5,10 @@ pub(crate) use crate::refuse::refuse;
 
 use crate::error::{ErrorAbout, Result, anyhow, bail};
 use crate::map_portals::cannot_be_made;
-use crate::{plans, surfaces};
+use crate::{foreign, plans, surfaces};
 use sightlines::bake::{Bakeable, BakeableError};
 use sightlines::formats::doom::{DoomMap, MapChoiceError, choose_map, list_maps};
-use sightlines::formats::input::HEAD;
+use sightlines::formats::input::{Format, HEAD, Sign};
 use sightlines::formats::quake::Prt;
 use sightlines::formats::scene::{SceneReadOptions, Simplification, read_scene_with};
 use sightlines::formats::{Input, InputKind, PlanReadOptions, ReadError, SceneFile, Source, Wad, detect_file};
@@ -19,7 +19,17 @@ use std::path::Path;
 
 /// What a file holds, as [`formats::input`](sightlines::formats::input) recognises it; `None` if no format does.
 pub(crate) fn kind_of(path: &Path) -> Result<Option<InputKind>> {
-    Ok(detect_file(path)?.map(|format| format.kind))
+    Ok(format_of(path)?.map(|format| format.kind))
+}
+
+/// The format of a file. What is in another format is none of JSON, as which many texts begin, and a text in UTF-16 is none of any.
+fn format_of(path: &Path) -> Result<Option<&'static Format>> {
+    let format = detect_file(path)?;
+    let is_read = |format: &&Format| match foreign::name_of(path) {
+        Some((noun, _)) => noun != foreign::UTF16 && format.sign != Sign::Json,
+        None => true,
+    };
+    Ok(format.filter(is_read))
 }
 
 /// Reads a table. Anything else is refused by its first bytes, however large it is.
@@ -63,7 +73,10 @@ pub(crate) fn no_places(path: &Path, what: &str) -> anyhow::Error {
 
 /// A file of no kind that a command takes.
 pub(crate) fn neither(path: &Path, expected: &str) -> anyhow::Error {
-    anyhow!("{}: neither {expected}", path.display())
+    match foreign::name_of(path) {
+        Some((noun, remedy)) => anyhow!("{}: is {noun}, neither {expected}: {remedy}", path.display()),
+        None => anyhow!("{}: neither {expected}", path.display()),
+    }
 }
 
 /// What `build` takes, in the words of errors.
@@ -80,7 +93,7 @@ pub(crate) fn read(
     options: &SceneReadOptions,
     plan: &PlanReadOptions,
 ) -> Result<Input> {
-    let format = detect_file(path)?.filter(|format| is_source(format.kind));
+    let format = format_of(path)?.filter(|format| is_source(format.kind));
     let format = format.ok_or_else(|| neither(path, BUILDABLE))?;
     if map.is_some() && format.kind != InputKind::Wad {
         bail!("{}: --map is for WADs, and this is none", path.display());

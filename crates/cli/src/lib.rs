@@ -17,6 +17,7 @@ mod doors;
 mod error;
 mod eye;
 mod facts;
+mod foreign;
 mod glb;
 mod input;
 mod interrupt;

@@ -8,7 +8,7 @@ use sightlines_formats::doom::RmbFile;
 use sightlines_testkit::draw;
 
 #[path = "../../../formats/tests/formats/common/udmf.rs"]
-mod udmf;
+pub(crate) mod udmf;
 
 fn reject_lumps(wad: &Wad) -> Vec<Option<Vec<u8>>> {
     let outcome = reject_wad(wad, &RejectOptions { force: true, ..FOR_DOOM }).unwrap();

@@ -12,9 +12,11 @@ use std::collections::HashMap;
 /// The clips of a drawing, and the dictionaries that lead to them, by handle.
 #[derive(Debug, Default)]
 pub(super) struct Filters {
-    dictionaries: HashMap<u64, Vec<(Vec<u8>, Option<u64>)>>,
+    dictionaries: HashMap<u64, Vec<NamedHandle>>,
     clips: HashMap<u64, Clip>,
 }
+
+type NamedHandle = (Vec<u8>, Option<u64>);
 
 /// What is drawn of a block.
 #[derive(Debug, Clone)]
@@ -60,7 +62,7 @@ impl Filters {
     }
 }
 
-fn entry(dictionary: &[(Vec<u8>, Option<u64>)], name: &[u8]) -> Option<Option<u64>> {
+fn entry(dictionary: &[NamedHandle], name: &[u8]) -> Option<Option<u64>> {
     dictionary.iter().find(|(key, _)| key == name).map(|&(_, handle)| handle)
 }
 

@@ -211,11 +211,10 @@ fn build(
             unread => {
                 let read = |(k, p)| LocalMesh::read(document, motions.buffers(), p).map_err(|what| at.fail(k, what));
                 let mut locals = at.mesh.primitives.iter().enumerate().map(read).collect::<Result<Vec<_>, _>>()?;
-                for (k, local) in locals.iter_mut().enumerate() {
-                    if let Some((n, what)) = local.left_out.take() {
-                        builder.leave_out(n, at.fail(k, what));
-                    }
-                }
+                let left_out = locals.iter_mut().map(|local| local.left_out.take()).enumerate();
+                left_out.for_each(|(k, some)| {
+                    some.into_iter().for_each(|(n, what)| builder.leave_out(n, at.fail(k, what)))
+                });
                 unread.insert(locals)
             }
         };

@@ -140,10 +140,9 @@ impl Surfaces {
         }
         let n_faces = obj.faces.iter().filter(|face| face.material.is_some()).count();
         if let (true, Some(first), true) = (obj.libraries.is_empty(), obj.materials.first(), n_faces > 0) {
-            let faces = if n_faces == 1 {
-                "1 face has a material".to_owned()
-            } else {
-                format!("{n_faces} faces have materials")
+            let faces = match n_faces {
+                1 => "1 face has a material".to_owned(),
+                n => format!("{n} faces have materials"),
             };
             warnings.push(format!(
                 "{faces}, such as {first:?}, and the file names no library (mtllib): they count as opaque; name what is glass \

@@ -43,7 +43,7 @@ fn mirrors_are_distinguished_from_turns() {
     assert!(!is_turned([-1., -1., 1.]) && !is_turned([2., 1., 1.]) && !is_turned([-1., 0., 1.]));
     let swap = json!({"matrix": [0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 5, 6, 7, 1]});
     let corners = [[1., 2., 3.], [0., 1., 0.], [0., 0., 1.]];
-    let (once, is_mirrored) = placed(&corners, &[swap.clone()]).unwrap();
+    let (once, is_mirrored) = placed(&corners, std::slice::from_ref(&swap)).unwrap();
     assert_eq!((once[0], is_mirrored), ([7., 7., 10.], true));
     let (twice, is_mirrored) = placed(&corners, &[swap.clone(), swap.clone()]).unwrap();
     let again = [once[0].map(|x| x as f32), corners[1], corners[2]];
