@@ -145,7 +145,7 @@ pub(crate) struct ChainFinder {
     /// For edges of the present cell whether lines may pass them on both sides.
     mixed: Marks<bool>,
     /// For edges of the present chain how often triangles end there, by their senses; odd for the rim.
-    ends: Marks<i16>,
+    ends: Marks<i32>,
     /// For triangles of the present chain their sense: in which direction a crossing counts.
     senses: Marks<i8>,
     /// What triangles with one side do to lines from a volume.
@@ -274,7 +274,7 @@ impl ChainFinder {
         self.chain.push(triangle);
         for (i, &edge) in surface.mesh().outline_edges(triangle).iter().enumerate() {
             let way = if surface.has_fronts() { sense * surface.way_along(triangle, i) } else { 1 };
-            let ends = self.ends.get(edge).unwrap_or_default() + i16::from(way);
+            let ends = self.ends.get(edge).unwrap_or_default() + i32::from(way);
             self.ends.set(edge, ends);
             if ends % 2 != 0 {
                 self.open.push((edge, triangle));

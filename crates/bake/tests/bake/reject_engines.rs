@@ -131,3 +131,18 @@ fn polyobjects_hide_nothing() {
     }
     assert_eq!(n_hidden, 3 * 7);
 }
+
+/// Engines begin at either end of the first line, and take places as equal that are so near that they cannot tell them apart.
+#[test]
+fn polyobjects_go_on_from_both_ends_of_their_first_line() {
+    let start = |k: usize| u8::from(k == N_FIXED);
+    let across = |from: Corner| {
+        let rooms = three_rooms(&[]).line([[90, 64], [91, 64]], BLOCKING, Some(1), None);
+        rooms.line([from, [90, 0]], BLOCKING, Some(1), None)
+    };
+    assert!(!is_hidden(&hexen(&across([90, 64]), start)) && !is_hidden(&text(&across([90, 64]), "zdoom", start)));
+    // The impostor: the first line ends elsewhere.
+    let apart = three_rooms(&[]).line([[92, 64], [91, 64]], BLOCKING, Some(1), None);
+    let apart = apart.line([[90, 64], [90, 0]], BLOCKING, Some(1), None);
+    assert!(is_hidden(&hexen(&apart, start)) && is_hidden(&text(&apart, "zdoom", start)));
+}

@@ -18,22 +18,23 @@ pub enum Game {
 const POLYOBJ_START_LINE: i32 = 1;
 const POLYOBJ_EXPLICIT_LINE: i32 = 5;
 
-/// Which lines belong to polyobjects. Those of one that has a first line are all that can be reached from it along sides, each
-/// from its first vertex to its second: vertices at one place are one. Engines differ in which way they take where several begin.
+/// Which lines belong to polyobjects. Those of one that has a first line are all that can be reached from its ends along sides, each
+/// from its first vertex to its second: vertices at one place are one. Engines differ in the end where they begin, and in the way that they take where
+/// several lines do.
 /// O(n log n).
 pub(super) fn in_polyobjects(content: &Content) -> Vec<bool> {
     let mut found = vec![false; content.lines.len()];
     let mut todo = Vec::new();
     for (k, (line, &special)) in content.lines.iter().zip(&content.hexen_specials).enumerate() {
         found[k] = matches!(special, POLYOBJ_START_LINE | POLYOBJ_EXPLICIT_LINE);
-        todo.extend((special == POLYOBJ_START_LINE).then_some(line.v2));
+        todo.extend([line.v1, line.v2].into_iter().filter(|_| special == POLYOBJ_START_LINE));
     }
     if todo.is_empty() {
         return found;
     }
-    // No place is -0.
-    let place = |vertex: u32| content.vertices[vertex as usize].map(|x| (x + 0.0).to_bits());
-    let mut from: BTreeMap<[u64; 2], Vec<(usize, u32)>> = BTreeMap::new();
+    // Engines have numbers with 16 binary places.
+    let place = |vertex: u32| content.vertices[vertex as usize].map(|x| (x * 65536.0).round() as i64);
+    let mut from: BTreeMap<[i64; 2], Vec<(usize, u32)>> = BTreeMap::new();
     for (k, line) in content.lines.iter().enumerate() {
         from.entry(place(line.v1)).or_default().push((k, line.v2));
         if line.left.is_some() {

@@ -45,6 +45,26 @@ impl Clips {
         self.all(clip).fold(point, into)
     }
 
+    /// Whether everything within a distance of a line is drawn; no if that is not certain.
+    pub(super) fn has_all_near(
+        &self,
+        clip: Option<usize>,
+        line: Segment2,
+        distance: f64,
+        n_compared: &mut usize,
+    ) -> Result<bool, Malformed> {
+        let [low, high] = [f64::min, f64::max].map(|of| [of(line.a.x, line.b.x), of(line.a.y, line.b.y)]);
+        let (low, high) = (low.map(|x| (x - distance).next_down()), high.map(|x| (x + distance).next_up()));
+        let corners = [[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]].map(Point2::from);
+        for (k, &a) in corners.iter().enumerate() {
+            let side = Segment2 { a, b: corners[(k + 1) % 4] };
+            if self.parts(clip, side, n_compared)? != [side] {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
     /// The parts of a line that are drawn; all of it is as it was, bit by bit. Parts that only touch are left out.
     ///
     /// * `n_compared`: the comparisons of lines with sides so far, which count as elements

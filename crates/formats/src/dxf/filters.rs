@@ -1,7 +1,7 @@
 //! Clipped inserts (XCLIP): which insert has which clip.
 //!
 //! The entry `ACAD_FILTER` of an insert's extension dictionary is a dictionary whose entry `SPATIAL` is the clip: a polygon, or two corners of
-//! a box. One that is inverted is stored as a polygon too, that of the rest, with a slit to its border. Its depth is ignored, as heights are.
+//! a box. One that is inverted is stored as a polygon too, that of the rest, with a slit to its border.
 
 use super::affine::Affine;
 use super::entity::Fields;
@@ -77,10 +77,14 @@ pub(super) fn extension(fields: &[Group<'_>]) -> Option<u64> {
     handle(fields.get(begin + 1)?)
 }
 
-/// `None` if a part is missing, or if the clip has a plane of its own.
+/// `None` if a part is missing, or if the clip has a depth or a plane of its own.
 fn read_clip(fields: &Fields<'_, '_>) -> Result<Option<Clip>, Malformed> {
     if fields.find(71).is_some() && fields.integer(71)? == 0 {
         return Ok(Some(Clip::Off));
+    }
+    let has_depth = |code: i32| Ok::<_, Malformed>(fields.find(code).is_some() && fields.integer(code)? != 0);
+    if has_depth(72)? || has_depth(73)? {
+        return Ok(None);
     }
     let [x, y, numbers] = [fields.numbers(10)?, fields.numbers(20)?, fields.numbers(40)?];
     // A distance of the depth may come before the two maps: from the coordinates around the insert to the block's, and to the plane's.
@@ -95,5 +99,8 @@ fn read_clip(fields: &Fields<'_, '_>) -> Result<Option<Clip>, Malformed> {
         _ => x.into_iter().zip(y).map(<[f64; 2]>::from).collect(),
     };
     let to_block = Affine::of_rows(to_block);
+    if !to_block.keeps_above() {
+        return Ok(None);
+    }
     Ok(Some(Clip::Inside(corners.into_iter().map(|[x, y]| to_block.point([x, y, 0.0])).collect())))
 }

@@ -32,7 +32,15 @@ pub(super) fn flatten(expanded: &Expanded, deviation: Option<f64>) -> Result<Pla
                 let [a, b] = [checked(a)?, checked(b)?];
                 if a != b {
                     has_length = true;
-                    for part in expanded.clips.parts(*clip, Segment2 { a, b }, &mut n_compared)? {
+                    let chord = Segment2 { a, b };
+                    // The curve beside a chord may be clipped where that is not.
+                    if clip.is_some()
+                        && !piece.is_flat(0.0)
+                        && !expanded.clips.has_all_near(*clip, chord, deviation, &mut n_compared)?
+                    {
+                        continue;
+                    }
+                    for part in expanded.clips.parts(*clip, chord, &mut n_compared)? {
                         lines.push(PlanLine::wall(part.a, part.b), false);
                     }
                 }

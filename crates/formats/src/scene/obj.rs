@@ -35,8 +35,8 @@ use std::collections::BTreeMap;
 ///
 /// # Source
 /// Wavefront Technologies, Advanced Visualizer manual, appendix B1 (the format of `.obj`). Chosen here: materials do
-/// not split objects, but for the faces of an object that are see-through while others are not; self-intersecting outlines
-/// are left out, because the extent of such a face is undefined.
+/// not split objects, but for the faces of an object that are see-through while others are not; the extent of a face whose
+/// outline crosses itself is undefined: it hides nothing, and is seen wherever a triangle of its corners is.
 pub fn parse_obj(bytes: &[u8]) -> Result<SceneFile, Malformed> {
     parse_obj_with(bytes, None, &SceneReadOptions::default())
 }
@@ -60,6 +60,7 @@ pub fn parse_obj_with(
     let mut classifier = Classifier::new(options);
     let surfaces = Surfaces::read(&obj, beside, &mut builder.warnings);
     obj.wrong.iter().for_each(|wrong| builder.leave_out(1, wrong.clone()));
+    let (mut n_clear, mut vague) = (0, None);
     let names: MeshNames<'_> = obj.groups.iter().map(|group| group.name.as_str()).collect();
     for (k, group) in obj.groups.iter().enumerate() {
         let end = obj.groups.get(k + 1).map_or(obj.faces.len(), |next| next.first_face);
@@ -81,11 +82,27 @@ pub fn parse_obj_with(
                 }])
             });
         }
-        let hides = |face: &&Face| classes[&face.material].as_ref().is_none_or(Classification::hides);
-        let (walls, glass): (Vec<&Face>, Vec<&Face>) = faces.iter().partition(hides);
-        for (faces, suffix) in [(&walls, ""), (&glass, if walls.is_empty() { "" } else { "#see-through" })] {
-            let Some(first) = faces.first() else { continue };
-            let mesh = obj.mesh(faces, &mut builder);
+        let mut cut = Vec::new();
+        for face in faces {
+            match obj.cut(face)? {
+                Ok(triangles) => cut.push((face, triangles)),
+                Err(what) => builder.leave_out(1, what.on_line(face.line)),
+            }
+        }
+        for (face, what) in cut.iter().filter_map(|(face, cut)| Some((face, cut.vague.as_ref()?))) {
+            vague.get_or_insert_with(|| (0, what.clone().on_line(face.line))).0 += 1;
+        }
+        n_clear += cut.iter().filter(|(_, cut)| cut.vague.is_none()).count();
+        let hides = |(face, cut): &(&Face, FaceCut)| {
+            cut.vague.is_none() && classes[&face.material].as_ref().is_none_or(Classification::hides)
+        };
+        let (walls, glass): (Vec<_>, Vec<_>) = cut.into_iter().partition(hides);
+        let behind = if walls.is_empty() { "" } else { "#see-through" };
+        for (faces, suffix, hides) in [(walls, "", true), (glass, behind, false)] {
+            let Some(&(first, _)) = faces.first() else { continue };
+            let used = faces.iter().flat_map(|(_, cut)| &cut.corners).copied().collect();
+            let triangles = faces.iter().flat_map(|(_, cut)| cut.triangles.iter().map(|t| t.map(|k| cut.corners[k])));
+            let mesh = Compact::new(used, triangles);
             if mesh.triangles.is_empty() {
                 continue;
             }
@@ -95,10 +112,21 @@ pub fn parse_obj_with(
                 builder.mark_mirror();
             }
             // The reason is that of the first face; others have a like one.
-            if let Some(class) = &classes[&first.material] {
-                builder.classify(class.clone(), None);
+            let class = classes[&first.material].clone();
+            let vague = || Classification::see_through("an outline that crosses itself".to_owned());
+            if let Some(class) =
+                if hides { class } else { Some(class.filter(|class| !class.hides()).unwrap_or_else(vague)) }
+            {
+                builder.classify(class, None);
             }
         }
+    }
+    if let Some((n, first)) = vague {
+        if n_clear == 0 {
+            return Err(first);
+        }
+        let faces = if n == 1 { "1 face hides".to_owned() } else { format!("{n} faces hide") };
+        builder.warnings.push(format!("{faces} nothing: {first}"));
     }
     builder.warnings.extend(classifier.warnings());
     let mut file = builder.finish(SceneFormat::Obj, options)?;
@@ -207,6 +235,16 @@ struct Face {
     n_corners: usize,
     /// Index into the names of materials.
     material: Option<usize>,
+}
+
+/// A face in triangles.
+#[derive(Debug)]
+struct FaceCut {
+    corners: Vec<usize>,
+    /// Indices into `corners`.
+    triangles: Vec<[usize; 3]>,
+    /// Why it is not known what of these triangles is drawn.
+    vague: Option<Malformed>,
 }
 
 /// What becomes an object.
@@ -321,32 +359,31 @@ impl Obj {
         self.groups.push(Group { name, first_face: self.faces.len(), is_see_through: false });
     }
 
-    /// The triangles of `faces`, but for those that are none. Indices are looked up only here, since a face may stand before its corners.
-    fn mesh(&self, faces: &[&Face], builder: &mut Builder) -> Compact {
-        let (mut used, mut triangles) = (Vec::new(), Vec::new());
-        for face in faces {
-            match self.cut(face) {
-                Ok((corners, cut)) => {
-                    triangles.extend(cut.into_iter().map(|t| t.map(|k| corners[k])));
-                    used.extend(corners);
-                }
-                Err(what) => builder.leave_out(1, what.on_line(face.line)),
-            }
-        }
-        Compact::new(used, triangles.into_iter())
-    }
-
-    /// The corners of a face, and its triangles.
-    fn cut(&self, face: &Face) -> Result<(Vec<usize>, Vec<[usize; 3]>), Malformed> {
-        let corners = self.look_up(face)?;
+    /// The triangles of a face; or why it is none. Indices are looked up only here, since a face may stand before its corners.
+    ///
+    /// # Errors
+    /// [`Malformed`] for a face that engines may draw, but which has too many corners to tell how.
+    fn cut(&self, face: &Face) -> Result<Result<FaceCut, Malformed>, Malformed> {
+        /// The most corners of a face of which all triangles are taken.
+        const MOST_VAGUE: usize = 16;
+        let corners = match self.look_up(face) {
+            Ok(corners) => corners,
+            Err(what) => return Ok(Err(what)),
+        };
         let polygon: Vec<Point3> = corners.iter().map(|&v| self.positions[v]).collect();
-        let cut = triangulate(&polygon).map_err(|error| match error {
-            PolygonError::Crossing => malformed!("the outline of the face crosses itself"),
-            PolygonError::TooLarge => {
-                malformed!("a winding face of {} corners, more than {MAX_WINDING_CORNERS}", face.n_corners)
+        let n = corners.len();
+        let what = match triangulate(&polygon) {
+            Ok(triangles) => return Ok(Ok(FaceCut { corners, triangles, vague: None })),
+            Err(PolygonError::Crossing) => malformed!("the outline of the face crosses itself"),
+            Err(PolygonError::TooLarge) => {
+                malformed!("a winding face of {n} corners, more than {MAX_WINDING_CORNERS}")
             }
-        })?;
-        Ok((corners, cut))
+        };
+        if n > MOST_VAGUE {
+            return Err(what.on_line(face.line));
+        }
+        let triangles = (0..n).flat_map(|i| (0..i).flat_map(move |j| (0..j).map(move |k| [k, j, i])));
+        Ok(Ok(FaceCut { corners, triangles: triangles.collect(), vague: Some(what) }))
     }
 
     fn look_up(&self, face: &Face) -> Result<Vec<usize>, Malformed> {

@@ -1,5 +1,6 @@
 //! Words, strings and marks of a text, and where they are.
 
+use crate::bytes::line_end;
 use crate::error::{Malformed, malformed};
 
 /// A place in the text; both count from 1.
@@ -98,7 +99,10 @@ impl<'t> Lexer<'t> {
             let rest = &self.text[self.at..];
             match rest {
                 [first, ..] if first.is_ascii_whitespace() => self.step(),
-                [b'/', b'/', ..] => self.at += rest.iter().position(|b| b"\r\n".contains(b)).unwrap_or(rest.len()),
+                [b'/', b'/', ..] => {
+                    let end = line_end(self.text);
+                    self.at += rest.iter().position(|&b| b == end).unwrap_or(rest.len());
+                }
                 [b'/', b'*', ..] => self.comment()?,
                 _ => return Ok(()),
             }

@@ -80,12 +80,10 @@ fn what_is_clipped_away_is_no_wall() {
 }
 
 #[test]
-fn clips_that_are_off_show_all_and_depth_is_ignored() {
+fn clips_that_are_off_show_all_and_others_are_where_they_were_made() {
     let corners = [[0.0, 0.0], [4.0, 3.0]];
     assert_eq!(one(&at_five(), &corners, &Dxf::new().put(71, 0), [IDENTITY; 2]), (vec![ALL], vec![]));
     let below = vec![[5.0, 0.0, 5.0, 2.0]];
-    let deep = Dxf::new().put(71, 1).put(72, 1).put(40, 3).put(73, 1).put(41, -3);
-    assert_eq!(one(&at_five(), &corners, &deep, [IDENTITY; 2]), (below.clone(), vec![]));
     // Where the insert was when it was clipped counts, not where it is.
     let to_block = [0.0, 1.0, 0.0, 2.0, -1.0, 0.0, 0.0, 11.0, 0.0, 0.0, 1.0, 0.0];
     // The block's (0, 0) and (4, 3) were at (11, -2) and (8, 2).
@@ -105,6 +103,8 @@ fn inserts_whose_clip_is_not_understood_are_left_out() {
     for (insert, corners, change, maps) in [
         (at_five(), &corners[..], on.clone().put(210, 1), [IDENTITY; 2]),
         (at_five(), &corners, on.clone(), [IDENTITY, moved]),
+        (at_five(), &corners, on.clone().put(72, 1).put(40, 3), [IDENTITY; 2]),
+        (at_five(), &corners, on.clone().put(73, 1).put(41, -3), [IDENTITY; 2]),
         (at_five(), &corners[..1], on.clone(), [IDENTITY; 2]),
         (at_five(), &corners, on.clone().put(10, 5), [IDENTITY; 2]),
         (at_five(), &corners, on.clone().put(20, "x"), [IDENTITY; 2]),
@@ -143,7 +143,12 @@ fn curves_are_clipped() {
     assert!(half.len() > 40, "{}", half.len());
     assert!(half.iter().all(|l| l[0] >= 0.0 && l[2] >= 0.0 && (l[0].hypot(l[1]) - 1.0).abs() < 1e-3));
     let length: f64 = half.iter().map(|l| (l[2] - l[0]).hypot(l[3] - l[1])).sum();
-    assert!((length - std::f64::consts::PI).abs() < 0.01, "{length}");
+    // What is near the border of the clip is left out: there a piece may be drawn whose curve is not.
+    let missing = std::f64::consts::PI - length;
+    assert!(missing > 0.0 && missing < 3.0 * std::f64::consts::PI / half.len() as f64, "{length}");
+    // A line is clipped exactly.
+    let line = of(&[[-2.0, 4.0], [2.0, 6.0]]);
+    assert_eq!(line, [[-2.0, 5.0, 2.0, 5.0]]);
 }
 
 /// Where an insert puts a point: scaled, turned by quarters, moved; from the origin of the block.
