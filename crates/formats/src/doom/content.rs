@@ -1,7 +1,18 @@
 //! What maps of all formats hold: lines, things, and the lists of them.
 
-use super::{Game, ML_TWOSIDED};
+use super::ML_TWOSIDED;
 use crate::error::{Malformed, malformed};
+
+/// The game whose engines read a REJECT lump.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Game {
+    /// Its engines look through lines whose flag [`ML_TWOSIDED`](super::ML_TWOSIDED) is set.
+    Doom,
+    /// Its engines look through every line with a left side, whatever its flags.
+    Heretic,
+    /// As [`Game::Heretic`].
+    Hexen,
+}
 
 /// A line from one vertex to another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,18 +1,7 @@
 //! What engines look through: which lines of a map hide nothing.
 
-use super::content::{Content, LineDef};
+use super::content::{Content, Game, LineDef};
 use std::collections::BTreeMap;
-
-/// The game whose engines read a REJECT lump.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Game {
-    /// Its engines look through lines whose flag [`ML_TWOSIDED`](super::ML_TWOSIDED) is set.
-    Doom,
-    /// Its engines look through every line with a left side, whatever its flags.
-    Heretic,
-    /// As [`Game::Heretic`].
-    Hexen,
-}
 
 /// Specials of Hexen's lines: the first line of a polyobject, behind whose end the others go on, and a line that is one by itself.
 const POLYOBJ_START_LINE: i32 = 1;

@@ -16,8 +16,8 @@ mod source;
 mod udmf;
 
 pub use choose::{MapChoiceError, choose_map};
+pub use content::Game;
 pub use content::{LineDef, Thing};
-pub use engine::Game;
 pub use list::{MapLumps, list_maps};
 pub use lumps::{MapFormat, MapLump};
 pub use map::DoomMap;

@@ -1,7 +1,6 @@
 //! Polygons that lines are cut off at.
 
-use super::MAX_ELEMENTS;
-use super::expand::too_many;
+use super::{MAX_ELEMENTS, too_many};
 use crate::error::Malformed;
 use sightlines_geometry::{Aabb, Point2, Region, Segment2, check_coordinate};
 

@@ -1,8 +1,7 @@
 //! The entities of a drawing, in their own coordinates.
 
 use super::affine::Insert;
-use super::filters::extension;
-use super::groups::{Group, Groups, next_record};
+use super::groups::{Group, Groups, extension, next_record};
 use super::layers::Layers;
 use super::spline::Spline;
 use super::text::decode;

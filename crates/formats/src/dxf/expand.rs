@@ -8,7 +8,7 @@ use super::entity::{Entity, Shape, Shown};
 use super::filters::Clip;
 use super::layers::Chosen;
 use super::text::{folded, list};
-use super::{MAX_ELEMENTS, MAX_NESTING};
+use super::{MAX_ELEMENTS, MAX_NESTING, too_many};
 use crate::error::{Malformed, malformed};
 use sightlines_geometry::check_coordinate;
 use std::collections::{BTreeMap, BTreeSet};
@@ -218,11 +218,6 @@ impl Walk<'_> {
         self.out.entities.push(Drawn { pieces: flat, clip: self.clip });
         Ok(())
     }
-}
-
-/// The error of a drawing that is too large.
-pub(super) fn too_many() -> Malformed {
-    malformed!("the drawing, with its blocks inserted, has more than {MAX_ELEMENTS} elements")
 }
 
 fn straight(a: [f64; 3], b: [f64; 3]) -> Bezier<3> {

@@ -5,7 +5,7 @@
 
 use super::affine::Affine;
 use super::entity::Fields;
-use super::groups::{Group, Groups, next_record};
+use super::groups::{Groups, handle, next_record};
 use crate::error::Malformed;
 use std::collections::HashMap;
 
@@ -64,17 +64,6 @@ impl Filters {
 
 fn entry(dictionary: &[NamedHandle], name: &[u8]) -> Option<Option<u64>> {
     dictionary.iter().find(|(key, _)| key == name).map(|&(_, handle)| handle)
-}
-
-/// The number that a group has as a handle.
-fn handle(group: &Group<'_>) -> Option<u64> {
-    u64::from_str_radix(std::str::from_utf8(group.value).ok()?, 16).ok()
-}
-
-/// The handle of an entity's extension dictionary.
-pub(super) fn extension(fields: &[Group<'_>]) -> Option<u64> {
-    let begin = fields.iter().position(|group| group.is(102, "{ACAD_XDICTIONARY"))?;
-    handle(fields.get(begin + 1)?)
 }
 
 /// `None` if a part is missing, or if the clip has a depth or a plane of its own.

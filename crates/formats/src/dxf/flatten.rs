@@ -1,7 +1,7 @@
 //! Straight pieces of curves, and the plan that they make.
 
-use super::expand::{Drawn, Expanded, too_many};
-use super::{DEFAULT_DEVIATION, MAX_ELEMENTS};
+use super::expand::{Drawn, Expanded};
+use super::{DEFAULT_DEVIATION, MAX_ELEMENTS, too_many};
 use crate::error::Malformed;
 use crate::plan::{PlanFile, PlanLines};
 use sightlines_cells::PlanLine;

@@ -150,3 +150,14 @@ pub(super) fn refuse_binary(text: &[u8]) -> Result<(), Malformed> {
 pub(crate) fn is_dxf(head: &[u8]) -> bool {
     head.starts_with(BINARY) || Groups::new(head).next().is_ok_and(|group| group.is(0, "SECTION"))
 }
+
+/// The number that a group has as a handle.
+pub(super) fn handle(group: &Group<'_>) -> Option<u64> {
+    u64::from_str_radix(std::str::from_utf8(group.value).ok()?, 16).ok()
+}
+
+/// The handle of an entity's extension dictionary.
+pub(super) fn extension(fields: &[Group<'_>]) -> Option<u64> {
+    let begin = fields.iter().position(|group| group.is(102, "{ACAD_XDICTIONARY"))?;
+    handle(fields.get(begin + 1)?)
+}

@@ -80,7 +80,7 @@ impl PlanBuilder {
 fn degrees_warning(plan: &Plan, crs: Option<&str>) -> Option<String> {
     let Aabb { min, max } = plan.bounds();
     let [width, height] = [max[0] - min[0], max[1] - min[1]];
-    let fits = min[0] >= -180.0 && max[0] <= 180.0 && min[1] >= -90.0 && max[1] <= 90.0;
+    let fits = min[0] <= max[0] && min[0] >= -180.0 && max[0] <= 180.0 && min[1] >= -90.0 && max[1] <= 90.0;
     let is_degrees = match crs {
         Some(crs) => ["CRS84", "EPSG::4326", "EPSG:4326"].iter().any(|name| crs.contains(name)),
         None => width.max(height) < 0.25 && [min, max].iter().any(|p| p.iter().any(|x| x.abs() > 1.0)),

@@ -1,6 +1,5 @@
 //! Bytes of a glTF: the GLB container, and the buffers of a document wherever they are.
 
-use super::gltf::upgrade;
 use super::json;
 use crate::beside::Neighbours;
 use crate::bytes::number_at;
@@ -205,6 +204,11 @@ fn sextet(letter: u8) -> Option<u8> {
         b'/' => Some(63),
         _ => None,
     }
+}
+
+/// The command that makes version 2 of a file of version 1.
+pub(super) fn upgrade(is_first: bool) -> &'static str {
+    if is_first { "; `npx gltf-pipeline -i IN.gltf -o OUT.glb` makes version 2 of version 1" } else { "" }
 }
 
 #[cfg(test)]

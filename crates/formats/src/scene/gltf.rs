@@ -1,6 +1,6 @@
 //! glTF 2.0: from a document to objects in world coordinates.
 
-use super::buffers::{Buffers, split_glb};
+use super::buffers::{Buffers, split_glb, upgrade};
 use super::build::Builder;
 use super::extras::{Stated, StatedMoves, StatedRole};
 use super::json::Document;
@@ -128,11 +128,6 @@ pub(super) fn split(bytes: &[u8]) -> Result<(&str, Option<&[u8]>), Malformed> {
     let text = std::str::from_utf8(without_mark(text));
     let text = text.map_err(|e| malformed!("byte {} of the glTF text is not UTF-8", e.valid_up_to()))?;
     Ok((text, binary))
-}
-
-/// The command that makes version 2 of a file of version 1.
-pub(super) fn upgrade(is_first: bool) -> &'static str {
-    if is_first { "; `npx gltf-pipeline -i IN.gltf -o OUT.glb` makes version 2 of version 1" } else { "" }
 }
 
 /// The version that a text states which may be of another one; that which is read if there is no telling.
