@@ -10,7 +10,7 @@ use serde_json::Value;
 use sightlines::bake::explain::json::Explained;
 use sightlines::checkpoint::report;
 use sightlines::report::WalkReport;
-use sightlines::verify::report::Outcome as Verified;
+use sightlines::verify::report::VerifyReport;
 
 /// Each type of results: the titles of its variants, or the one that it has, and its schema.
 pub(crate) fn schemas() -> Vec<(&'static [&'static str], Value)> {
@@ -29,7 +29,7 @@ pub(crate) fn schemas() -> Vec<(&'static [&'static str], Value)> {
         of::<plan::Outcome>(&["`plan`"]),
         of::<isovist::Outcome>(&["`isovist` of a plan"]),
         of::<isovist::space::Outcome>(&["`isovist` of a scene"]),
-        of::<Verified>(&["`verify`"]),
+        of::<VerifyReport>(&["`verify`"]),
         of::<query::Found>(&["`query` of a point"]),
         of::<query::sight::Seen>(&["`query` of a view"]),
         of::<WalkReport>(&["`walk`"]),

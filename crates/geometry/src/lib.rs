@@ -4,7 +4,7 @@
 //!
 //! - **Owns**: the coordinate types ([`Point2`], [`Point3`], [`Segment2`], [`Aabb`]), the orientation predicate of
 //!   the plane in two forms with one meaning ([`Adaptive`], [`SmallGrid`]) and that of space ([`orient3d`]),
-//!   convex polygons in the plane, [`Region`]s inside of any polygon, triangles of polygons in space ([`triangles`]), oriented portals of each kind, trees of boxes ([`BoxTree`]); and for estimates in plain doubles
+//!   convex polygons in the plane, [`PolygonRegion`]s inside of any polygon, triangles of polygons in space ([`triangles`]), oriented portals of each kind, trees of boxes ([`BoxTree`]); and for estimates in plain doubles
 //!   ranges of numbers ([`range`]), sines that are the same everywhere ([`sin_cos`]), vectors of space ([`vector`]), rays ([`ray_triangle`], [`ray_box`]) and pseudorandom numbers ([`Random`]).
 //! - **Out of scope**: walls, cells, portals, files.
 //! - **Invariants**: a predicate reads input coordinates only and its sign is exact for every coordinate that
@@ -40,7 +40,7 @@ pub use portal::Portal2;
 pub use portal3::Portal3;
 pub use random::Random;
 pub use ray::{ray_box, ray_triangle};
-pub use region::Region;
+pub use region::PolygonRegion;
 pub use segment::Segment2;
 
 /// A point of the plane in scene units.

@@ -5,12 +5,12 @@ use crate::{Aabb, Point2, Segment2, orient2d};
 /// What is inside of a polygon of any shape, and its border: points from which a ray leaves through an odd number of sides. Sides that are there
 /// twice, such as those of a slit, count for the border only.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Region {
+pub struct PolygonRegion {
     sides: Vec<Segment2>,
     bounds: Aabb<2>,
 }
 
-impl Region {
+impl PolygonRegion {
     /// Inside of the polygon with these corners.
     pub fn new(corners: &[Point2]) -> Self {
         let ends = corners.iter().zip(corners.iter().cycle().skip(1));
@@ -82,7 +82,7 @@ mod tests {
         /// Twin and impostor: both happen, in all cases together.
         #[test]
         fn parts_are_what_is_inside(corners in prop::collection::vec(point(), 3..8), a in point(), b in point()) {
-            let region = Region::new(&corners);
+            let region = PolygonRegion::new(&corners);
             let runs_along = |side: &Segment2| [a, b].iter().all(|&p| orient2d(side.a, side.b, p) == 0.0);
             prop_assume!(!region.sides.iter().any(runs_along));
             let parts = region.parts(Segment2::new(a, b));
@@ -107,7 +107,7 @@ mod tests {
         /// Invariant: of a box it is what comparing coordinates says.
         #[test]
         fn boxes_contain_what_lies_between(a in point(), b in point(), p in point()) {
-            let region = Region::new(&[a, Point2::new(b.x, a.y), b, Point2::new(a.x, b.y)]);
+            let region = PolygonRegion::new(&[a, Point2::new(b.x, a.y), b, Point2::new(a.x, b.y)]);
             let between = |a: f64, b: f64, x: f64| a.min(b) <= x && x <= a.max(b);
             prop_assert_eq!(region.contains(p), between(a.x, b.x, p.x) && between(a.y, b.y, p.y));
         }

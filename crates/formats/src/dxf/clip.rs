@@ -2,12 +2,12 @@
 
 use super::{MAX_ELEMENTS, too_many};
 use crate::error::Malformed;
-use sightlines_geometry::{Aabb, Point2, Region, Segment2, check_coordinate};
+use sightlines_geometry::{Aabb, Point2, PolygonRegion, Segment2, check_coordinate};
 
 /// What is inside of a clip, in the world's coordinates.
 #[derive(Debug)]
 struct Clip {
-    region: Region,
+    region: PolygonRegion,
     /// The clip of the insert that this one is in.
     outer: Option<usize>,
 }
@@ -25,19 +25,19 @@ impl Clips {
     ) -> Result<usize, Malformed> {
         let checked = |[x, y]: [f64; 2]| Ok(Point2::new(check_coordinate(x)?, check_coordinate(y)?));
         let corners = corners.map(checked).collect::<Result<Vec<_>, Malformed>>()?;
-        self.0.push(Clip { region: Region::new(&corners), outer });
+        self.0.push(Clip { region: PolygonRegion::new(&corners), outer });
         Ok(self.0.len() - 1)
     }
 
     /// The clip and those around it.
-    fn all(&self, clip: Option<usize>) -> impl Iterator<Item = &Region> {
+    fn all(&self, clip: Option<usize>) -> impl Iterator<Item = &PolygonRegion> {
         let first = clip.map(|k| &self.0[k]);
         std::iter::successors(first, |clip| clip.outer.map(|k| &self.0[k])).map(|clip| &clip.region)
     }
 
     /// The point of a clip's bounds that is nearest.
     pub(super) fn nearest(&self, clip: Option<usize>, point: [f64; 2]) -> [f64; 2] {
-        let into = |p: [f64; 2], of: &Region| {
+        let into = |p: [f64; 2], of: &PolygonRegion| {
             let Aabb { min, max } = of.bounds();
             std::array::from_fn(|k| p[k].max(min[k]).min(max[k]))
         };

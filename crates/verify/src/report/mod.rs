@@ -23,7 +23,7 @@ use std::time::Duration;
 /// Exit code 1 if `is_true` is false.
 #[derive(Debug, Serialize)]
 #[cfg_attr(feature = "schemars", derive(JsonSchema))]
-pub struct Outcome {
+pub struct VerifyReport {
     /// What was checked: a table, or a map with its own visibility.
     table: String,
     /// What it was checked against.
@@ -148,7 +148,7 @@ impl From<Confirmed> for Pairs {
     }
 }
 
-impl Outcome {
+impl VerifyReport {
     /// What was found of a table, or of a map with its `own` visibility, in the file `table`, checked against that of the `scene`.
     pub fn new(
         [table, scene]: [&Path; 2],
@@ -232,7 +232,7 @@ impl Outcome {
 /// Violations of each kind that people are shown.
 const SHOWN: usize = 5;
 
-impl fmt::Display for Outcome {
+impl fmt::Display for VerifyReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.proofs.iter().try_for_each(|proofs| write!(f, "{proofs}"))?;
         self.unproven.iter().try_for_each(|unproven| write!(f, "{unproven}"))?;

@@ -139,7 +139,12 @@ fn without_a_frame_little_is_hidden() {
     let exact = bake(&scene, &with(Gap::Width(0.0))).unwrap().table;
     assert!(exact.frame().is_none());
     let framed = bake(&scene, &with(Gap::Width(gap_of(&scene)))).unwrap().table;
-    let shares = [exact.mean_visible_share(), framed.mean_visible_share()];
+    // Of all cells, with that of the viewer.
+    let share = |table: &Table| {
+        let n = table.n_cells() as f64;
+        (1.0 + (n - 1.0) * table.mean_visible_share()) / n
+    };
+    let shares = [share(&exact), share(&framed)];
     assert!(shares[0] > 2.0 * shares[1], "{shares:?}");
 }
 

@@ -14,7 +14,7 @@ use crate::plans::PlanArgs;
 use crate::progress::Bar;
 use crate::surfaces::SurfaceArgs;
 use crate::{output, tables};
-use sightlines::verify::report::{Outcome, Unproven, Violations};
+use sightlines::verify::report::{Unproven, VerifyReport, Violations};
 use sightlines::verify::{VerifyOptions, verify};
 use std::path::PathBuf;
 use std::time::Instant;
@@ -119,7 +119,7 @@ pub(crate) fn run(args: &VerifyArgs, Verbosity { show_progress, .. }: Verbosity)
     let about = own.as_ref().map(|own| own.about.clone());
     let files = [args.table.as_path(), &args.scene];
     let wide_gap = frame.and_then(|frame| scene.times_too_wide(frame.gap()));
-    let outcome = Outcome::new(files, has_digests, &findings, violations, about, proofs, time)
+    let outcome = VerifyReport::new(files, has_digests, &findings, violations, about, proofs, time)
         .with_picture(drawn)
         .in_frame(frame.as_ref(), wide_gap)
         .with_unproven(unproven, args.proofs.is_strict());
