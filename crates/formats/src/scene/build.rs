@@ -53,7 +53,7 @@ pub(super) struct Builder {
     /// Of all objects up to the last that has one.
     sources: Vec<Option<ObjectSource>>,
     simplified: Option<Simplification>,
-    /// How many faces cannot be, and why one of them cannot.
+    /// How many faces are invalid, and what is wrong with the first.
     left_out: Option<(usize, Malformed)>,
     /// What a user should hear of the file.
     pub(super) warnings: Vec<String>,
@@ -90,7 +90,7 @@ impl Builder {
         self.objects.push(SceneObject { name, vertices, triangles });
     }
 
-    /// Counts faces that cannot be, with why one of them cannot.
+    /// Counts invalid faces, with what is wrong with one of them.
     pub(super) fn leave_out(&mut self, n: usize, why: Malformed) {
         self.left_out.get_or_insert((0, why)).0 += n;
     }

@@ -31,7 +31,7 @@ use std::collections::BTreeMap;
 /// Costs time and memory in proportion to the text, but for winding faces of many corners.
 ///
 /// # Errors
-/// [`Malformed`] with the line, or if there are no triangles. A face that cannot be is left out, with a warning.
+/// [`Malformed`] with the line, or if there are no triangles. An invalid face is left out, with a warning.
 ///
 /// # Source
 /// Wavefront Technologies, Advanced Visualizer manual, appendix B1 (the format of `.obj`). Chosen here: materials do
