@@ -60,7 +60,7 @@ pub fn parse_obj_with(
     let mut classifier = Classifier::new(options);
     let surfaces = Surfaces::read(&obj, beside, &mut builder.warnings);
     obj.wrong.iter().for_each(|wrong| builder.leave_out(1, wrong.clone()));
-    let (mut n_clear, mut vague) = (0, None);
+    let (mut n_valid, mut ambiguous) = (0, None);
     let names: MeshNames<'_> = obj.groups.iter().map(|group| group.name.as_str()).collect();
     for (k, group) in obj.groups.iter().enumerate() {
         let end = obj.groups.get(k + 1).map_or(obj.faces.len(), |next| next.first_face);
@@ -89,12 +89,12 @@ pub fn parse_obj_with(
                 Err(what) => builder.leave_out(1, what.on_line(face.line)),
             }
         }
-        for (face, what) in cut.iter().filter_map(|(face, cut)| Some((face, cut.vague.as_ref()?))) {
-            vague.get_or_insert_with(|| (0, what.clone().on_line(face.line))).0 += 1;
+        for (face, what) in cut.iter().filter_map(|(face, cut)| Some((face, cut.ambiguous.as_ref()?))) {
+            ambiguous.get_or_insert_with(|| (0, what.clone().on_line(face.line))).0 += 1;
         }
-        n_clear += cut.iter().filter(|(_, cut)| cut.vague.is_none()).count();
+        n_valid += cut.iter().filter(|(_, cut)| cut.ambiguous.is_none()).count();
         let hides = |(face, cut): &(&Face, FaceCut)| {
-            cut.vague.is_none() && classes[&face.material].as_ref().is_none_or(Classification::hides)
+            cut.ambiguous.is_none() && classes[&face.material].as_ref().is_none_or(Classification::hides)
         };
         let (walls, glass): (Vec<_>, Vec<_>) = cut.into_iter().partition(hides);
         let behind = if walls.is_empty() { "" } else { "#see-through" };
@@ -113,16 +113,16 @@ pub fn parse_obj_with(
             }
             // The reason is that of the first face; others have a like one.
             let class = classes[&first.material].clone();
-            let vague = || Classification::see_through("an outline that crosses itself".to_owned());
+            let ambiguous = || Classification::see_through("an outline that crosses itself".to_owned());
             if let Some(class) =
-                if hides { class } else { Some(class.filter(|class| !class.hides()).unwrap_or_else(vague)) }
+                if hides { class } else { Some(class.filter(|class| !class.hides()).unwrap_or_else(ambiguous)) }
             {
                 builder.classify(class, None);
             }
         }
     }
-    if let Some((n, first)) = vague {
-        if n_clear == 0 {
+    if let Some((n, first)) = ambiguous {
+        if n_valid == 0 {
             return Err(first);
         }
         let faces = if n == 1 { "1 face hides".to_owned() } else { format!("{n} faces hide") };
@@ -244,7 +244,7 @@ struct FaceCut {
     /// Indices into `corners`.
     triangles: Vec<[usize; 3]>,
     /// Why it is not known what of these triangles is drawn.
-    vague: Option<Malformed>,
+    ambiguous: Option<Malformed>,
 }
 
 /// What becomes an object.
@@ -365,7 +365,7 @@ impl Obj {
     /// [`Malformed`] for a face that engines may draw, but which has too many corners to tell how.
     fn cut(&self, face: &Face) -> Result<Result<FaceCut, Malformed>, Malformed> {
         /// The most corners of a face of which all triangles are taken.
-        const MOST_VAGUE: usize = 16;
+        const MOST_AMBIGUOUS: usize = 16;
         let corners = match self.look_up(face) {
             Ok(corners) => corners,
             Err(what) => return Ok(Err(what)),
@@ -373,17 +373,17 @@ impl Obj {
         let polygon: Vec<Point3> = corners.iter().map(|&v| self.positions[v]).collect();
         let n = corners.len();
         let what = match triangulate(&polygon) {
-            Ok(triangles) => return Ok(Ok(FaceCut { corners, triangles, vague: None })),
+            Ok(triangles) => return Ok(Ok(FaceCut { corners, triangles, ambiguous: None })),
             Err(PolygonError::Crossing) => malformed!("the outline of the face crosses itself"),
             Err(PolygonError::TooLarge) => {
                 malformed!("a winding face of {n} corners, more than {MAX_WINDING_CORNERS}")
             }
         };
-        if n > MOST_VAGUE {
+        if n > MOST_AMBIGUOUS {
             return Err(what.on_line(face.line));
         }
         let triangles = (0..n).flat_map(|i| (0..i).flat_map(move |j| (0..j).map(move |k| [k, j, i])));
-        Ok(Ok(FaceCut { corners, triangles: triangles.collect(), vague: Some(what) }))
+        Ok(Ok(FaceCut { corners, triangles: triangles.collect(), ambiguous: Some(what) }))
     }
 
     fn look_up(&self, face: &Face) -> Result<Vec<usize>, Malformed> {
