@@ -198,7 +198,7 @@ fn see_closed(live: &LiveScene, threads: usize) -> Result<AxialVisibility, Box<d
     let boxes = live.scene().objects().iter().map(|o| Aabb::around(o.corners().flatten()));
     let boxes: Vec<Aabb<3>> = boxes.collect();
     let search = SearchOptions { threads, ..SearchOptions::default() };
-    Ok(axial_visibility(&graph, &cut.left_out(), &boxes, &search).expect("nobody cancels"))
+    Ok(axial_visibility(&graph, &cut.left_out(), &[], &boxes, &search).expect("nobody cancels"))
 }
 
 /// Whether a table says what was found.

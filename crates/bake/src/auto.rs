@@ -21,7 +21,7 @@ pub struct SceneFacts {
     pub n_triangles: usize,
     /// Objects.
     pub n_objects: usize,
-    /// The share of triangles perpendicular to an axis that hide from both sides, which are walls to sightlines.
+    /// The share of triangles perpendicular to an axis, which are walls to sightlines.
     pub axial: f64,
     /// The share of flat pieces that stand alone, such as screens and signs: surfaces that are connected to nothing in another plane.
     /// Measured only where it matters, as it takes longer.
@@ -53,7 +53,7 @@ impl SceneFacts {
         Self {
             n_triangles: all.len(),
             n_objects: sizes.len(),
-            axial: share(scene.occluding_triangles().filter(flat).map(|t| area(&t)).fold(0.0, |sum, area| sum + area)),
+            axial: share(all.iter().filter(|t| flat(t)).map(area).fold(0.0, |sum, area| sum + area)),
             loose: None,
             openness: None,
             object_size: if whole > 0.0 { middle / whole } else { 0.0 },

@@ -107,7 +107,7 @@ pub(crate) fn see_scene(
         PortalMode::Bounding => merge_portals(&cut.graph),
         PortalMode::Exact => cut.graph,
     };
-    let mut seen = axial_visibility(&graph, &solid, &boxes, &search)?;
+    let mut seen = axial_visibility(&graph, &solid, &cut.fronts, &boxes, &search)?;
     let left = seen.left.take();
     let see_time = start.elapsed();
     let found = mirrors::of_scene(&graph, scene);

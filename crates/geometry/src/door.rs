@@ -25,3 +25,12 @@ impl AxialDoor {
         self.extent.min[self.axis as usize]
     }
 }
+
+/// A rectangle on a plane perpendicular to an axis that hides from one side: it stops whoever comes from its front.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OneWayRectangle {
+    /// A box that is flat along one axis, in scene units.
+    pub bounds: Aabb<3>,
+    /// Whether its front faces larger coordinates of that axis, so that it stops lines towards smaller ones.
+    pub front_up: bool,
+}

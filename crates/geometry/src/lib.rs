@@ -32,7 +32,7 @@ pub use angle::sin_cos;
 pub use bounds::Aabb;
 pub use boxtree::{BoxNode, BoxTree};
 pub use coordinate::{CoordinateError, check_coordinate};
-pub use door::AxialDoor;
+pub use door::{AxialDoor, OneWayRectangle};
 pub use orient::{Adaptive, Orient2d, SmallGrid, along, orient2d};
 pub use orient3::orient3d;
 pub use polygon::{is_convex_ccw, polygon_contains, signed_area};

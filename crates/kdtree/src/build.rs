@@ -63,28 +63,37 @@ pub fn subdivide<const D: usize>(
     bounds: Aabb<D>,
     options: &KdOptions,
 ) -> Result<AxialTree<D>, KdError> {
-    subdivide_with(faces, &[], bounds, options)
+    subdivide_with(&Cuts { walls: faces, open: &[], dividers: &[] }, bounds, options)
 }
 
-/// As [`subdivide`], with rectangles that hide nothing: where those of a plane cover the whole cross-section of a cell that no face divides
-/// any more, they divide it.
+/// What a box is cut along.
+pub(crate) struct Cuts<'a, const D: usize> {
+    /// What hides from both sides.
+    pub(crate) walls: &'a [AxialFace<D>],
+    /// What divides as walls do, and leaves portals open.
+    pub(crate) open: &'a [AxialFace<D>],
+    /// Rectangles that hide nothing: where those of a plane cover the whole cross-section of a cell that nothing else divides any more, they
+    /// divide it.
+    pub(crate) dividers: &'a [AxialFace<D>],
+}
+
+/// As [`subdivide`].
 pub(crate) fn subdivide_with<const D: usize>(
-    faces: &[AxialFace<D>],
-    dividers: &[AxialFace<D>],
+    cuts: &Cuts<'_, D>,
     bounds: Aabb<D>,
     options: &KdOptions,
 ) -> Result<AxialTree<D>, KdError> {
     const { assert!(D == 2 || D == 3, "axial subdivisions have two or three dimensions") };
-    let (mut faces, bounds) = (checked_faces(faces)?, checked_bounds(bounds)?);
-    let n_faces = faces.len();
-    faces.extend(checked_faces(dividers)?);
+    let bounds = checked_bounds(bounds)?;
+    let [walls, open, dividers] = [cuts.walls, cuts.open, cuts.dividers].map(checked_faces);
+    let (walls, open, dividers) = (walls?, open?, dividers?);
     if !(0.0..=1.0).contains(&options.tau) {
         return Err(KdError::Tau(options.tau));
     }
-    let (ranks, [pieces, dividers]) = Ranks::compress(&faces, n_faces, &bounds);
-    let dividers = united(dividers);
+    let (ranks, [walls, open, dividers]) = Ranks::compress([&walls, &open, &dividers], &bounds);
+    let (pieces, dividers) = (with_open(united(walls), &united(open)), united(dividers));
     let builder = Builder { ranks: &ranks, dividers: &dividers, options, n_cells: 0, skeleton: Skeleton::new() };
-    let skeleton = builder.run(united(pieces))?;
+    let skeleton = builder.run(pieces)?;
     let portals = portals_of(&ranks, &skeleton);
     let cells = skeleton.cells.iter().map(|c| AxialCell { bounds: scene_box(&ranks, c) }).collect();
     Ok(AxialTree { bounds, nodes: skeleton.in_scene(&ranks), cells, portals, n_detail: skeleton.n_detail })
@@ -97,9 +106,25 @@ pub(crate) fn united<const D: usize>(mut pieces: Vec<Piece<D>>) -> Vec<Piece<D>>
     let in_plane = |group: &[Piece<D>]| -> Vec<Piece<D>> {
         let (axis, rank) = group[0].plane();
         let rects: Vec<Rect> = group.iter().map(|p| Rect::across(&p.extent, usize::from(axis))).collect();
-        unite(&rects).into_iter().map(|r| Piece { axis, extent: r.on_plane(usize::from(axis), rank) }).collect()
+        unite(&rects).into_iter().map(|r| Piece { axis, extent: r.on_plane(usize::from(axis), rank), is_wall: true }).collect()
     };
     pieces.chunk_by(|a, b| a.plane() == b.plane()).flat_map(in_plane).collect()
+}
+
+/// Walls, and the parts of what is open that no wall covers, planes ascending. Both are disjoint in each plane, planes ascending.
+fn with_open<const D: usize>(mut walls: Vec<Piece<D>>, open: &[Piece<D>]) -> Vec<Piece<D>> {
+    let mut bare = Vec::new();
+    for group in open.chunk_by(|a, b| a.plane() == b.plane()) {
+        let ((axis, rank), across) = (group[0].plane(), usize::from(group[0].axis));
+        let first = walls.partition_point(|wall| wall.plane() < (axis, rank));
+        let same = walls[first..].iter().take_while(|wall| wall.plane() == (axis, rank));
+        let same: Vec<Rect> = same.map(|wall| Rect::across(&wall.extent, across)).collect();
+        let rects = group.iter().flat_map(|piece| uncovered(Rect::across(&piece.extent, across), &same));
+        bare.extend(rects.map(|r| Piece { axis, extent: r.on_plane(across, rank), is_wall: false }));
+    }
+    walls.extend(bare);
+    walls.sort_by_key(Piece::plane);
+    walls
 }
 
 fn scene_box<const D: usize>(ranks: &Ranks<D>, cell: &RankBox<D>) -> Aabb<D> {
@@ -208,7 +233,9 @@ fn cut<const D: usize>(mut pieces: Vec<Piece<D>>, axis: usize, rank: u32) -> ([V
     let (mut low, mut walls) = (Vec::new(), Vec::new());
     pieces.retain_mut(|piece| {
         if piece.plane() == (axis as u8, rank) {
-            walls.push(Rect::across(&piece.extent, axis));
+            if piece.is_wall {
+                walls.push(Rect::across(&piece.extent, axis));
+            }
             return false;
         }
         let below = piece.extent.lo[axis] < rank;

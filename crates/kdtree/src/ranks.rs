@@ -24,6 +24,8 @@ pub(crate) struct RankBox<const D: usize> {
 pub(crate) struct Piece<const D: usize> {
     pub(crate) axis: u8,
     pub(crate) extent: RankBox<D>,
+    /// Whether it hides from both sides.
+    pub(crate) is_wall: bool,
 }
 
 impl<const D: usize> Piece<D> {
@@ -34,27 +36,25 @@ impl<const D: usize> Piece<D> {
 }
 
 impl<const D: usize> Ranks<D> {
-    /// Ranks for `bounds` and everything of `faces` that is inside, and those faces in ranks, clipped: the first `n_first` of them, and the
-    /// others. Faces that only lie on the border of the bounds, or outside, are left out. O(n log n).
-    pub(crate) fn compress(faces: &[AxialFace<D>], n_first: usize, bounds: &Aabb<D>) -> (Self, [Vec<Piece<D>>; 2]) {
-        let [first, others] = [&faces[..n_first], &faces[n_first..]]
-            .map(|faces| faces.iter().filter_map(|face| clipped(face, bounds)).collect::<Vec<AxialFace<D>>>());
-        let inside = || first.iter().chain(&others);
+    /// Ranks for `bounds` and everything of some lists of faces that is inside, and those faces in ranks, clipped. Faces that only lie on the
+    /// border of the bounds, or outside, are left out. O(n log n).
+    pub(crate) fn compress<const N: usize>(faces: [&[AxialFace<D>]; N], bounds: &Aabb<D>) -> (Self, [Vec<Piece<D>>; N]) {
+        let inside = faces.map(|faces| faces.iter().filter_map(|face| clipped(face, bounds)).collect::<Vec<_>>());
         let axes = std::array::from_fn(|k| {
-            let ends = inside().flat_map(|f| [f.min[k], f.max[k]]);
+            let ends = inside.iter().flatten().flat_map(|f| [f.min[k], f.max[k]]);
             let mut all: Vec<f64> = ends.chain([bounds.min[k], bounds.max[k]]).collect();
             all.sort_unstable_by(f64::total_cmp);
             all.dedup();
             all
         });
         let ranks = Self { axes };
-        let pieces = [&first, &others].map(|faces| faces.iter().map(|f| ranks.piece(f)).collect());
+        let pieces = inside.map(|faces| faces.iter().map(|f| ranks.piece(f)).collect());
         (ranks, pieces)
     }
 
     fn piece(&self, face: &AxialFace<D>) -> Piece<D> {
         let extent = RankBox { lo: self.ranks_of(face.min), hi: self.ranks_of(face.max) };
-        Piece { axis: face.axis as u8, extent }
+        Piece { axis: face.axis as u8, extent, is_wall: true }
     }
 
     fn ranks_of(&self, p: [f64; D]) -> [u32; D] {

@@ -1,6 +1,6 @@
 //! From a scene in space to a graph of boxes and rectangular portals.
 
-use crate::build::{KdOptions, subdivide_with};
+use crate::build::{Cuts, KdOptions, subdivide_with};
 use crate::cache::FaceCache;
 use crate::doors::shut_doors;
 use crate::error::KdError;
@@ -9,7 +9,7 @@ use crate::scene_faces::{SceneFaces, Survey};
 use crate::scene_options::SceneOptions;
 use crate::tree::{AxialPortal, AxialTree};
 use sightlines_cells::{Axial, AxialDoor, BoxCell, CellGraph, Portal, Scene};
-use sightlines_geometry::{Aabb, check_coordinate};
+use sightlines_geometry::{Aabb, OneWayRectangle, check_coordinate};
 use sightlines_pvs::CellId;
 
 /// Statistics of the subdivision of a scene.
@@ -55,6 +55,8 @@ pub struct SceneSubdivision {
     pub summary: SceneSummary,
     /// For each object whether it was detail, or see-through.
     pub detail: Vec<bool>,
+    /// Rectangles in what hides from its front. They divide cells as walls do, and lie in portals: the graph does not tell which way they hide.
+    pub fronts: Vec<OneWayRectangle>,
     cells: Vec<Option<CellId>>,
 }
 
@@ -114,7 +116,8 @@ impl SceneCutter {
         let found = survey.faces(&mut self.cache);
         let doors: Vec<_> = shut_doors(scene).into_iter().flat_map(|door| door.faces).collect();
         let how = KdOptions { tau: options.tau, max_cells: options.max_cells };
-        let tree = subdivide_with(&found.faces, &doors, bounds, &how)?;
+        let open: Vec<_> = found.fronts.iter().map(|front| front.0).collect();
+        let tree = subdivide_with(&Cuts { walls: &found.faces, open: &open, dividers: &doors }, bounds, &how)?;
         let out = match options.keep_solid {
             true => vec![None; tree.cells().len()],
             false => left_out(scene, &survey, &found, &tree, options.view_region),
@@ -145,7 +148,11 @@ impl SceneSubdivision {
         };
         let graph = CellGraph::new(boxes, tree.portals().iter().filter_map(inner).collect());
         let summary = summarise(&tree, out, &found, &graph);
-        Self { tree, graph, summary, detail: found.detail, cells }
+        let fronts = found.fronts.iter().map(|(face, front_up)| OneWayRectangle {
+            bounds: Aabb { min: face.min, max: face.max },
+            front_up: *front_up,
+        });
+        Self { tree, graph, summary, detail: found.detail, fronts: fronts.collect(), cells }
     }
 
     /// The boxes of the tree's cells that the graph leaves out.
@@ -189,7 +196,7 @@ fn summarise(
         detail_below: found.detail_below,
         n_detail_objects: found.n_detail_objects,
         n_small_regions: found.n_small_regions,
-        n_faces: found.faces.len(),
+        n_faces: found.faces.len() + found.fronts.len(),
         n_unfollowed: tree.n_detail(),
         n_cells: graph.n_cells(),
         n_portals: graph.portals().len(),

@@ -15,6 +15,9 @@ use std::sync::Arc;
 pub struct SceneFaces {
     /// Disjoint rectangles inside the triangles that hide, plane by plane.
     pub faces: Vec<AxialFace<3>>,
+    /// Rectangles inside the triangles that hide from their front only, disjoint among those that face the same way, and whether that is
+    /// towards larger coordinates.
+    pub fronts: Vec<(AxialFace<3>, bool)>,
     /// Triangles of all objects with an area that are perpendicular to an axis.
     pub n_axial_triangles: usize,
     /// Triangles perpendicular to an axis that have no area.
@@ -38,7 +41,8 @@ pub struct SceneFaces {
 /// slanted borders, rectangles inside it are taken that end at coordinates of its corners; where all borders are
 /// axis-parallel, the rectangles are the whole union. So, by exact predicates, faces never hide more than triangles do.
 ///
-/// Objects that are [see-through](Scene::see_through) divide nothing and hide nothing.
+/// Objects that are [see-through](Scene::see_through) divide nothing and hide nothing, but for those that
+/// [hide from the front](Scene::front_occluders): their faces are listed apart.
 ///
 /// Left out as detail are, with [`SceneOptions::detail_below`] as the size:
 /// * objects whose box is smaller in every direction;
@@ -64,7 +68,8 @@ pub fn scene_faces(scene: &Scene, options: &SceneOptions) -> SceneFaces {
 /// 0 for a scene without corners. Computed in rounded arithmetic, the same on every machine; no choice of
 /// it is unsound. O(n log n) for n objects.
 pub fn default_detail_below(scene: &Scene) -> f64 {
-    let shapes: Vec<Shape> = scene.occluders().map(|(_, object)| Shape::of(object)).collect();
+    let fronts = scene.front_occluders().iter().map(|&object| &scene.objects()[object as usize]);
+    let shapes: Vec<Shape> = scene.occluders().map(|(_, object)| object).chain(fronts).map(Shape::of).collect();
     detail_below_of(&shapes.iter().collect::<Vec<_>>())
 }
 
@@ -118,6 +123,8 @@ pub(crate) struct Survey {
     pub(crate) meshes: Vec<Arc<Mesh>>,
     /// The triangles of the objects.
     pub(crate) shapes: Vec<Arc<Shape>>,
+    /// The objects that hide from their front, and are no detail.
+    fronts: Vec<u32>,
 }
 
 impl Survey {
@@ -125,8 +132,8 @@ impl Survey {
     pub(crate) fn of(scene: &Scene, options: &SceneOptions, cache: &mut FaceCache) -> Self {
         let shapes = cache.shapes_of(scene);
         let of_shapes = (0u32..).zip(&shapes).map(|(object, shape)| (scene.is_opaque(object), shape.bounds));
-        let that_hide =
-            || (0u32..).zip(&shapes).filter(|(object, _)| scene.is_opaque(*object)).map(|(_, shape)| &**shape);
+        let hides = |object: u32| scene.is_opaque(object) || scene.hides_from_front(object);
+        let that_hide = || (0u32..).zip(&shapes).filter(|(object, _)| hides(*object)).map(|(_, shape)| &**shape);
         let detail_below = options.detail_below.unwrap_or_else(|| detail_below_of(&that_hide().collect::<Vec<_>>()));
         let n_detail = that_hide().filter(|shape| largest_side(&shape.bounds) < detail_below).count();
         let detail: Vec<bool> = of_shapes.map(|(hides, b)| !hides || largest_side(&b) < detail_below).collect();
@@ -138,7 +145,10 @@ impl Survey {
             true => Arc::clone(&nothing),
             false => Arc::clone(shape.mesh.get_or_init(|| Arc::new(Mesh::of(object)))),
         };
-        Self { detail_below, meshes: objects.map(mesh).collect(), detail, n_detail, bounds, shapes }
+        let meshes = objects.map(mesh).collect();
+        let is_large = |object: &u32| largest_side(&shapes[*object as usize].bounds) >= detail_below;
+        let fronts = scene.front_occluders().iter().copied().filter(is_large).collect();
+        Self { detail_below, meshes, detail, n_detail, bounds, shapes, fronts }
     }
 
     /// The box around all objects, wherever they move.
@@ -190,7 +200,22 @@ impl Survey {
             out.faces.extend(plane.rects.iter().map(|r| on_plane(r, axis, at)));
             cache.planes.insert((axis, group[0].1), plane);
         }
+        self.add_fronts(&mut out);
         out
+    }
+
+    /// Adds the faces of what hides from its front: of each plane and direction the large regions.
+    fn add_fronts(&self, out: &mut SceneFaces) {
+        let of = |&object: &u32| self.shapes[object as usize].flat.iter().map(|(_, flat)| flat);
+        let mut all: Vec<&FlatTriangle> = self.fronts.iter().flat_map(of).collect();
+        all.sort_by_key(|flat| (flat.axis, total_order(flat.at), flat.up));
+        for group in all.chunk_by(|a, b| (a.axis, a.at, a.up) == (b.axis, b.at, b.up)) {
+            let FlatTriangle { axis, at, up, .. } = *group[0];
+            let corners: Vec<[Point2; 3]> = group.iter().map(|flat| flat.corners).collect();
+            let (rects, n_small) = large_regions(inner_rectangles(&corners), self.detail_below);
+            out.n_small_regions += n_small;
+            out.fronts.extend(united(&rects).iter().map(|r| (on_plane(r, axis, at), up)));
+        }
     }
 
     /// The axis-parallel triangles that may hide, and whether they are of a closed piece.

@@ -141,7 +141,7 @@ mod tests {
         let xs = upright.iter().map(|w| AxialFace::new(0, [w[0], w[1]], [w[0], w[2]]));
         let ys = level.iter().map(|w| AxialFace::new(1, [w[1], w[0]], [w[2], w[0]]));
         let faces: Vec<AxialFace<2>> = xs.chain(ys).collect();
-        let (ranks, [pieces, _]) = Ranks::compress(&faces, faces.len(), &bounds);
+        let (ranks, [pieces]) = Ranks::compress([&faces], &bounds);
         let pieces = crate::build::united(pieces);
         choose(&ranks, &ranks.whole(), &pieces, tau).map(|(axis, rank)| (axis, ranks.value(axis, rank)))
     }
@@ -195,7 +195,7 @@ mod tests {
         let level: Vec<[f64; 3]> =
             (0..40).map(f64::from).map(|i| [i / 2. + 0.5, i % 7., i % 7. + i % 5. + 1.]).collect();
         let faces: Vec<AxialFace<2>> = level.iter().map(|w| AxialFace::new(1, [w[1], w[0]], [w[2], w[0]])).collect();
-        let (ranks, [pieces, _]) = Ranks::compress(&faces, faces.len(), &Aabb { min: [0.0; 2], max: [99.0; 2] });
+        let (ranks, [pieces]) = Ranks::compress([&faces], &Aabb { min: [0.0; 2], max: [99.0; 2] });
         let cell = ranks.whole();
         let planes: Vec<u32> = (1..cell.hi[0]).collect();
         let dense = n_cleaved(&cell, &pieces, 0, &planes);

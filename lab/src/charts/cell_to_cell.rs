@@ -271,7 +271,7 @@ fn among_boxes(
     let cut = subdivide_scene(scene, &SceneOptions::default()).map_err(|e| failed(name)(e.into()))?;
     let (graph, solid) = (&cut.graph, cut.left_out());
     let see = |graph: &CellGraph<Axial>| {
-        settings.best_of(|| axial_visibility(graph, &solid, &[], &one_thread()).expect("nobody cancels"))
+        settings.best_of(|| axial_visibility(graph, &solid, &[], &[], &one_thread()).expect("nobody cancels"))
     };
     let (seen, seconds, repeats) = see(graph);
     let options = SceneBakeOptions { portals: PortalMode::Bounding, ..SceneBakeOptions::default() };

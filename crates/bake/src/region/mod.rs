@@ -387,7 +387,7 @@ fn past_walls(
     let RegionBakeOptions { threads, progress, budget, units, .. } = *options;
     let search = SearchOptions { threads, progress, budget, units, ..SearchOptions::default() };
     let graph = loose.as_ref().unwrap_or(&cut.graph);
-    Ok(box_visibility(graph, &cut.left_out(), cells, objects, doubt, &search)?)
+    Ok(box_visibility(graph, &cut.left_out(), &cut.fronts, cells, objects, doubt, &search)?)
 }
 
 fn volumes(cells: &[Aabb<3>]) -> Result<Vec<Volume>, BakeError> {

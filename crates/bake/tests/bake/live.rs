@@ -168,7 +168,7 @@ fn portals_close_and_open() {
         let portals = (0u32..).zip(cut.graph.portals()).filter(|(id, _)| !closed.contains(&PortalId(*id)));
         let graph = CellGraph::new(cut.graph.cells().to_vec(), portals.map(|(_, p)| p.clone()).collect());
         let search = SearchOptions { threads: 1, ..SearchOptions::default() };
-        let seen = axial_visibility(&graph, &cut.left_out(), &boxes, &search).expect("nobody cancels");
+        let seen = axial_visibility(&graph, &cut.left_out(), &[], &boxes, &search).expect("nobody cancels");
         for cell in graph.cell_ids() {
             assert!(live.table().visible(cell).map(|c| c.idx()).eq(seen.cells.iter_ones(cell.idx())));
             let objects = live.table().visible_objects(cell);

@@ -9,7 +9,7 @@ pub(super) type Octant = u8;
 pub(super) type Octants = u8;
 
 /// The octants that go forward on each axis.
-const FORWARD: [Octants; 3] = [0b1010_1010, 0b1100_1100, 0b1111_0000];
+pub(super) const FORWARD: [Octants; 3] = [0b1010_1010, 0b1100_1100, 0b1111_0000];
 
 /// The octants that cross a door in its direction.
 pub(super) fn octants_through(door: &AxialDoor) -> Octants {
@@ -157,6 +157,11 @@ impl Line {
     /// Whether it passes the plane of a closed rectangle outside of it, if it is in the octant. Exact.
     pub(super) fn misses(&self, rectangle: &Aabb<3>, axis: usize, octant: Octant) -> bool {
         misses(rectangle, axis, octant, |row| self.obeys(row, octant))
+    }
+
+    /// The octant of its direction; forward on an axis on which it does not move.
+    pub(super) fn octant(&self) -> Octant {
+        (0..3).fold(0, |o, i| o | Octant::from(self.to[i] >= self.from[i]) << i)
     }
 
     /// Whether its direction is strictly in the octant. Exact.

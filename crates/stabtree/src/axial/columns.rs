@@ -15,7 +15,7 @@ use super::first_true::first_true;
 use super::horizons::Horizons;
 use super::witness_log::{FoundFor, Worker};
 use sightlines_geometry::Aabb;
-use sightlines_sightline::{BoxTarget, ShaftLine, Verdict};
+use sightlines_sightline::{ShaftLine, Verdict};
 use std::sync::OnceLock;
 
 /// Members of the shortest column that is worth it.
@@ -201,7 +201,7 @@ impl AxialSearch<'_> {
         }
         let from = self.bounds_at(place as usize);
         let rest = Aabb { min: self.bounds_at(first).min, max: self.bounds_at(last).max };
-        match worker.shaft.decide(from, &rest, BoxTarget::Inside, BUDGET) {
+        match worker.shaft.decide_either(from, &rest, BUDGET) {
             Verdict::Hidden(()) => true,
             Verdict::Visible(ShaftLine::Free(line)) => {
                 self.follow(&line, [from, &rest], FoundFor::Groups, worker);

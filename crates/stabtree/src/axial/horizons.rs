@@ -13,7 +13,7 @@ use super::first_true::first_true;
 use super::pairs::Pair;
 use super::witness_log::{FoundFor, Worker};
 use sightlines_geometry::Aabb;
-use sightlines_sightline::{BoxTarget, ShaftLine, Verdict};
+use sightlines_sightline::{ShaftLine, Verdict};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
@@ -128,7 +128,7 @@ impl AxialSearch<'_> {
         // Most that have no horizon are found out by one query, about the farthest plane.
         let found = first_true(0, end, end.saturating_sub(1), |k| {
             let Some(rest) = beyond(plane(k)) else { return true };
-            match worker.shaft.decide(from, &rest, BoxTarget::Inside, HORIZON_BUDGET) {
+            match worker.shaft.decide_either(from, &rest, HORIZON_BUDGET) {
                 Verdict::Hidden(()) => true,
                 Verdict::Visible(ShaftLine::Free(line)) => {
                     self.follow(&line, [from, &rest], FoundFor::Groups, worker);

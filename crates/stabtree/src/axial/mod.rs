@@ -35,13 +35,13 @@ use crate::search::SearchOptions;
 pub(crate) use atomic_bits::AtomicBitMatrix;
 use columns::Columns;
 use horizons::Horizons;
-use opaque::opaque_rectangles;
+use opaque::blockers_of;
 pub(crate) use opaque::opaque_without_solid;
 use pairs::Pair;
 pub(crate) use pairs::halves_first;
 use rayon::prelude::*;
 use sightlines_cells::{Axial, CellGraph};
-use sightlines_geometry::Aabb;
+use sightlines_geometry::{Aabb, OneWayRectangle};
 use sightlines_geometry::BoxTree;
 use sightlines_progress::{Allowance, Counter, Halt, Units, Work, scattered};
 use sightlines_pvs::BitMatrix;
@@ -161,6 +161,8 @@ const FEW_TASKS_PER_THREAD: usize = 16;
 ///
 /// * `solid`: boxes beside the cells that no line from a cell enters; they make walls larger, which saves much work,
 ///   and affect the answer only in that fewer pairs are assumed visible.
+/// * `fronts`: rectangles that hide from one side. They count where they lie in portals: what reaches into cells hides nothing. Two cells see
+///   each other if either sees the other.
 /// * `objects`: closed boxes, in scene units. A cell sees those that touch it, and those that an open set of lines from
 ///   inside the cell reaches before meeting a wall. Flat boxes can be seen; boxes that are flat along two axes are seen
 ///   only where they touch. Empty ones are never seen.
@@ -176,11 +178,12 @@ const FEW_TASKS_PER_THREAD: usize = 16;
 pub fn axial_visibility(
     graph: &CellGraph<Axial>,
     solid: &[Aabb<3>],
+    fronts: &[OneWayRectangle],
     objects: &[Aabb<3>],
     options: &SearchOptions<'_>,
 ) -> Result<AxialVisibility, Halt> {
     on_threads(options.threads, |threads| {
-        let blockers = Blockers::new(opaque_rectangles(graph, solid));
+        let blockers = blockers_of(graph, solid, fronts);
         let mut search = AxialSearch::new(graph, objects, &blockers);
         search.use_columns();
         if options.budget.is_limited() {

@@ -5,7 +5,8 @@
 
 use rayon::prelude::*;
 use sightlines_cells::{Axial, CellGraph};
-use sightlines_geometry::Aabb;
+use sightlines_geometry::{Aabb, OneWayRectangle};
+use sightlines_sightline::Blockers;
 use std::collections::BTreeMap;
 
 /// Most fields of a plane that are painted at once; larger planes are split.
@@ -21,6 +22,8 @@ pub(super) struct Plane {
     pub(super) portals: Vec<Patch>,
     /// Cross-sections of solid boxes.
     pub(super) solid: Vec<Patch>,
+    /// What hides from the side in question, where it lies in portals.
+    pub(super) fronts: Vec<Patch>,
 }
 
 /// A double as a key with the order of its value.
@@ -43,6 +46,17 @@ pub(super) fn opaque_rectangles(graph: &CellGraph<Axial>, solid: &[Aabb<3>]) -> 
     Walls::of(graph, solid, &Walls::default()).rectangles().collect()
 }
 
+/// The walls of a graph, and the parts of `fronts` in its portals, each as large as what else stops lines in the same direction allows.
+/// Arguments as for [`axial_visibility`](super::axial_visibility).
+pub(super) fn blockers_of(graph: &CellGraph<Axial>, solid: &[Aabb<3>], fronts: &[OneWayRectangle]) -> Blockers {
+    let walls = Walls::of(graph, solid, &Walls::default());
+    let one_way = [true, false].map(|up| (up, walls.one_way(fronts.iter().filter(|front| front.front_up == up))));
+    let one_way = one_way.into_iter().flat_map(|(front_up, rectangles)| {
+        rectangles.into_iter().map(move |bounds| OneWayRectangle { bounds, front_up })
+    });
+    Blockers::with_one_way(walls.rectangles(), one_way)
+}
+
 /// Rectangles that cover all walls of a graph, enlarged as far as possible without a part of them inside a cell or a
 /// portal: they continue through everything that is not a cell. `solid` is not needed for that.
 pub(crate) fn opaque_without_solid(graph: &CellGraph<Axial>) -> Vec<Aabb<3>> {
@@ -53,7 +67,7 @@ pub(crate) fn opaque_without_solid(graph: &CellGraph<Axial>) -> Vec<Aabb<3>> {
             graph.cells().iter().map(|c| &c.bounds).filter(|b| b.min[axis] < covered.at && covered.at < b.max[axis]);
         covered.plane.portals.extend(through.map(|b| flat(b, axis)));
         covered.plane.solid.push(flat(&all, axis));
-        covered.cover(axis);
+        covered.cover(axis, Field::Wall);
     });
     Walls { planes }.rectangles().collect()
 }
@@ -87,7 +101,7 @@ impl Walls {
             covered.plane.solid.extend(through.map(|b| flat(b, axis)));
             match before.planes.get(&(axis, at_key)).filter(|same| same.plane == covered.plane) {
                 Some(same) => covered.rectangles.clone_from(&same.rectangles),
-                None => covered.cover(axis),
+                None => covered.cover(axis, Field::Wall),
             }
         });
         Self { planes }
@@ -114,6 +128,24 @@ impl Walls {
         planes
     }
 
+    /// Rectangles that cover the parts of `fronts`, all of which face the same way, that lie in portals. They continue through walls.
+    fn one_way<'f>(&self, fronts: impl Iterator<Item = &'f OneWayRectangle>) -> Vec<Aabb<3>> {
+        let mut by_plane: BTreeMap<(usize, u64), Vec<Patch>> = BTreeMap::new();
+        for bounds in fronts.map(|front| &front.bounds) {
+            if let Some(axis) = (0..3).find(|&k| bounds.min[k] == bounds.max[k]) {
+                by_plane.entry((axis, key(bounds.min[axis]))).or_default().push(flat(bounds, axis));
+            }
+        }
+        let cover = |((axis, at_key), fronts): ((usize, u64), Vec<Patch>)| {
+            let mut covered = self.planes.get(&(axis, at_key))?.clone();
+            covered.plane.fronts = fronts;
+            covered.rectangles.clear();
+            covered.cover(axis, Field::Front);
+            Some(covered.rectangles)
+        };
+        by_plane.into_par_iter().filter_map(cover).flatten().collect()
+    }
+
     /// The rectangles, plane by plane.
     pub(super) fn rectangles(&self) -> impl Iterator<Item = Aabb<3>> + '_ {
         self.planes.values().flat_map(|covered| covered.rectangles.iter().copied())
@@ -121,10 +153,10 @@ impl Walls {
 }
 
 impl Covered {
-    /// Covers the walls of a plane perpendicular to an axis.
-    fn cover(&mut self, axis: usize) {
+    /// Covers the fields of a kind of a plane perpendicular to an axis.
+    fn cover(&mut self, axis: usize, kind: Field) {
         let (at, [u, v], rectangles) = (self.at, others(axis), &mut self.rectangles);
-        self.plane.cover(&mut |patch| {
+        self.plane.cover(kind, &mut |patch| {
             let (mut min, mut max) = ([at; 3], [at; 3]);
             (min[u], min[v], max[u], max[v]) = (patch.min[0], patch.min[1], patch.max[0], patch.max[1]);
             rectangles.push(Aabb { min, max });
@@ -135,23 +167,23 @@ impl Covered {
 impl Plane {
     /// The distinct coordinates along one extent, ascending.
     pub(super) fn lines(&self, k: usize) -> Vec<f64> {
-        let mut lines: Vec<f64> =
-            self.walls.iter().chain(&self.portals).chain(&self.solid).flat_map(|p| [p.min[k], p.max[k]]).collect();
+        let all = self.walls.iter().chain(&self.portals).chain(&self.solid).chain(&self.fronts);
+        let mut lines: Vec<f64> = all.flat_map(|p| [p.min[k], p.max[k]]).collect();
         lines.sort_unstable_by(f64::total_cmp);
         lines.dedup();
         lines
     }
 
-    fn cover(&self, take: &mut impl FnMut(Patch)) {
+    fn cover(&self, kind: Field, take: &mut impl FnMut(Patch)) {
         let (us, vs) = (self.lines(0), self.lines(1));
         if us.len().saturating_mul(vs.len()) > MAX_FIELDS {
             let (k, at) = if us.len() >= vs.len() { (0, us[us.len() / 2]) } else { (1, vs[vs.len() / 2]) };
             let [low, high] = self.halves(k, at);
-            low.cover(take);
-            high.cover(take);
+            low.cover(kind, take);
+            high.cover(kind, take);
             return;
         }
-        Painting::new(self, us, vs).cover(take);
+        Painting::new(self, us, vs).cover(kind, take);
     }
 
     /// The parts on either side of a line.
@@ -169,6 +201,7 @@ impl Plane {
             walls: part(&self.walls, low),
             portals: part(&self.portals, low),
             solid: part(&self.solid, low),
+            fronts: part(&self.fronts, low),
         })
     }
 }
@@ -184,8 +217,12 @@ pub(super) struct Painting {
 /// What a field of a plane is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Field {
-    /// Open, or in no cell.
+    /// Inside a cell, or in none.
     Free,
+    /// Open.
+    Portal,
+    /// In a portal, and it stops lines of the direction in question.
+    Front,
     /// Inside a solid box.
     Solid,
     /// The wall of a cell.
@@ -198,7 +235,8 @@ impl Painting {
         let mut painting = Self { us, vs, fields: vec![Field::Free; n] };
         plane.solid.iter().for_each(|p| painting.paint(p, Field::Solid));
         plane.walls.iter().for_each(|p| painting.paint(p, Field::Wall));
-        plane.portals.iter().for_each(|p| painting.paint(p, Field::Free));
+        plane.portals.iter().for_each(|p| painting.paint(p, Field::Portal));
+        plane.fronts.iter().for_each(|p| painting.paint(p, Field::Front));
         painting
     }
 
@@ -212,22 +250,26 @@ impl Painting {
         let (v0, v1) = (place(&self.vs, patch.min[1]), place(&self.vs, patch.max[1]));
         let width = self.width();
         for v in v0..v1 {
-            self.fields[v * width + u0..v * width + u1].fill(field);
+            let fields = &mut self.fields[v * width + u0..v * width + u1];
+            match field {
+                Field::Front => fields.iter_mut().filter(|f| **f == Field::Portal).for_each(|f| *f = field),
+                _ => fields.fill(field),
+            }
         }
     }
 
-    /// Passes on rectangles that cover all walls, as large as walls and solid boxes allow.
-    fn cover(&self, take: &mut impl FnMut(Patch)) {
+    /// Passes on rectangles that cover all fields of a kind, as large as everything opaque allows.
+    fn cover(&self, kind: Field, take: &mut impl FnMut(Patch)) {
         if self.fields.is_empty() {
             return;
         }
         let (width, height) = (self.width(), self.vs.len() - 1);
         let mut covered = vec![false; self.fields.len()];
-        let opaque = |f: &Field| *f != Field::Free;
+        let opaque = |f: &Field| !matches!(f, Field::Free | Field::Portal);
         let row = |v: usize, u: [usize; 2]| self.fields[v * width + u[0]..v * width + u[1]].iter().all(opaque);
         let column = |u: usize, v: [usize; 2]| (v[0]..v[1]).all(|v| opaque(&self.fields[v * width + u]));
         for field in 0..self.fields.len() {
-            if covered[field] || self.fields[field] != Field::Wall {
+            if covered[field] || self.fields[field] != kind {
                 continue;
             }
             let (u, v) = (field % width, field / width);

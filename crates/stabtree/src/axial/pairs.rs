@@ -4,7 +4,7 @@ use super::atomic_bits::words_of;
 use super::witness_log::{FoundFor, Line, Proof, Worker};
 use super::{AxialSearch, PairsInDoubt};
 use sightlines_geometry::{Aabb, BoxTree};
-use sightlines_sightline::{BoxTarget, FreeLine, FreeSpan, ShaftLine, Verdict};
+use sightlines_sightline::{FreeLine, FreeSpan, ShaftLine, Verdict};
 use std::sync::atomic::Ordering::Relaxed;
 
 /// Linear programs spent on a pair of groups; one that takes more is halved.
@@ -68,7 +68,7 @@ impl AxialSearch<'_> {
                 self.halve([a, b], smaller);
                 return;
             }
-            match worker.shaft.decide(&na.bounds, &nb.bounds, BoxTarget::Inside, self.group_budget()) {
+            match worker.shaft.decide_either(&na.bounds, &nb.bounds, self.group_budget()) {
                 Verdict::Hidden(()) => return,
                 Verdict::Visible(ShaftLine::Free(line)) => {
                     self.follow(&line, [&na.bounds, &nb.bounds], FoundFor::Groups, worker);
@@ -113,7 +113,7 @@ impl AxialSearch<'_> {
                 return false;
             }
             let ask = apart(&na.bounds, &nb.bounds);
-            if ask && worker.shaft.decide(&na.bounds, &nb.bounds, BoxTarget::Inside, GROUP_BUDGET).is_hidden() {
+            if ask && worker.shaft.decide_either(&na.bounds, &nb.bounds, GROUP_BUDGET).is_hidden() {
                 return true;
             }
             if halves_first(&self.tree, [a, b]) {
@@ -133,7 +133,7 @@ impl AxialSearch<'_> {
         if !self.may_see_cell(a, b) || self.is_hidden_in_columns(a, b, worker) || self.cells.get(a, b) {
             return;
         }
-        match worker.shaft.decide(bounds[0], bounds[1], BoxTarget::Inside, CELL_BUDGET) {
+        match worker.shaft.decide_either(bounds[0], bounds[1], CELL_BUDGET) {
             Verdict::Hidden(()) => {}
             Verdict::Visible(ShaftLine::Free(line)) => self.follow(&line, bounds, FoundFor::Cells([a, b]), worker),
             Verdict::Visible(ShaftLine::Fine(_)) => self.join_without_line([a, b], worker),
@@ -161,7 +161,8 @@ impl AxialSearch<'_> {
         new
     }
 
-    /// Marks everything that a line passes: its cells see each other, and the objects on it.
+    /// Marks everything that a line passes: its cells see each other, and the objects on it. Where walls hide from one side, only cells before
+    /// an object are marked to see it.
     pub(super) fn follow(
         &self,
         line: &FreeLine,
@@ -254,9 +255,17 @@ impl AxialSearch<'_> {
         self.object_tree.visit(
             |b| span.may_meet(b),
             |object| {
-                if span.meets(&self.boxes[object as usize]) {
-                    self.objects.set_words(object as usize, &words);
+                let target = &self.boxes[object as usize];
+                if !span.meets(target) {
+                    return;
                 }
+                if !self.blockers.has_one_way() {
+                    return self.objects.set_words(object as usize, &words);
+                }
+                let leads = |place: &&usize| span.leads(&self.graph.cells()[self.cell_at[**place] as usize].bounds, target);
+                cells.iter().filter(leads).for_each(|&place| {
+                    self.objects.set(object as usize, place);
+                });
             },
         );
     }

@@ -13,7 +13,7 @@ use std::cell::Cell;
 
 fn by_pairs(graph: &CellGraph<Axial>, solid: &[Aabb<3>], objects: &[Aabb<3>], threads: usize) -> AxialVisibility {
     let options = SearchOptions { threads, ..SearchOptions::default() };
-    axial_visibility(graph, solid, objects, &options).expect("nobody cancels")
+    axial_visibility(graph, solid, &[], objects, &options).expect("nobody cancels")
 }
 
 fn by_sequences(graph: &CellGraph<Axial>, objects: &[Aabb<3>]) -> (BitMatrix, BitMatrix) {

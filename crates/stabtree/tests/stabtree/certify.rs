@@ -124,7 +124,7 @@ proptest! {
         out in prop::collection::vec(prop::bool::weighted(0.25), 1..7),
     ) {
         let (graph, solid) = cut(&faces, &out);
-        let seen = axial_visibility(&graph, &solid, &objects, &search()).expect("nobody cancels");
+        let seen = axial_visibility(&graph, &solid, &[], &objects, &search()).expect("nobody cancels");
         prop_assert_eq!(seen.n_assumed, 0);
         let proven = proven_objects(&graph, &seen.cells, &objects, &seen.objects);
         assert_proven(&seen.cells, &proven);
@@ -146,7 +146,7 @@ proptest! {
         out in prop::collection::vec(prop::bool::weighted(0.25), 1..7),
     ) {
         let (graph, solid) = cut(&faces, &out);
-        let seen = axial_visibility(&graph, &solid, &objects, &search()).expect("nobody cancels");
+        let seen = axial_visibility(&graph, &solid, &[], &objects, &search()).expect("nobody cancels");
         let none = BitMatrix::new(graph.n_cells(), objects.len());
         let proven = proven_objects(&graph, &seen.cells, &objects, &none);
         for (cell, object) in (0..graph.n_cells()).flat_map(|cell| (0..objects.len()).map(move |object| (cell, object))) {
@@ -162,7 +162,7 @@ proptest! {
         pick in any::<prop::sample::Index>(),
     ) {
         let (graph, solid) = cut(&faces, &out);
-        let seen = axial_visibility(&graph, &solid, &[], &search()).expect("nobody cancels");
+        let seen = axial_visibility(&graph, &solid, &[], &[], &search()).expect("nobody cancels");
         if graph.n_cells() > 1 {
             let (a, b) = pair(pick, graph.n_cells());
             assert_nothing_wrong(&seen.cells, &proven_space(&graph, &flipped(&seen.cells, a, b)));

@@ -22,7 +22,7 @@ fn options() -> SearchOptions<'static> {
 
 fn with_columns(graph: &CellGraph<Axial>, solid: &[Aabb<3>], objects: &[Aabb<3>], threads: usize) -> AxialVisibility {
     let options = SearchOptions { threads, ..options() };
-    axial_visibility(graph, solid, objects, &options).expect("nobody cancels")
+    axial_visibility(graph, solid, &[], objects, &options).expect("nobody cancels")
 }
 
 /// The search that keeps its lines for updates uses neither columns nor horizons.

@@ -46,7 +46,7 @@ fn every_pair_is_explained() {
     for faces in draw(&faces(), 150) {
         let graph = cut(&faces);
         let options = SearchOptions { threads: 1, ..SearchOptions::default() };
-        let seen = axial_visibility(&graph, &[], &[], &options).expect("nobody cancels").cells;
+        let seen = axial_visibility(&graph, &[], &[], &[], &options).expect("nobody cancels").cells;
         for (a, b) in graph.cell_ids().flat_map(|a| graph.cell_ids().map(move |b| (a, b))) {
             let explanation = explain_axial(&graph, &[], a, b, 2_000);
             let visible = explanation.is_visible();

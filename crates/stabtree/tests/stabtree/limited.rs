@@ -86,7 +86,7 @@ fn compare(name: &str, run: impl Fn(&[AxialFace<3>], &[bool], &[Aabb<3>], Option
 /// What cells see.
 fn cells(faces: &[AxialFace<3>], out: &[bool], objects: &[Aabb<3>], budget: Option<&dyn Budget>) -> Option<Found> {
     let (graph, solid) = cut(faces, out);
-    let seen = axial_visibility(&graph, &solid, objects, &options(1, budget)).expect("nobody cancels");
+    let seen = axial_visibility(&graph, &solid, &[], objects, &options(1, budget)).expect("nobody cancels");
     (graph.n_cells() > 0)
         .then_some(Found { visible: PairMask { boxes: seen.cells, objects: seen.objects }, left: seen.left })
 }
@@ -126,7 +126,7 @@ fn boxes_that_are_not_decided_are_visible() {
             all
         };
         let asked = PairMask { boxes: ones(eyes.len()), objects: ones(objects.len()) };
-        let seen = box_visibility(&graph, &solid, &eyes, objects, &asked, &options(1, budget)).expect("nobody cancels");
+        let seen = box_visibility(&graph, &solid, &[], &eyes, objects, &asked, &options(1, budget)).expect("nobody cancels");
         (!eyes.is_empty())
             .then_some(Found { visible: PairMask { boxes: seen.boxes, objects: seen.objects }, left: seen.left })
     });

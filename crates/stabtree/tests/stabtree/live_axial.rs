@@ -112,7 +112,7 @@ fn options(threads: usize) -> SearchOptions<'static> {
 }
 
 fn anew(state: &State) -> AxialVisibility {
-    axial_visibility(&state.graph, &state.solid, &state.objects, &options(1)).expect("nobody cancels")
+    axial_visibility(&state.graph, &state.solid, &[], &state.objects, &options(1)).expect("nobody cancels")
 }
 
 fn same(a: &AxialVisibility, b: &AxialVisibility) -> bool {

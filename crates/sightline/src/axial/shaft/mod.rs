@@ -212,6 +212,8 @@ impl<'a> Shaft<'a> {
     /// * `budget`: linear programs after which it gives up; the answer for a budget does not depend on
     ///   anything else.
     ///
+    /// Rectangles that hide [from one side](OneWayRectangle) stop only lines that come from their fronts, on the way from `from` to `to`.
+    ///
     /// Exact, except for [`Verdict::Undecided`], which errs on neither side. Rectangles inside of the boxes
     /// count only for lines that have to pass them between leaving the first and entering the second.
     pub fn decide(&mut self, from: &Aabb<3>, to: &Aabb<3>, target: BoxTarget, budget: u32) -> ShaftVerdict {
@@ -244,8 +246,21 @@ impl<'a> Shaft<'a> {
         Verdict::Hidden(())
     }
 
+    /// Whether an open set of lines leads from the inside of one box to that of the other, in either direction: as [`Self::decide`], and where
+    /// rectangles hide from one side and no line leads from `a` to `b`, from `b` to `a` as well.
+    pub fn decide_either(&mut self, a: &Aabb<3>, b: &Aabb<3>, budget: u32) -> ShaftVerdict {
+        let forth = self.decide(a, b, BoxTarget::Inside, budget);
+        if forth.is_hidden() && self.blockers.has_one_way() {
+            return self.decide(b, a, BoxTarget::Inside, budget);
+        }
+        forth
+    }
+
     /// Whether no line between the boxes gets past a rectangle.
     fn covers(&self, ends: &Ends<'_>, rectangle: u32) -> bool {
+        if !self.blockers.stops(rectangle, ends.octant) {
+            return false;
+        }
         let mut ways = 0;
         ends.ways_past(self.blockers.rectangle(rectangle), self.blockers.axis(rectangle), |_| ways += 1);
         ways == 0
@@ -262,9 +277,10 @@ impl<'a> Shaft<'a> {
                 b[k] += (from.max[k] - from.min[k]) / 64.0;
             }
         }
-        let ray = Ray::through(&Line::new(a, b)?)?;
+        let line = Line::new(a, b)?;
+        let ray = Ray::through(&line)?;
         let times = [ray.span(from)[1], ray.span(to)[0]];
-        self.look(&ray, times, target);
+        self.look(&ray, line.octant(), times, target);
         self.hits.sort_by_cached_key(|&i| {
             std::cmp::Reverse((filled(self.blockers.rectangle(i), self.blockers.axis(i), from, to) * 1e6) as u32)
         });
@@ -272,12 +288,12 @@ impl<'a> Shaft<'a> {
         Some(())
     }
 
-    /// Collects the rectangles that a ray meets between two times.
-    fn look(&mut self, ray: &Ray, times: [f64; 2], target: BoxTarget) {
+    /// Collects the rectangles that stop lines of an octant, and that a ray meets between two times.
+    fn look(&mut self, ray: &Ray, octant: Octant, times: [f64; 2], target: BoxTarget) {
         self.hits.clear();
         let hits = &mut self.hits;
         let blockers = self.blockers;
-        blockers.met(ray, times, |i| {
+        blockers.met(ray, octant, times, |i| {
             let rectangle = blockers.rectangle(i);
             let axis = blockers.axis(i);
             let at = ray.time(axis, rectangle.min[axis]);
@@ -289,7 +305,7 @@ impl<'a> Shaft<'a> {
 
     /// A rectangle in the way of a ray that the current branch has not gone past.
     fn ahead(&mut self, ends: &Ends<'_>, ray: &Ray) -> Option<u32> {
-        self.look(ray, [ray.span(ends.from)[1], ray.span(ends.to)[0]], ends.target);
+        self.look(ray, ends.octant, [ray.span(ends.from)[1], ray.span(ends.to)[0]], ends.target);
         let passed = &self.passed;
         self.hits.retain(|hit| !passed.contains(hit));
         self.best(ends, ray)
@@ -483,8 +499,8 @@ impl<'a> Shaft<'a> {
         });
         let Some(line) = fine else { return Next::Unknown };
         let Some(ray) = Ray::new(line.start_and_pace()) else { return Next::Unknown };
-        match self.first_met(ends, &|row| line.obeys(row), |each| self.blockers.near_rounded(&ray, line.origin(), each))
-        {
+        let near = |each: &mut dyn FnMut(u32)| self.blockers.near_rounded(&ray, ends.octant, line.origin(), each);
+        match self.first_met(ends, &|row| line.obeys(row), near) {
             None => Next::Open(ShaftLine::Fine(line)),
             Some(blocker) if new(blocker) => Next::Past(blocker),
             Some(_) => Next::Unknown,
@@ -506,7 +522,7 @@ impl<'a> Shaft<'a> {
         }
         let free = FreeLine::new(line, octant).ok_or(None)?;
         let times = [free.ray.span(ends.from)[1], free.ray.span(ends.to)[0]];
-        match self.first_met(ends, &obeys, |each| self.blockers.near(&free.ray, times, each)) {
+        match self.first_met(ends, &obeys, |each| self.blockers.near(&free.ray, octant, times, each)) {
             None => Ok(free),
             touched => Err(touched),
         }

@@ -73,6 +73,9 @@ impl FreeLine {
     /// How far the line goes both ways from where it leaves `from` and enters `to`, the boxes that it
     /// was found for. O(log n) for each rectangle near that part of it, and a little beyond.
     pub fn span(&self, from: &Aabb<3>, to: &Aabb<3>, blockers: &Blockers) -> FreeSpan {
+        // A line that was found from `to` to `from` is followed all the same.
+        let is_back = self.ray.span(to)[0] < self.ray.span(from)[0];
+        let [from, to] = if is_back { [to, from] } else { [from, to] };
         let (leave, enter) = (self.ray.span(from)[1], self.ray.span(to)[0]);
         let middle = leave + (enter - leave) / 2.0;
         let [start, end] = [self.ray.span(from)[0], self.ray.span(to)[1]];
@@ -95,7 +98,7 @@ impl FreeLine {
     /// The rectangles met: when, and their planes. All that are met between two times are among them.
     fn met(&self, times: [f64; 2], blockers: &Blockers) -> Vec<(f64, usize, f64)> {
         let mut met = Vec::new();
-        blockers.near(&self.ray, times, |i| {
+        blockers.near(&self.ray, self.octant, times, |i| {
             if !blockers.missed(i, &self.line, self.octant) {
                 let (axis, at) = (blockers.axis(i), blockers.rectangle(i).min[blockers.axis(i)]);
                 met.push((self.ray.time(axis, at), axis, at));
@@ -136,6 +139,13 @@ impl FreeSpan {
         let [enter, leave] = self.free.ray.span(bounds);
         let [before, behind] = self.times;
         apart(enter.max(before), leave.min(behind)) && self.free.passes(bounds)
+    }
+
+    /// Whether a line that the free part [passes](Self::passes_some_of) a box on, and [meets](Self::meets) another, certainly leads from
+    /// some of the one to some of the other in its direction.
+    pub fn leads(&self, from: &Aabb<3>, to: &Aabb<3>) -> bool {
+        let ([enter, _], [_, leave]) = (self.free.ray.span(from), self.free.ray.span(to));
+        apart(enter.max(self.times[0]), leave)
     }
 
     /// Whether the free part, with its ends, meets a closed box in more than its edges. Exact.

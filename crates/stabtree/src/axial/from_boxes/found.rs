@@ -175,8 +175,11 @@ impl FoundVisible<'_> {
         self.of_objects.tree.visit(
             |node| span.may_meet(node),
             |i| {
-                if span.meets(&self.of_objects.boxes[i as usize]) {
-                    passed.iter().for_each(|&eye| self.see(Kind::Object, eye, i as usize));
+                let target = &self.of_objects.boxes[i as usize];
+                if span.meets(target) {
+                    let is_both_ways = !self.blockers.has_one_way();
+                    let leads = |eye: &&usize| is_both_ways || span.leads(&self.of_boxes.boxes[**eye], target);
+                    passed.iter().filter(leads).for_each(|&eye| self.see(Kind::Object, eye, i as usize));
                 }
             },
         );

@@ -13,16 +13,16 @@ mod targets;
 use super::atomic_bits::AtomicBitMatrix;
 use super::kept::OF;
 use super::on_threads;
-use super::opaque::opaque_rectangles;
+use super::opaque::blockers_of;
 use super::pairs::{CELL_BUDGET, GROUP_BUDGET, apart};
 use crate::search::SearchOptions;
 use found::FoundVisible;
 use rayon::prelude::*;
 use sightlines_cells::{Axial, CellGraph};
-use sightlines_geometry::Aabb;
+use sightlines_geometry::{Aabb, OneWayRectangle};
 use sightlines_progress::{Allowance, Counter, Halt, Phase, Shares, Units, shares_of};
 use sightlines_pvs::BitMatrix;
-use sightlines_sightline::{Blockers, BoxTarget, Shaft, ShaftCounters, ShaftLine, Verdict};
+use sightlines_sightline::{BoxTarget, Shaft, ShaftCounters, ShaftLine, ShaftVerdict, Verdict};
 use std::collections::VecDeque;
 use targets::{CellLocator, Targets};
 
@@ -65,7 +65,7 @@ pub struct BoxVisibility {
 ///   each other if they touch, or if an open set of lines leads from inside one to inside the other without meeting a
 ///   wall between leaving the first and entering the second. Flat boxes, and those thinner than 2^-32 of the scene, are
 ///   thickened slightly.
-/// * `objects`: as for [`axial_visibility`](super::axial_visibility).
+/// * `fronts`, `objects`: as for [`axial_visibility`](super::axial_visibility).
 /// * `asked`: the requested pairs.
 ///
 /// Exact, except for thin boxes, which may see more, and pairs that take thousands of linear programs, which count as
@@ -80,6 +80,7 @@ pub struct BoxVisibility {
 pub fn box_visibility(
     graph: &CellGraph<Axial>,
     solid: &[Aabb<3>],
+    fronts: &[OneWayRectangle],
     boxes: &[Aabb<3>],
     objects: &[Aabb<3>],
     asked: &PairMask,
@@ -87,11 +88,11 @@ pub fn box_visibility(
 ) -> Result<BoxVisibility, Halt> {
     let fits = |m: &BitMatrix, n_cols: usize| m.n_rows() == boxes.len() && m.n_cols() == n_cols;
     assert!(fits(&asked.boxes, boxes.len()) && fits(&asked.objects, objects.len()), "a row for each box");
-    let blockers = Blockers::new(opaque_rectangles(graph, solid));
+    let blockers = blockers_of(graph, solid, fronts);
     let places = CellLocator::new(graph);
     let thick: Vec<Aabb<3>> = boxes.iter().map(|b| places.thickened(b)).collect();
-    let of_boxes = Targets::new(&thick, boxes, BoxTarget::Inside, &places);
-    let of_objects = Targets::new(objects, objects, BoxTarget::Surface, &places);
+    let of_boxes = Targets::new(&thick, boxes, &places);
+    let of_objects = Targets::new(objects, objects, &places);
     let known = FoundVisible {
         boxes: AtomicBitMatrix::new(boxes.len(), boxes.len()),
         objects: AtomicBitMatrix::new(boxes.len(), objects.len()),
@@ -255,7 +256,7 @@ impl BoxSearch<'_, '_, '_> {
             // If some member of a group is visible, nothing hides the whole group.
             let none_seen = || within.iter().all(|&i| !marks.get(self.id, i as usize));
             if n_left > 1 && apart(self.thick, &node.bounds) && none_seen() {
-                match self.shaft.decide(self.thick, &node.bounds, targets.target, GROUP_BUDGET) {
+                match self.decide(kind, &node.bounds, GROUP_BUDGET) {
                     Verdict::Hidden(()) => continue,
                     Verdict::Visible(ShaftLine::Free(line)) => known.follow(&line, [self.thick, &node.bounds]),
                     Verdict::Visible(ShaftLine::Fine(_)) | Verdict::Undecided(_) => {}
@@ -266,10 +267,18 @@ impl BoxSearch<'_, '_, '_> {
         next.into()
     }
 
+    /// Boxes see each other if either sees the other.
+    fn decide(&mut self, kind: Kind, target: &Aabb<3>, budget: u32) -> ShaftVerdict {
+        match kind {
+            Kind::Box => self.shaft.decide_either(self.thick, target, budget),
+            Kind::Object => self.shaft.decide(self.thick, target, BoxTarget::Surface, budget),
+        }
+    }
+
     fn settle(&mut self, kind: Kind, targets: &Targets<'_>, i: usize) {
         let target = &targets.boxes[i];
         let sight = if apart(self.thick, target) {
-            self.shaft.decide(self.thick, target, targets.target, CELL_BUDGET)
+            self.decide(kind, target, CELL_BUDGET)
         } else {
             // After thickening, they overlap.
             return self.known.see(kind, self.id, i);

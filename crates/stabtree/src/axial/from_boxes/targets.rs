@@ -6,7 +6,6 @@ use super::super::slivers::THIN;
 use rayon::prelude::*;
 use sightlines_cells::{Axial, CellGraph};
 use sightlines_geometry::{Aabb, BoxTree};
-use sightlines_sightline::BoxTarget;
 
 /// Locates boxes among the cells.
 pub(super) struct CellLocator {
@@ -67,7 +66,6 @@ pub(super) struct Targets<'a> {
     pub(super) boxes: &'a [Aabb<3>],
     /// Boxes that are visible if they are touched.
     pub(super) own: &'a [Aabb<3>],
-    pub(super) target: BoxTarget,
     pub(super) tree: BoxTree<3>,
     pub(super) components: Vec<Vec<u32>>,
     /// Whether each extends beyond the cells.
@@ -75,11 +73,10 @@ pub(super) struct Targets<'a> {
 }
 
 impl<'a> Targets<'a> {
-    pub(super) fn new(boxes: &'a [Aabb<3>], own: &'a [Aabb<3>], target: BoxTarget, places: &CellLocator) -> Self {
+    pub(super) fn new(boxes: &'a [Aabb<3>], own: &'a [Aabb<3>], places: &CellLocator) -> Self {
         Self {
             boxes,
             own,
-            target,
             tree: BoxTree::build(boxes, 1),
             components: own.par_iter().map(|b| places.components(b)).collect(),
             outside: own.iter().map(|b| !b.is_empty() && !places.holds(b)).collect(),
