@@ -51,7 +51,7 @@ fn make_real() -> Result<(), Failure> {
     };
     let (scene, table) =
         (Path::new(&data).join("scenes/office_a/office_a.glb"), folder().join("assets").join("office.pvs"));
-    program(&["build", "-q", "--both-sides", text(&scene), "-o", text(&table)])
+    program(&["build", "-q", text(&scene), "-o", text(&table)])
 }
 
 fn text(path: &Path) -> &str {

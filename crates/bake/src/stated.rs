@@ -52,8 +52,7 @@ pub fn stated_reading(info: &[(String, String)]) -> SceneReadOptions {
         opaque: patterns("opaque"),
         see_through: patterns("see-through"),
         still: patterns("still"),
-        single_sided: value("single-sided").is_some(),
-        both_sides: value("both-sides").is_some(),
+        backs: value("backs").and_then(|name| name.parse().ok()).unwrap_or_default(),
         scene: value("scene").map(str::to_owned),
     }
 }

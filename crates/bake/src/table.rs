@@ -3,7 +3,7 @@
 use crate::objects::{cell_objects, object_lists};
 use sightlines_cells::{Axial, AxialDoor, CellGraph, ConvexCell2, PlanObject, Planar, graph::Portal};
 use sightlines_formats::SceneInfo;
-use sightlines_formats::scene::{LengthUnit, SceneReadOptions};
+use sightlines_formats::scene::{BackFaces, LengthUnit, SceneReadOptions};
 use sightlines_geometry::{Aabb, Point2, Portal2};
 use sightlines_pvs::{
     BitMatrix, CellRecord, Locator, ObjectRecord, PortalRecord, Table, TableError, TableKind, TableParts,
@@ -88,12 +88,9 @@ pub(crate) fn state_file(parts: &mut TableParts, file: Option<&SceneInfo>) {
         parts.info.push(("unit".to_owned(), "metre".to_owned()));
     }
     // Whoever checks the table reads the scene likewise.
-    let SceneReadOptions { opaque, see_through, still, single_sided, both_sides, scene } = &file.read_with;
-    if *single_sided {
-        parts.info.push(("single-sided".to_owned(), "see-through".to_owned()));
-    }
-    if *both_sides {
-        parts.info.push(("both-sides".to_owned(), "drawn".to_owned()));
+    let SceneReadOptions { opaque, see_through, still, backs, scene } = &file.read_with;
+    if *backs != BackFaces::default() {
+        parts.info.push(("backs".to_owned(), backs.name().to_owned()));
     }
     parts.info.extend(scene.iter().map(|scene| ("scene".to_owned(), scene.clone())));
     for (key, patterns) in [("opaque", opaque), ("see-through", see_through), ("still", still)] {

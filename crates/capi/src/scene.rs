@@ -27,7 +27,8 @@ pub const SL_OBJECT_SEE_THROUGH: u32 = 1;
 pub const SL_OBJECT_DOOR: u32 = 2;
 /// Its faces are mirrors.
 pub const SL_OBJECT_MIRROR: u32 = 4;
-/// Its triangles are seen from the front only, counter-clockwise; they hide from both sides all the same.
+/// Engines draw the fronts of its triangles only, counter-clockwise: they are seen from there, and hide from there; those of closed objects hide
+/// from both sides.
 pub const SL_OBJECT_SINGLE_SIDED: u32 = 8;
 /// It moves, and may be anywhere, unless `sl_scene_set_motion` says where it stays; it hides nothing.
 pub const SL_OBJECT_MOVING: u32 = 16;
@@ -61,8 +62,8 @@ impl Parts {
             .and_then(|scene| scene.with_see_through(self.with(SL_OBJECT_SEE_THROUGH | SL_OBJECT_DOOR)))
             .and_then(|scene| scene.with_doors(self.with(SL_OBJECT_DOOR)))
             .and_then(|scene| scene.with_mirrors(self.with(SL_OBJECT_MIRROR)))
-            .and_then(|scene| scene.with_single_sided(self.with(SL_OBJECT_SINGLE_SIDED)))
             .and_then(|scene| scene.with_moving(moving))
+            .and_then(|scene| scene.with_backs_culled(self.with(SL_OBJECT_SINGLE_SIDED)))
             .map_err(|error| Failure::new(SL_ERROR_GEOMETRY, error.to_string()))
     }
 

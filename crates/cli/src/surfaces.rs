@@ -6,7 +6,7 @@ use serde::Serialize;
 use sightlines::bake::{Backs, stated_reading};
 use sightlines::cells::Scene;
 use sightlines::formats::SceneFile;
-use sightlines::formats::scene::{NamePattern, Role, SceneInfo, SceneReadOptions};
+use sightlines::formats::scene::{BackFaces, NamePattern, Role, SceneInfo, SceneReadOptions};
 use sightlines::pvs::Table;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -30,15 +30,17 @@ pub(crate) struct SurfaceArgs {
     /// move them; by the same names. Does not hold for skins and morph targets
     #[arg(long, help_heading = "Input", value_name = "PATTERN")]
     still: Vec<NamePattern>,
-    /// glTF: viewers can get behind single-sided walls (materials that are not doubleSided), where engines draw nothing
-    /// of them. Such walls then hide from their front only, and only by the method line-space, which auto takes;
-    /// sightlines and multifocal look past them. Closed objects hide from both sides. Without this option all such walls
-    /// do, which is right if no viewer ever gets behind one
-    #[arg(long, help_heading = "Input")]
+    /// glTF: what your engine does with the backs of single-sided faces (materials that are not doubleSided). either: such
+    /// faces hide from their front only, and are seen from both sides, which is right for every engine; culled: they are
+    /// seen from the front only; drawn: they hide from both sides. Closed objects hide from both sides in any case
+    /// [default: either]
+    #[arg(long, help_heading = "Input", value_name = "WHAT", conflicts_with_all = ["single_sided", "both_sides"])]
+    backs: Option<BackFaces>,
+    /// The old name of --backs culled; with --both-sides that of --backs either
+    #[arg(long, hide = true)]
     single_sided: bool,
-    /// glTF: both sides of all faces are drawn. Without it faces that are not doubleSided are not seen from behind, as in
-    /// engines
-    #[arg(long, help_heading = "Input")]
+    /// The old name of --backs drawn
+    #[arg(long, hide = true)]
     both_sides: bool,
     /// A glTF with several scenes: the one to read, by its name or index [default: the default scene]
     #[arg(long, help_heading = "Input", value_name = "NAME")]
@@ -48,8 +50,24 @@ pub(crate) struct SurfaceArgs {
 impl SurfaceArgs {
     /// These arguments as options of readers.
     pub(crate) fn options(&self) -> SceneReadOptions {
-        let Self { opaque, see_through, still, single_sided, both_sides, scene_name } = self.clone();
-        SceneReadOptions { opaque, see_through, still, single_sided, both_sides, scene: scene_name }
+        let Self { opaque, see_through, still, scene_name, .. } = self.clone();
+        SceneReadOptions { opaque, see_through, still, backs: self.backs().unwrap_or_default(), scene: scene_name }
+    }
+
+    /// The same for what shows walls and no views: backs count as drawn where nothing is said.
+    pub(crate) fn options_of_walls(&self) -> SceneReadOptions {
+        SceneReadOptions { backs: self.backs().unwrap_or(BackFaces::Drawn), ..self.options() }
+    }
+
+    fn backs(&self) -> Option<BackFaces> {
+        let old = match (self.single_sided, self.both_sides) {
+            (false, false) => return self.backs,
+            (true, false) => BackFaces::Culled,
+            (false, true) => BackFaces::Drawn,
+            (true, true) => BackFaces::Either,
+        };
+        tracing::warn!("--single-sided and --both-sides are old names: use --backs {}", old.name());
+        Some(old)
     }
 
     /// The same, and what the scene of a table was read with, by the information of that table.
@@ -58,20 +76,18 @@ impl SurfaceArgs {
         options.opaque.extend(stated.opaque);
         options.see_through.extend(stated.see_through);
         options.still.extend(stated.still);
-        options.single_sided |= stated.single_sided;
-        options.both_sides |= stated.both_sides;
+        options.backs = self.backs().unwrap_or(stated.backs);
         options.scene = options.scene.or(stated.scene);
         options
     }
 
     /// Each argument by its name, and whether it was given.
-    pub(crate) fn given(&self) -> [(&'static str, bool); 6] {
+    pub(crate) fn given(&self) -> [(&'static str, bool); 5] {
         [
             ("--see-through", !self.see_through.is_empty()),
             ("--opaque", !self.opaque.is_empty()),
             ("--still", !self.still.is_empty()),
-            ("--single-sided", self.single_sided),
-            ("--both-sides", self.both_sides),
+            ("--backs", self.backs.is_some() || self.single_sided || self.both_sides),
             ("--scene-name", self.scene_name.is_some()),
         ]
     }
@@ -117,8 +133,10 @@ pub(crate) struct Surfaces {
     n_ignored_view_volumes: usize,
     /// Names of the first few view volumes that are ignored.
     ignored_view_volumes: Vec<String>,
-    /// Triangles that hide, from both sides, of which engines draw the fronts only.
+    /// Triangles that hide, of which engines may draw the fronts only.
     n_single_sided_triangles: usize,
+    /// Those of them that hide from their front only, as they are not of a closed object.
+    n_front_occluding_triangles: usize,
     /// If triangles that hide have one side: how many of them viewers in the cells of the table can see from behind.
     #[serde(skip_serializing_if = "Option::is_none")]
     backs: Option<SeenBacks>,
@@ -135,7 +153,8 @@ struct SeenBacks {
 
 impl Surfaces {
     pub(crate) fn new(file: &SceneFile) -> Self {
-        let SceneInfo { surfaces, n_single_sided_triangles, ignored_view_volumes, .. } = &file.info;
+        let SceneInfo { surfaces, n_single_sided_triangles, n_front_occluding_triangles, .. } = &file.info;
+        let ignored_view_volumes = &file.info.ignored_view_volumes;
         let mut groups: BTreeMap<(Role, bool, &str), Vec<u32>> = BTreeMap::new();
         for found in surfaces {
             groups.entry((found.role, found.moves, &found.reason)).or_default().push(found.object);
@@ -155,6 +174,7 @@ impl Surfaces {
             n_ignored_view_volumes: ignored_view_volumes.len(),
             ignored_view_volumes: ignored_view_volumes.iter().take(MOST_NAMES).map(name).collect(),
             n_single_sided_triangles: *n_single_sided_triangles,
+            n_front_occluding_triangles: *n_front_occluding_triangles,
             backs: None,
         }
     }
@@ -188,15 +208,11 @@ impl Surfaces {
             all.push(count(self.n_ignored_view_volumes as u64, "flat view volume") + " ignored");
         }
         if self.n_single_sided_triangles > 0 {
-            let behind = match self.backs {
-                Some(SeenBacks { n_at_most: 0, .. }) => ", whose backs no viewer sees".to_owned(),
-                Some(SeenBacks { n_at_most, n_by_rays }) => format!(
-                    "; viewers see the backs of {n_by_rays} to {n_at_most}, through which engines show what is behind unless they \
-                     draw backs: see --single-sided"
-                ),
-                None => String::new(),
+            let fronts = match self.n_front_occluding_triangles {
+                0 => String::new(),
+                n => format!(", of which {n} hide from their fronts only"),
             };
-            all.push(count(self.n_single_sided_triangles as u64, "single-sided triangle") + &behind);
+            all.push(count(self.n_single_sided_triangles as u64, "single-sided triangle") + &fronts);
         }
         all
     }
@@ -218,7 +234,8 @@ impl fmt::Display for Surfaces {
         }
         if self.n_single_sided_triangles > 0 {
             let triangles = count(self.n_single_sided_triangles as u64, "triangle");
-            writeln!(f, "single-sided   {triangles}, which hide from both sides; engines draw their fronts only")?;
+            let n = self.n_front_occluding_triangles;
+            writeln!(f, "single-sided   {triangles}; {n} hide from their fronts only, and the others, of closed objects, from both sides")?;
             if let Some(SeenBacks { n_at_most, n_by_rays }) = self.backs {
                 writeln!(
                     f,

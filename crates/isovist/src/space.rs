@@ -66,7 +66,7 @@ pub struct Surroundings<'a> {
 struct Face {
     corners: [Point3; 3],
     object: u32,
-    /// Seen from the front only: the side that it runs counter-clockwise on.
+    /// It is passed from behind: its front is the side that it runs counter-clockwise on.
     single_sided: bool,
 }
 
@@ -74,8 +74,9 @@ impl<'a> Surroundings<'a> {
     /// Prepares a scene: O(n log² n) for n triangles.
     pub fn new(scene: &'a Scene) -> Self {
         let mut faces = Vec::new();
-        for (object, o) in scene.occluders() {
-            let single_sided = scene.is_single_sided(object);
+        let fronts = scene.front_occluders().iter().map(|&object| (object, &scene.objects()[object as usize]));
+        for (object, o) in scene.occluders().chain(fronts) {
+            let single_sided = scene.is_single_sided(object) || scene.hides_from_front(object);
             faces.extend(o.corners().map(|corners| Face { corners, object, single_sided }));
         }
         let boxes: Vec<Aabb<3>> = faces.iter().map(|face| Aabb::around(face.corners)).collect();

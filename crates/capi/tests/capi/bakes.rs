@@ -99,7 +99,7 @@ fn flags_and_options_are_those_of_rust() {
         .with_see_through(with(SL_OBJECT_SEE_THROUGH | SL_OBJECT_DOOR))
         .and_then(|scene| scene.with_doors(with(SL_OBJECT_DOOR)))
         .and_then(|scene| scene.with_mirrors(with(SL_OBJECT_MIRROR)))
-        .and_then(|scene| scene.with_single_sided(with(SL_OBJECT_SINGLE_SIDED)))
+        .and_then(|scene| scene.with_backs_culled(with(SL_OBJECT_SINGLE_SIDED)))
         .and_then(|scene| scene.with_moving(moving.iter().map(moves).collect()))
         .expect("a scene");
     let bounds = scene.bounds();

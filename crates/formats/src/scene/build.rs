@@ -10,6 +10,17 @@ use sightlines_cells::{MovingObject, Point3, Scene, SceneObject};
 use sightlines_geometry::Aabb;
 use sightlines_pvs::ObjectSource;
 
+/// What single-sided triangles hide that are not of a closed object.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum OpenSides {
+    /// What is behind them, from both sides.
+    HideBoth,
+    /// What is behind them for who is in front.
+    HideFront,
+    /// Nothing.
+    HideNone,
+}
+
 /// A mesh of which every corner is used.
 #[derive(Debug, Default)]
 pub(super) struct Compact {
@@ -44,6 +55,7 @@ pub(super) struct Builder {
     surfaces: Vec<Classified>,
     n_degenerate: usize,
     n_single_sided: usize,
+    n_front_occluding: usize,
     fronts_only: Vec<u32>,
     /// Those that hide from the fronts of their triangles only.
     front_occluders: Vec<u32>,
@@ -118,19 +130,20 @@ impl Builder {
         self.fronts_only.extend(self.last());
     }
 
-    /// Marks the object that was added last as one that hides from the fronts of its triangles only.
-    pub(super) fn mark_front_occluder(&mut self) {
-        self.front_occluders.extend(self.last());
-    }
-
-    /// Counts the triangles of the object that was added last as single-sided. If such things are to hide nothing, and it is not
-    /// closed, returns what it is instead.
-    pub(super) fn count_single_sided(&mut self, hides_nothing: bool) -> Option<Classification> {
+    /// Counts the triangles of the object that was added last as single-sided. Returns what it is instead if it hides nothing: it is not closed,
+    /// and it is not known which sides are its fronts.
+    pub(super) fn count_single_sided(&mut self, if_open: OpenSides) -> Option<Classification> {
         let object = self.objects.last()?;
-        if hides_nothing && !object.triangles.is_empty() && !is_closed_outwards(object) {
-            return Some(Classification::see_through("single sides".to_owned()));
-        }
+        let is_open = || !object.triangles.is_empty() && !is_closed_outwards(object);
         let n = object.triangles.len();
+        match if_open {
+            OpenSides::HideFront if is_open() => {
+                self.n_front_occluding += n;
+                self.front_occluders.extend(self.last());
+            }
+            OpenSides::HideNone if is_open() => return Some(Classification::see_through("single sides".to_owned())),
+            _ => {}
+        }
         self.n_single_sided += n;
         None
     }
@@ -214,6 +227,7 @@ impl Builder {
             n_triangles,
             n_degenerate_triangles: n_degenerate,
             n_single_sided_triangles: self.n_single_sided,
+            n_front_occluding_triangles: self.n_front_occluding,
             simplified,
             read_with: read_with.clone(),
             surfaces: self.surfaces,

@@ -1,7 +1,7 @@
 //! glTF 2.0: from a document to objects in world coordinates.
 
 use super::buffers::{Buffers, split_glb, upgrade};
-use super::build::Builder;
+use super::build::{Builder, OpenSides};
 use super::extras::{Stated, StatedMoves, StatedRole};
 use super::json::Document;
 use super::material::{self, shows_fronts_only};
@@ -246,7 +246,7 @@ fn build(
             }
             if class.as_ref().is_some_and(|class| class.shuts) {
                 let is_single_sided = materials.iter().any(|&m| is_single_sided(document, m));
-                builder.mark_door(classifier.hides_no_single_sides() && is_single_sided);
+                builder.mark_door(classifier.hides_from_fronts_only() && is_single_sided);
             }
             let fronts_only = |&m: &Option<usize>| m.is_none_or(|m| shows_fronts_only(document, m));
             if !classifier.shows_both_sides() && at.world.keeps_sides() && materials.iter().all(fronts_only) {
@@ -257,12 +257,12 @@ fn build(
             {
                 // Who says by name that something hides has the last word.
                 let is_vouched_for = class.as_ref().is_some_and(|class| class.is_vouched_for);
-                if let Some(other) = builder.count_single_sided(classifier.hides_no_single_sides() && !is_vouched_for) {
-                    class = Some(other);
-                    if at.world.keeps_sides() {
-                        builder.mark_front_occluder();
-                    }
-                }
+                let if_open = match at.world.keeps_sides() {
+                    _ if is_vouched_for || !classifier.hides_from_fronts_only() => OpenSides::HideBoth,
+                    true => OpenSides::HideFront,
+                    false => OpenSides::HideNone,
+                };
+                class = builder.count_single_sided(if_open).or(class);
             }
             if let Some(class) = class {
                 builder.classify(class, moved.and_then(|moved| moved.within));

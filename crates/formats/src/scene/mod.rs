@@ -49,7 +49,7 @@ pub use pattern::{EmptyPattern, NamePattern};
 pub use rewrite::RewriteError;
 pub use role::Role;
 pub use source::{GltfSource, ObjectOrigin, parse_glb_with_source};
-pub use surface::{Classified, SceneReadOptions};
+pub use surface::{BackFaces, Classified, ParseBackFacesError, SceneReadOptions};
 pub use write::{Rounding, write_glb, write_rounded_glb, write_simplified_glb};
 pub use write_error::SceneWriteError;
 pub use write_obj::{write_obj, write_simplified_obj};
@@ -101,6 +101,8 @@ pub struct SceneInfo {
     pub n_degenerate_triangles: usize,
     /// Number of triangles that hide, of which engines draw the fronts only (glTF: materials that are not `doubleSided`).
     pub n_single_sided_triangles: usize,
+    /// Those of them that hide from their front only, as they are not of a closed object.
+    pub n_front_occluding_triangles: usize,
     /// Set if the file states that its scene was made from one with more triangles.
     pub simplified: Option<Simplification>,
     /// What it was read with.

@@ -5,6 +5,7 @@
 
 use super::pattern::NamePattern;
 use super::role::{Role, hull_of};
+use std::str::FromStr;
 
 /// How to read a scene, beside what its file says. By default the file alone decides.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -17,17 +18,54 @@ pub struct SceneReadOptions {
     /// Objects that never move, by the same names, whatever animations, physics or extensions of the file do to them. Does not
     /// hold for meshes that are deformed: skins and morph targets.
     pub still: Vec<NamePattern>,
-    /// Whether objects of which engines draw the fronts only [hide from the front](sightlines_cells::Scene::front_occluders) alone, unless they are closed,
-    /// with their fronts outwards: an eye behind a single wall of that kind looks through it. By default they hide from both sides, which
-    /// holds for eyes that see the back of none. glTF: materials that are not `doubleSided`; an OBJ does not say.
-    pub single_sided: bool,
-    /// Whether both sides of all faces are drawn, whatever the file says. By default faces of which engines draw the fronts only are not
-    /// seen from behind.
-    pub both_sides: bool,
+    /// What engines do with the backs of single-sided faces. glTF: those of materials that are not `doubleSided`; an OBJ does not say.
+    pub backs: BackFaces,
     /// Of a glTF with several scenes the one to read, by its name, or by its index if none has that name; without it the
     /// default scene.
     pub scene: Option<String>,
 }
+
+/// What is known of the backs of single-sided faces.
+///
+/// Objects that are closed, with their fronts outwards, hide from both sides in any case: whoever is outside of them sees no back.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
+pub enum BackFaces {
+    /// Nothing: such faces [hide from the front](sightlines_cells::Scene::front_occluders) alone, and are seen from both sides. Right for every
+    /// engine.
+    #[default]
+    Either,
+    /// They are not drawn: such faces hide from the front alone, and are seen from there alone.
+    Culled,
+    /// They are drawn: such faces hide and are seen from both sides.
+    Drawn,
+}
+
+impl BackFaces {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Either, Self::Culled, Self::Drawn];
+
+    /// Lower-case name: that of options, and of the information of a table.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Either => "either",
+            Self::Culled => "culled",
+            Self::Drawn => "drawn",
+        }
+    }
+}
+
+impl FromStr for BackFaces {
+    type Err = ParseBackFacesError;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        Self::ALL.into_iter().find(|b| b.name() == text).ok_or_else(|| ParseBackFacesError(text.to_owned()))
+    }
+}
+
+/// Not a name of what is known of backs.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("'{0}' says nothing of backs: use either, culled or drawn")]
+pub struct ParseBackFacesError(pub String);
 
 /// An object that is not simply a wall, or is one in spite of what its file states.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -226,7 +264,7 @@ impl<'a> Classifier<'a> {
             }
             (role, None) => match (opaque, role, see_through) {
                 // Of what is a wall anyway there is nothing to say.
-                (Some(_), None, None) if still.is_none() && !self.options.single_sided => None,
+                (Some(_), None, None) if still.is_none() && !self.hides_from_fronts_only() => None,
                 (Some(pattern), ..) => class(Role::Occluder, by(pattern)),
                 (None, Some((role, reason)), _) => class(role, reason),
                 (None, None, Some(reason)) => class(Role::SeeThrough, reason),
@@ -238,14 +276,14 @@ impl<'a> Classifier<'a> {
         }
     }
 
-    /// Whether everything is seen from both sides.
+    /// Whether single-sided things are seen from behind, too.
     pub(super) fn shows_both_sides(&self) -> bool {
-        self.options.both_sides
+        self.options.backs != BackFaces::Culled
     }
 
-    /// Whether single-sided things that are not closed hide nothing.
-    pub(super) fn hides_no_single_sides(&self) -> bool {
-        self.options.single_sided
+    /// Whether single-sided things that are not closed hide from their fronts only.
+    pub(super) fn hides_from_fronts_only(&self) -> bool {
+        self.options.backs != BackFaces::Drawn
     }
 
     /// What a user should hear of the options, and of what the file states against them.

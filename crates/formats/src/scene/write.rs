@@ -139,7 +139,9 @@ impl Parts {
     fn add(&mut self, scene: &Scene, k: usize, object: &SceneObject) -> Result<(), SceneWriteError> {
         let id = u32::try_from(k);
         let position = self.positions(k, object)?;
-        let material = match (id.is_ok_and(|k| scene.is_opaque(k)), id.is_ok_and(|k| scene.is_single_sided(k))) {
+        let is_front = id.is_ok_and(|k| scene.hides_from_front(k));
+        let hides = is_front || id.is_ok_and(|k| scene.is_opaque(k));
+        let material = match (hides, is_front || id.is_ok_and(|k| scene.is_single_sided(k))) {
             // What holds where no material is stated.
             (true, true) => None,
             (true, false) => Some(r#"{"doubleSided":true}"#),

@@ -70,7 +70,7 @@ fn check(scene: &Scene, k: u32, object: &SceneObject) -> Option<&'static str> {
         Some("a mirror whose name does not end in -mirror, nor such a name of anything else")
     } else if scene.moving().iter().any(|moving| moving.object == k) {
         Some("what moves")
-    } else if scene.is_single_sided(k) {
+    } else if scene.is_single_sided(k) || scene.hides_from_front(k) {
         Some("what has one side")
     } else if object.triangles.is_empty() {
         Some("what has no triangles")

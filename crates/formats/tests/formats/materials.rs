@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use sightlines_cells::{MovingObject, Scene, SceneObject};
 use sightlines_formats::input::Neighbours;
 use sightlines_formats::scene::{
-    Role, SceneReadOptions, parse_glb, parse_gltf_with, parse_obj, parse_obj_with, write_glb,
+    BackFaces, Role, SceneReadOptions, parse_glb, parse_gltf_with, parse_obj, parse_obj_with, write_glb,
 };
 use sightlines_formats::{Malformed, SceneFile};
 use sightlines_geometry::Aabb;
@@ -35,13 +35,15 @@ pub(crate) fn doc(nodes: &[Value], materials: &[Value]) -> Doc {
     doc
 }
 
+/// Reads a scene all walls of which hide from both sides, so that sides are asked about where a test is about sides.
 pub(crate) fn read(doc: &Doc) -> SceneFile {
-    parse_glb(&doc.glb(), None).unwrap()
+    read_with(doc, &options(&[], &[]))
 }
 
 pub(crate) fn options(opaque: &[&str], see_through: &[&str]) -> SceneReadOptions {
     let parse = |list: &[&str]| list.iter().map(|text| text.parse().unwrap()).collect();
-    SceneReadOptions { opaque: parse(opaque), see_through: parse(see_through), ..SceneReadOptions::default() }
+    let backs = BackFaces::Drawn;
+    SceneReadOptions { opaque: parse(opaque), see_through: parse(see_through), backs, ..SceneReadOptions::default() }
 }
 
 pub(crate) fn read_with(doc: &Doc, options: &SceneReadOptions) -> SceneFile {
@@ -122,7 +124,7 @@ fn variants_count_by_their_roles_and_names() {
         let found = file.info.surfaces.iter().find(|found| found.object == 0);
         (found.map(|found| (found.role, found.reason.clone())), file.scene.is_opaque(0))
     };
-    let none = SceneReadOptions::default();
+    let none = options(&[], &[]);
     let found = |role: Role, reason: &str, hides: bool| (Some((role, reason.to_owned())), hides);
     assert_eq!(of(json!({}), json!({}), &none), (None, true));
     assert_eq!(of(json!({}), role("detail"), &none), found(Role::Detail, "extras of a variant", false));
@@ -142,9 +144,9 @@ fn variants_count_by_their_roles_and_names() {
     assert_eq!(seen, found(Role::SeeThrough, "alphaMode BLEND of a variant", false));
     assert_eq!(of(wall, blend, &options(&["pane"], &[])), (None, true));
     // Single-sided with one of them.
-    let sided = SceneReadOptions { single_sided: true, ..none };
+    let sided = SceneReadOptions::default();
     assert_eq!(of(json!({"doubleSided": true}), json!({"doubleSided": true}), &sided), (None, true));
-    assert_eq!(of(json!({"doubleSided": true}), json!({}), &sided), found(Role::SeeThrough, "single sides", false));
+    assert_eq!(of(json!({"doubleSided": true}), json!({}), &sided), (None, false));
 }
 
 /// Viewers have no room in what is flat; a flat volume beside others is a part of the box around all.
@@ -277,19 +279,18 @@ fn single_sides_hide_by_default_and_not_if_asked() {
     let closed = doc.positions(&[[0., 0., 0.], [1., 0., 0.], [0., 1., 0.], [0., 0., 1.]]);
     let sides = doc.indices(&[0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3], 1);
     doc.json["meshes"][2]["primitives"][0] = json!({"attributes": {"POSITION": closed}, "indices": sides});
-    let file = read(&doc);
-    assert_eq!((file.scene.see_through().len(), file.info.n_single_sided_triangles), (0, 5));
+    let asked = |backs: BackFaces| SceneReadOptions { backs, ..SceneReadOptions::default() };
     let single_sided = |file: &SceneFile| (0..3).filter(|&k| file.scene.is_single_sided(k)).collect::<Vec<_>>();
-    assert_eq!(single_sided(&file), [0, 2], "what is not doubleSided is seen from the front");
-    let both_sides = SceneReadOptions { both_sides: true, ..options(&[], &[]) };
-    assert!(single_sided(&read_with(&doc, &both_sides)).is_empty());
-    let asked = SceneReadOptions { single_sided: true, ..options(&[], &[]) };
-    let file = read_with(&doc, &asked);
-    assert_eq!(classified(&file), [(0, Role::SeeThrough, "single sides")]);
-    assert_eq!((file.info.n_single_sided_triangles, file.scene.front_occluders()), (4, &[0][..]));
-    let both = SceneReadOptions { both_sides: true, ..asked.clone() };
-    assert_eq!(read_with(&doc, &both).scene.front_occluders(), [0], "seen from behind, and hides nothing there");
-    let file = read_with(&doc, &SceneReadOptions { opaque: options(&["a"], &[]).opaque, ..asked });
+    for backs in BackFaces::ALL {
+        let file = read_with(&doc, &asked(backs));
+        let fronts: &[u32] = if backs == BackFaces::Drawn { &[] } else { &[0] };
+        assert_eq!((file.scene.see_through(), file.scene.front_occluders()), (fronts, fronts), "{backs:?}");
+        assert_eq!((file.info.n_single_sided_triangles, file.info.n_front_occluding_triangles), (5, fronts.len()));
+        let seen_from_front: &[u32] = if backs == BackFaces::Culled { &[0, 2] } else { &[] };
+        assert_eq!((single_sided(&file), classified(&file)), (seen_from_front.to_vec(), vec![]), "{backs:?}");
+    }
+    let opaque = options(&["a"], &[]).opaque;
+    let file = read_with(&doc, &SceneReadOptions { opaque, ..SceneReadOptions::default() });
     assert_eq!(classified(&file), [(0, Role::Occluder, "the pattern a")]);
     assert!(file.scene.see_through().is_empty() && file.scene.front_occluders().is_empty());
 }
@@ -312,15 +313,15 @@ fn sides_are_left_out_only_where_that_is_certain() {
         json!({"extensions": {"NEEDLE_techniques_webgl": {}}}),
         json!({"name": 5}),
     ];
-    let file = read(&doc(&nodes, &materials));
+    let culled = SceneReadOptions { backs: BackFaces::Culled, ..SceneReadOptions::default() };
+    let file = read_with(&doc(&nodes, &materials), &culled);
     let single: Vec<u32> = (0..7).filter(|&k| file.scene.is_single_sided(k)).collect();
     // The first is the twin: nothing speaks against it.
     assert_eq!(single, [0], "volumes, unknown extensions, what cannot be read, mirrored, flat, and what physics move");
     assert_eq!(file.scene.moving().len(), 1);
     assert!(!file.scene.is_opaque(6));
     // Of what is mirrored, flattened or moved nobody knows the front.
-    let asked = SceneReadOptions { single_sided: true, ..options(&[], &[]) };
-    let fronts = read_with(&doc(&nodes, &materials), &asked).scene.front_occluders().to_vec();
+    let fronts = file.scene.front_occluders();
     assert!(fronts.contains(&0) && [4, 5, 6].iter().all(|object| !fronts.contains(object)), "{fronts:?}");
 }
 

@@ -4,14 +4,19 @@ use crate::common::glb::Doc;
 use proptest::prelude::*;
 use serde_json::{Value, json};
 use sightlines_formats::SceneFile;
-use sightlines_formats::scene::{SceneReadOptions, parse_glb, parse_gltf_with};
+use sightlines_formats::scene::{BackFaces, SceneReadOptions, parse_gltf_with};
 use sightlines_geometry::{Aabb, Random};
 
 type V3 = [f64; 3];
 type Q = [f64; 4];
 
 fn read(doc: &Doc) -> SceneFile {
-    parse_glb(&doc.glb(), None).unwrap()
+    parse_gltf_with(&doc.glb(), None, &walls()).unwrap()
+}
+
+/// All walls hide from both sides: what is asked about is what moves.
+fn walls() -> SceneReadOptions {
+    SceneReadOptions { backs: BackFaces::Drawn, ..SceneReadOptions::default() }
 }
 
 fn floats(doc: &mut Doc, values: &[f64], kind: &str) -> usize {
@@ -322,7 +327,7 @@ fn what_cannot_be_bounded_may_be_anywhere() {
         ]
     );
     // Who knows that nothing moves says so.
-    let still = SceneReadOptions { still: vec!["*".parse().unwrap()], ..SceneReadOptions::default() };
+    let still = SceneReadOptions { still: vec!["*".parse().unwrap()], ..walls() };
     let file = parse_gltf_with(&doc.glb(), None, &still).unwrap();
     assert!(file.scene.moving().is_empty() && file.scene.see_through().is_empty());
     // A channel without a node does nothing, a pointer to nothing that is known everything.
@@ -387,8 +392,8 @@ fn occluders_that_move_hide_nothing() {
     for node in [0, 1] {
         animate(&mut doc, node, "translation", &[0.0, 1.0], &[0.0, 0.0, 0.0, 0.0, 8.0, 0.0], "LINEAR");
     }
-    let opaque = SceneReadOptions { opaque: vec!["gate*".parse().unwrap()], ..SceneReadOptions::default() };
-    for options in [SceneReadOptions::default(), opaque.clone()] {
+    let opaque = SceneReadOptions { opaque: vec!["gate*".parse().unwrap()], ..walls() };
+    for options in [walls(), opaque.clone()] {
         let file = parse_gltf_with(&doc.glb(), None, &options).unwrap();
         assert_eq!(file.scene.see_through(), [0, 1]);
         assert!((0..2).all(|k| contains(&file.scene.extent(k), [0.0, 9.0, 0.0])));

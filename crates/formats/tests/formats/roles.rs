@@ -50,7 +50,7 @@ fn doors_that_stand_still_may_open() {
     // The impostor: the box in which the door stands. And who says that it never opens is believed.
     let shut = Aabb::around(corners.iter().copied());
     assert!(!holds(&shut, [1.0, 0.0, 3.9]) && holds(within, [1.0, 0.0, 3.9]));
-    let still = SceneReadOptions { still: vec!["*".parse().unwrap()], ..SceneReadOptions::default() };
+    let still = SceneReadOptions { still: vec!["*".parse().unwrap()], ..options(&[], &[]) };
     let file = read_with(&doc, &still);
     assert_eq!((file.scene.moving().len(), file.scene.see_through()), (0, &[0][..]));
 }
@@ -183,7 +183,7 @@ fn doors_of_a_scene_are_those_with_that_role() {
         "samplers": [{"input": times, "output": times}]}]);
     assert_eq!(read(&doc).scene.doors(), [0, 3]);
     // One of glass hides nothing when it is shut, nor does a single face whose back is looked through.
-    let sided = SceneReadOptions { single_sided: true, ..SceneReadOptions::default() };
+    let sided = SceneReadOptions::default();
     assert_eq!(read_with(&doc, &sided).scene.doors(), [0u32; 0]);
     doc.json["materials"] = json!([{"doubleSided": true}, {"alphaMode": "BLEND"}]);
     doc.json["meshes"][0]["primitives"][0]["material"] = json!(0);

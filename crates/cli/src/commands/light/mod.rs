@@ -85,7 +85,7 @@ pub(crate) fn run(args: &LightArgs, _: Verbosity) -> Result<Done> {
     output::check(&[&args.scene], &[&args.output])?;
     input::check_is_scene(&args.scene)?;
     // All that hides casts shadows, and nothing else is drawn.
-    let file = input::occluders(&args.scene, &args.surfaces.options())?;
+    let file = input::occluders(&args.scene, &args.surfaces.options_of_walls())?;
     let faces = Faces::of_scene(&file.scene.opaque_part()).in_file(&args.scene)?;
     surfaces::warn_not_drawn(&args.scene, &file);
     let light = Volume::new(args.light.0).about("--light")?;

@@ -80,7 +80,7 @@ pub(crate) struct MultifocalArgs {
 pub(crate) fn run(args: &MultifocalArgs, _: Verbosity) -> Result<Done> {
     check_outputs(args)?;
     input::check_is_scene(&args.scene)?;
-    let file = input::occluders(&args.scene, &args.surfaces.options())?;
+    let file = input::occluders(&args.scene, &args.surfaces.options_of_walls())?;
     let (up, scene) = (file.info.up, file.scene);
     let triangles: Vec<[Point3; 3]> = scene.occluding_triangles().collect();
     let volume = Volume::new(args.volume.0).about("--volume")?;

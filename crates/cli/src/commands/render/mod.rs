@@ -16,6 +16,7 @@ use crate::tables::{self, CACHE};
 use crate::view::Up;
 use cull::{leave_out, seen_by_table};
 use outcome::{Outcome, Row};
+use sightlines::formats::scene::BackFaces;
 use sightlines::report::{PngError, SheetPicture, faces_png, sheet_png, sheet_size};
 use sightlines::visible_surface::{
     Camera, Comparison, CullStep, DepthFormat, FaceMask, Faces, NOTHING, Preparer, RenderInput, Technique, compare,
@@ -34,9 +35,7 @@ const MOST_PIXELS: u64 = 1 << 27;
                   that the ray through its centre meets first, and of faces at equal depth the first one in the scene. \
                   With --compare the sheet has one numbered picture for each method, as in the printed table: faces \
                   are darkened, and pixels that differ from the ray caster (run with back-face culling at most) are \
-                  magenta, except where its ray meets both faces at equal depth. Faces are drawn from both sides; a table takes \
-                  the backs of single-sided ones to be unseen, so for an eye that sees one, --cull pvs may change the picture \
-                  where an engine would draw nothing: compare with --cull backface,pvs, or build the table with --both-sides."
+                  magenta, except where its ray meets both faces at equal depth. Faces are drawn from both sides."
 )]
 pub(crate) struct RenderArgs {
     /// The scene: GLB, glTF or OBJ
@@ -79,13 +78,17 @@ pub(crate) fn run(args: &RenderArgs, Verbosity { show_progress, .. }: Verbosity)
     input::check_is_scene(&args.scene)?;
     let table =
         args.table.as_ref().map(|path| Ok::<_, anyhow::Error>((path, tables::open(path, CACHE)?))).transpose()?;
-    let options = args.surfaces.options_with(table.as_ref().map_or(&[], |(_, opened)| opened.info()));
+    let mut options = args.surfaces.options_with(table.as_ref().map_or(&[], |(_, opened)| opened.info()));
+    // A table that is right whatever becomes of backs is right for a picture that shows them.
+    if options.backs == BackFaces::Either {
+        options.backs = BackFaces::Drawn;
+    }
     let file = input::scene(&args.scene, &options)?;
     if args.cull.contains(&CullStep::Pvs) {
         input::check_occluder(&args.scene, &file)?;
         if !file.scene.front_occluders().is_empty() {
             bail!(
-                "{}: --cull pvs: the table takes single-sided walls to hide from their front (--single-sided), and this picture does not show them",
+                "{}: --cull pvs: the table takes backs to be culled (--backs culled), and this picture does not show walls of one side",
                 args.scene.display()
             );
         }
