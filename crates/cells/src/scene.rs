@@ -295,6 +295,11 @@ impl Scene {
         &self.front_occluders
     }
 
+    /// The same, as [`Self::occluders`] gives those that hide from both sides.
+    pub fn fronts(&self) -> impl Iterator<Item = (u32, &SceneObject)> {
+        self.front_occluders.iter().map(|&object| (object, &self.objects[object as usize]))
+    }
+
     /// Whether an object hides from eyes in front of its triangles only.
     pub fn hides_from_front(&self, object: u32) -> bool {
         self.front_occluders.binary_search(&object).is_ok()

@@ -235,7 +235,10 @@ impl fmt::Display for Surfaces {
         if self.n_single_sided_triangles > 0 {
             let triangles = count(self.n_single_sided_triangles as u64, "triangle");
             let n = self.n_front_occluding_triangles;
-            writeln!(f, "single-sided   {triangles}; {n} hide from their fronts only, and the others, of closed objects, from both sides")?;
+            writeln!(
+                f,
+                "single-sided   {triangles}; {n} hide from their fronts only, and the others, of closed objects, from both sides"
+            )?;
             if let Some(SeenBacks { n_at_most, n_by_rays }) = self.backs {
                 writeln!(
                     f,

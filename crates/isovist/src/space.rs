@@ -74,8 +74,7 @@ impl<'a> Surroundings<'a> {
     /// Prepares a scene: O(n log² n) for n triangles.
     pub fn new(scene: &'a Scene) -> Self {
         let mut faces = Vec::new();
-        let fronts = scene.front_occluders().iter().map(|&object| (object, &scene.objects()[object as usize]));
-        for (object, o) in scene.occluders().chain(fronts) {
+        for (object, o) in scene.occluders().chain(scene.fronts()) {
             let single_sided = scene.is_single_sided(object) || scene.hides_from_front(object);
             faces.extend(o.corners().map(|corners| Face { corners, object, single_sided }));
         }

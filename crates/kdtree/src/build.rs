@@ -106,7 +106,10 @@ pub(crate) fn united<const D: usize>(mut pieces: Vec<Piece<D>>) -> Vec<Piece<D>>
     let in_plane = |group: &[Piece<D>]| -> Vec<Piece<D>> {
         let (axis, rank) = group[0].plane();
         let rects: Vec<Rect> = group.iter().map(|p| Rect::across(&p.extent, usize::from(axis))).collect();
-        unite(&rects).into_iter().map(|r| Piece { axis, extent: r.on_plane(usize::from(axis), rank), is_wall: true }).collect()
+        unite(&rects)
+            .into_iter()
+            .map(|r| Piece { axis, extent: r.on_plane(usize::from(axis), rank), is_wall: true })
+            .collect()
     };
     pieces.chunk_by(|a, b| a.plane() == b.plane()).flat_map(in_plane).collect()
 }

@@ -38,7 +38,10 @@ impl<const D: usize> Piece<D> {
 impl<const D: usize> Ranks<D> {
     /// Ranks for `bounds` and everything of some lists of faces that is inside, and those faces in ranks, clipped. Faces that only lie on the
     /// border of the bounds, or outside, are left out. O(n log n).
-    pub(crate) fn compress<const N: usize>(faces: [&[AxialFace<D>]; N], bounds: &Aabb<D>) -> (Self, [Vec<Piece<D>>; N]) {
+    pub(crate) fn compress<const N: usize>(
+        faces: [&[AxialFace<D>]; N],
+        bounds: &Aabb<D>,
+    ) -> (Self, [Vec<Piece<D>>; N]) {
         let inside = faces.map(|faces| faces.iter().filter_map(|face| clipped(face, bounds)).collect::<Vec<_>>());
         let axes = std::array::from_fn(|k| {
             let ends = inside.iter().flatten().flat_map(|f| [f.min[k], f.max[k]]);

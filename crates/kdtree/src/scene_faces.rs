@@ -68,8 +68,7 @@ pub fn scene_faces(scene: &Scene, options: &SceneOptions) -> SceneFaces {
 /// 0 for a scene without corners. Computed in rounded arithmetic, the same on every machine; no choice of
 /// it is unsound. O(n log n) for n objects.
 pub fn default_detail_below(scene: &Scene) -> f64 {
-    let fronts = scene.front_occluders().iter().map(|&object| &scene.objects()[object as usize]);
-    let shapes: Vec<Shape> = scene.occluders().map(|(_, object)| object).chain(fronts).map(Shape::of).collect();
+    let shapes: Vec<Shape> = scene.occluders().chain(scene.fronts()).map(|(_, object)| Shape::of(object)).collect();
     detail_below_of(&shapes.iter().collect::<Vec<_>>())
 }
 

@@ -78,10 +78,10 @@ fn seed(b: &Aabb<3>) -> u64 {
 impl Views {
     pub(super) fn of(scene: &Scene, region: &Aabb<3>) -> Self {
         let (mut triangles, mut object, mut single_sided) = (Vec::new(), Vec::new(), Vec::new());
-        for (id, o) in scene.occluders() {
+        for (id, o) in scene.occluders().chain(scene.fronts()) {
             triangles.extend(o.corners());
             object.resize(triangles.len(), id);
-            single_sided.resize(triangles.len(), scene.is_single_sided(id));
+            single_sided.resize(triangles.len(), scene.is_single_sided(id) || scene.hides_from_front(id));
         }
         let walls = std::array::from_fn(|axis| Walls::of(axis, &triangles));
         let rays = RaySampler::of(triangles);

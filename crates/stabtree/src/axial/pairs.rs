@@ -262,7 +262,8 @@ impl AxialSearch<'_> {
                 if !self.blockers.has_one_way() {
                     return self.objects.set_words(object as usize, &words);
                 }
-                let leads = |place: &&usize| span.leads(&self.graph.cells()[self.cell_at[**place] as usize].bounds, target);
+                let leads =
+                    |place: &&usize| span.leads(&self.graph.cells()[self.cell_at[**place] as usize].bounds, target);
                 cells.iter().filter(leads).for_each(|&place| {
                     self.objects.set(object as usize, place);
                 });

@@ -207,7 +207,8 @@ fn only_what_is_asked_is_answered() {
     let mut asked = PairMask { boxes: BitMatrix::new(3, 3), objects: BitMatrix::new(3, 2) };
     asked.objects.set(0, 1, true);
     asked.objects.set(1, 0, true);
-    let some = box_visibility(&graph, &[], &[], &eyes, &things, &asked, &SearchOptions::default()).expect("nobody cancels");
+    let some =
+        box_visibility(&graph, &[], &[], &eyes, &things, &asked, &SearchOptions::default()).expect("nobody cancels");
     assert_eq!((some.boxes.count_ones(), some.objects.count_ones()), (0, 1));
     assert!(some.objects.get(1, 0) && some.counters.n_asked < found.counters.n_asked);
     let beyond = [Aabb { min: [-1.0, 0.25, 0.25], max: [0.5, 0.5, 0.5] }, eyes[2]];

@@ -126,7 +126,8 @@ fn boxes_that_are_not_decided_are_visible() {
             all
         };
         let asked = PairMask { boxes: ones(eyes.len()), objects: ones(objects.len()) };
-        let seen = box_visibility(&graph, &solid, &[], &eyes, objects, &asked, &options(1, budget)).expect("nobody cancels");
+        let seen =
+            box_visibility(&graph, &solid, &[], &eyes, objects, &asked, &options(1, budget)).expect("nobody cancels");
         (!eyes.is_empty())
             .then_some(Found { visible: PairMask { boxes: seen.boxes, objects: seen.objects }, left: seen.left })
     });

@@ -9,6 +9,7 @@ mod explain_convex;
 mod from_boxes;
 mod limited;
 mod live_axial;
+mod one_way;
 mod picture;
 mod search;
 mod stab_trees;

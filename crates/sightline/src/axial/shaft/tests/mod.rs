@@ -6,7 +6,7 @@ mod oracle;
 use super::{Blockers, BoxTarget, Shaft, ShaftLine, Verdict};
 use oracle::{Case, any_case, any_place, nudged};
 use proptest::prelude::*;
-use sightlines_geometry::Aabb;
+use sightlines_geometry::{Aabb, OneWayRectangle};
 use sightlines_testkit::draw;
 use std::cell::Cell;
 
@@ -50,8 +50,9 @@ enum Kind {
 
 /// Compares an answer about `given` with the truth about `case`.
 fn compare(case: &Case, given: &Case) -> Result<Kind, String> {
-    let blockers = Blockers::new(given.rectangles.iter().copied());
-    assert_eq!(blockers.rectangles(), given.rectangles, "all of them are rectangles");
+    let one_way = given.one_way.iter().map(|&(bounds, front_up)| OneWayRectangle { bounds, front_up });
+    let blockers = Blockers::with_one_way(given.rectangles.iter().copied(), one_way);
+    assert_eq!(blockers.len(), given.rectangles.len() + given.one_way.len(), "all of them are rectangles");
     match Shaft::new(&blockers).decide(&given.from, &given.to, given.target, BUDGET) {
         Verdict::Visible(line) if !case.is_open() => Err(format!("{line:?} where nothing leads")),
         Verdict::Visible(line) if !case.is_free(&line) => Err(format!("{line:?} is not free")),
@@ -80,6 +81,36 @@ proptest! {
             prop_assert!(false, "{}: {:?}", error, case);
         }
     }
+}
+
+/// Rectangles that hide from one side stop what comes from their fronts, here and elsewhere; both directions together are open where one of
+/// them is. They matter often: whoever takes them for opaque from both sides, or mistakes the side, is found out.
+#[test]
+fn one_sided_rectangles_stop_what_comes_from_their_fronts() {
+    let side = || prop::option::weighted(0.7, any::<bool>());
+    let drawn = draw(&(any_case(), prop::collection::vec(side(), 5), any_place()), 120);
+    let (counts, mut n_one_way_open, mut impostors) = (Counts::default(), 0, [0; 2]);
+    for (case, sides, (factor, by)) in drawn {
+        let (both_sides, case) = (case.clone(), case.with_sides(&sides));
+        for case in [&case, &case.placed(factor, by)] {
+            counts.add(compare(case, case).unwrap_or_else(|error| panic!("{error}: {case:?}")));
+        }
+        n_one_way_open += usize::from(case.is_open() && !both_sides.is_open());
+        let turned = sides.iter().map(|side| side.map(|up| !up)).collect::<Vec<_>>();
+        let wrong = [both_sides.clone(), both_sides.clone().with_sides(&turned)];
+        for (n, wrong) in impostors.iter_mut().zip(wrong) {
+            *n += usize::from(compare(&case, &wrong).is_err());
+        }
+        if case.target == BoxTarget::Inside {
+            let one_way = case.one_way.iter().map(|&(bounds, front_up)| OneWayRectangle { bounds, front_up });
+            let blockers = Blockers::with_one_way(case.rectangles.iter().copied(), one_way);
+            let either = Shaft::new(&blockers).decide_either(&case.from, &case.to, BUDGET);
+            assert_eq!(either.is_hidden(), !case.is_open() && !case.reversed().is_open(), "{case:?}");
+        }
+    }
+    eprintln!("{counts:?}, {n_one_way_open} open by their backs, {impostors:?} impostors");
+    assert!(n_one_way_open > 8 && impostors.iter().all(|n| *n > 5), "{n_one_way_open}, {impostors:?}");
+    assert!(counts.open.get() > 50 && counts.blocked.get() > 50 && counts.undecided.get() == 0, "{counts:?}");
 }
 
 /// Both answers are frequent and undecided cases are rare, on the grid and where rounding has moved what was aligned.
@@ -120,6 +151,7 @@ fn boxes_see_each_other_through_slits_of_some_units() {
                 to: boxed([5.0, 6.0], [0.0, 2.0], [0.5, 1.5]),
                 target: BoxTarget::Inside,
                 rectangles: walls.concat(),
+                one_way: Vec::new(),
             };
             let blockers = Blockers::new(case.rectangles.iter().copied());
             let open = (2 * middle - first).abs() < 2 * width;

@@ -23,6 +23,8 @@ pub(super) struct Case {
     pub(super) to: Aabb<3>,
     pub(super) target: BoxTarget,
     pub(super) rectangles: Vec<Aabb<3>>,
+    /// Rectangles that hide from one side, and whether their fronts face larger coordinates.
+    pub(super) one_way: Vec<(Aabb<3>, bool)>,
 }
 
 /// Where a box begins and ends on an axis, in a given direction.
@@ -88,8 +90,17 @@ impl Case {
                 |k: usize| ahead(forward[k], first_last(&self.from, forward, k).0, first_last(&self.to, forward, k).1);
             let mut rows = through(&self.from, forward);
             rows.extend(through(&self.to, forward));
-            (0..3).all(leads) && self.some_combination(octant, forward, &mut rows, &self.rectangles, None)
+            (0..3).all(leads) && self.some_combination(octant, forward, &mut rows, &self.stopping(forward), None)
         })
+    }
+
+    /// The rectangles that stop lines in a direction.
+    fn stopping(&self, forward: [bool; 3]) -> Vec<Aabb<3>> {
+        let faces_them = |(rectangle, front_up): &&(Aabb<3>, bool)| {
+            (0..3).any(|k| rectangle.min[k] == rectangle.max[k] && *front_up != forward[k])
+        };
+        let one_way = self.one_way.iter().filter(faces_them).map(|(rectangle, _)| *rectangle);
+        self.rectangles.iter().copied().chain(one_way).collect()
     }
 
     /// Whether lines obey the rows, of which `known` is one that obeys all but the last few, and go past all
@@ -152,7 +163,7 @@ impl Case {
                 && leave <= t
                 && (t < enter || (t == enter && self.target == BoxTarget::Inside))
         };
-        leave <= enter && !self.rectangles.iter().any(meets)
+        leave <= enter && !self.stopping([0, 1, 2].map(|k| d[k].is_positive())).iter().any(meets)
     }
 
     /// The same elsewhere: scaled by the size of `factor` on each axis, mirrored where it is negative, moved.
@@ -162,7 +173,29 @@ impl Case {
             Aabb { min: [0, 1, 2].map(|k| p[k].min(q[k])), max: [0, 1, 2].map(|k| p[k].max(q[k])) }
         };
         let (from, to) = (place(&self.from), place(&self.to));
-        Self { from, to, target: self.target, rectangles: self.rectangles.iter().map(place).collect() }
+        let turned = |(rectangle, front_up): &(Aabb<3>, bool)| {
+            let axis = (0..3).find(|&k| rectangle.min[k] == rectangle.max[k]).expect("a rectangle is flat");
+            (place(rectangle), *front_up == (factor[axis] > 0.0))
+        };
+        let one_way = self.one_way.iter().map(turned).collect();
+        Self { from, to, target: self.target, rectangles: self.rectangles.iter().map(place).collect(), one_way }
+    }
+
+    /// The same from the second box to the first.
+    pub(super) fn reversed(&self) -> Self {
+        Self { from: self.to, to: self.from, ..self.clone() }
+    }
+
+    /// The same with some rectangles that hide from one side, and the side of each.
+    pub(super) fn with_sides(mut self, sides: &[Option<bool>]) -> Self {
+        let all = std::mem::take(&mut self.rectangles);
+        for (rectangle, side) in all.into_iter().zip(sides.iter().cycle()) {
+            match side {
+                Some(front_up) => self.one_way.push((rectangle, *front_up)),
+                None => self.rectangles.push(rectangle),
+            }
+        }
+        self
     }
 
     /// The same without one of the rectangles.
@@ -224,7 +257,7 @@ pub(super) fn any_case() -> impl Strategy<Value = Case> {
             Aabb { min: turned(b.min), max: turned(b.max) }
         };
         let rectangles = rectangles.iter().map(turned).collect();
-        Case { from: turned(&from), to: turned(&to), target, rectangles }
+        Case { from: turned(&from), to: turned(&to), target, rectangles, one_way: Vec::new() }
     })
 }
 
