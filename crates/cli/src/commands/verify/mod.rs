@@ -82,7 +82,7 @@ pub(crate) fn run(args: &VerifyArgs, Verbosity { show_progress, .. }: Verbosity)
     let scene = truth::Real::read(&args.scene, args.map.as_deref(), args.prt.as_deref(), (&options, &plan))?;
     let scene = match own {
         Some(_) => scene.for_every_engine(&args.scene, args.map.as_deref())?.without_objects(),
-        None => scene,
+        None => scene.joined_for(&args.scene, table)?,
     };
     if own.is_some() {
         let found = "a map with its own";
