@@ -123,17 +123,16 @@ fn poses() -> impl Iterator<Item = Pose> {
 
 #[test]
 fn closed_rooms_do_not_see_each_other_in_any_direction() {
-    let [mut n_plans, mut n_leaks, mut n_own] = [0; 3];
+    let [mut n_plans, mut n_leaks] = [0; 2];
     for pose in poses() {
         let plan = pose.plan(&rooms(4, 3, None));
         let room = room_of(4, 3, &pose);
-        let [across, own] = pairs(&table(&plan, Gap::OfFile), &room);
-        assert_eq!(across, 0, "{pose:?}");
+        assert_eq!(pairs(&table(&plan, Gap::OfFile), &room)[0], 0, "{pose:?}");
         n_leaks += usize::from(pairs(&table(&plan, Gap::Width(0.0)), &room)[0] > 0);
-        (n_plans, n_own) = (n_plans + 1, n_own + own);
+        n_plans += 1;
     }
-    // The impostor: without joints most of the plans leak. The twin: cells of one room, which is convex, see each other.
-    assert!(n_plans == 240 && n_leaks > 180 && n_own > 240, "{n_plans} {n_leaks} {n_own}");
+    // The impostor: without joints nearly all of the plans leak. The twin has doors.
+    assert!(n_plans == 240 && n_leaks > 200, "{n_plans} {n_leaks}");
 }
 
 #[test]
