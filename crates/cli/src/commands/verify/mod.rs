@@ -121,6 +121,7 @@ pub(crate) fn run(args: &VerifyArgs, Verbosity { show_progress, .. }: Verbosity)
     let wide_gap = frame.and_then(|frame| scene.times_too_wide(frame.gap()));
     let outcome = VerifyReport::new(files, has_digests, &findings, violations, about, proofs, time)
         .with_picture(drawn)
+        .with_gap(scene.gap())
         .in_frame(frame.as_ref(), wide_gap)
         .with_unproven(unproven, args.proofs.is_strict());
     let is_true = outcome.is_true();

@@ -83,6 +83,14 @@ impl Real {
         }
     }
 
+    /// The gap within which walls of a plan were joined; 0 for others.
+    pub(super) const fn gap(&self) -> f64 {
+        match self {
+            Self::Plan(plan) => plan.gap(),
+            _ => 0.0,
+        }
+    }
+
     /// The table without its frame, and the scene along its axes; none if the table has none.
     pub(super) fn along(&self, table: &Table) -> Result<Option<(Table, Self)>, VerifyError> {
         match self {
