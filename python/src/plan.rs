@@ -7,7 +7,7 @@ use crate::long;
 use crate::table::Table;
 use numpy::{PyArray3, PyReadonlyArray2};
 use pyo3::prelude::*;
-use sightlines_bake::{BakeError, Bakeable, PlanBakeOptions, Subdivide, bake_plan};
+use sightlines_bake::{BakeError, Bakeable, Gap, PlanBakeOptions, Subdivide, bake_plan};
 use sightlines_cells::PlanLine;
 use sightlines_formats::input::read_plan_file;
 use sightlines_formats::{PlanReadOptions, Source, detect_file, geojson};
@@ -100,6 +100,20 @@ impl Plan {
                 }
             }
         })
+    }
+
+    /// The same plan with ends of walls joined to others within a gap; without one, within what digits explain. It is new only if that makes a
+    /// difference.
+    #[pyo3(signature = (gap=None))]
+    fn joined(slf: Bound<'_, Self>, gap: Option<f64>) -> PyResult<Bound<'_, Self>> {
+        let plan = &slf.get().plan;
+        let joined = slf.py().detach(|| gap.map_or(Gap::OfFile, Gap::Width).join(plan)).map_err(value_error)?;
+        joined.map_or_else(|| Ok(slf.clone()), |joined| Bound::new(slf.py(), Self::from(joined)))
+    }
+
+    /// Openings up to this width are closed.
+    fn gap(&self) -> f64 {
+        self.plan.gap()
     }
 
     /// The walls, those that do not block sight left out: shape (n, 2, 2).

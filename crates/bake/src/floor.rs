@@ -1,8 +1,10 @@
 //! The floor plan of a scene: what a horizontal plane cuts.
 
+use crate::gap::Gap;
 use num_traits::ToPrimitive;
 use sightlines_cells::{LineId, Plan, PlanError, PlanLine, Scene};
 use sightlines_exact::rational;
+use sightlines_formats::SceneFile;
 use sightlines_geometry::{CoordinateError, Point2, Point3, check_coordinate, orient2d};
 use sightlines_pvs::Axis;
 use std::cmp::Ordering;
@@ -106,6 +108,19 @@ pub fn floor_cut(scene: &Scene, up: Axis, height: f64) -> Result<FloorCut, Floor
     }
     let plan = Plan::new(lines, Vec::new())?.with_mirrors(mirrors)?;
     Ok(FloorCut { plan, n_cut, n_flat, n_doubled, n_without_length, n_joined })
+}
+
+impl FloorCut {
+    /// The [cut](floor_cut) of a scene from a file, by the axis that points up there. The plan states the precision of the file
+    /// ([`Gap::of_file`]), if it has one.
+    ///
+    /// # Errors
+    /// [`FloorCutError`]
+    pub fn of_file(file: &SceneFile, height: f64) -> Result<Self, FloorCutError> {
+        let cut = floor_cut(&file.scene, file.info.up, height)?;
+        let precision = Some(Gap::of_file(&file.scene, &file.info)).filter(|precision| *precision > 0.0);
+        Ok(Self { plan: cut.plan.with_precision(precision), ..cut })
+    }
 }
 
 /// Coordinates with z up, right-handed.

@@ -1,26 +1,42 @@
-//! How precise the coordinates of a scene are.
+//! How precise the coordinates of a plan or a scene are.
 
-use sightlines_cells::{Point3, Scene};
+use sightlines_cells::{Plan, PlanError, Point3, Scene};
 use sightlines_formats::SceneInfo;
 use sightlines_formats::scene::SceneFormat;
 use sightlines_geometry::Aabb;
 
-/// How precise the coordinates of a scene are: openings narrower than this may count as closed, and things that
+/// How precise the coordinates of a plan or a scene are: openings narrower than this may count as closed, and things that
 /// are thinner as hidden.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Gap {
     /// As precise as the format of the file is ([`Gap::of_file`]), where a frame makes walls of much that is none without it; else
-    /// exactly as they are.
+    /// exactly as they are. Plans: as precise as [`Plan::precision`] tells, where that joins ends of walls with others.
     #[default]
     OfFile,
     /// As precise as single precision is, whatever file the scene comes from, where a frame makes walls of much that is none without it; for
     /// scenes that were built from numbers in single precision.
     OfSingle,
-    /// This width, in scene units; 0 takes all coordinates exactly as they are.
+    /// This width, in units of the plan or the scene; 0 takes all coordinates exactly as they are.
     Width(f64),
 }
 
 impl Gap {
+    /// The plan with its ends of walls joined to others within this gap ([`Plan::joined`]), for all that looks at plans. None if it is taken as it
+    /// is: with a gap of 0, and without one that was named where there is nothing to join, or where the plan was joined before.
+    ///
+    /// # Errors
+    /// [`PlanError::Gap`] for a width that cannot be had.
+    pub fn join(self, plan: &Plan) -> Result<Option<Plan>, PlanError> {
+        let (gap, is_named) = match self {
+            Self::OfFile if plan.gap() > 0.0 => return Ok(None),
+            Self::OfFile => (plan.precision(), false),
+            Self::OfSingle => (plan.single_precision(), false),
+            Self::Width(gap) => (gap, true),
+        };
+        let joined = plan.joined(gap)?;
+        Ok(Some(joined).filter(|joined| is_named && joined.gap() != plan.gap() || !joined.joints().is_empty()))
+    }
+
     /// The precision of a scene from a file, in scene units; 0 for what is in doubles or in decimals.
     ///
     /// glTF stores coordinates in single precision. Let M be the magnitude of coordinates and u = 2^-24, so that

@@ -91,6 +91,6 @@ pub use run::bake;
 pub use scene::{PortalMode, SceneBakeOptions, bake_scene};
 pub use sectors::see_groups;
 pub use stab::{BakedStab, StabBakeError, StabOptions, StabReport, with_stab_trees};
-pub use stated::{StatedMethods, stated_methods, stated_reading};
+pub use stated::{StatedMethods, stated_gap, stated_methods, stated_reading};
 pub use subdivide::{ParseSubdivideError, Subdivide};
 pub use table::{TableOptions, table_of};

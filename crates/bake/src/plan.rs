@@ -4,6 +4,7 @@ use crate::baked::{Baked, BakedPlan};
 use crate::error::BakeError;
 use crate::mirrors;
 use crate::reports::PlanReport;
+use crate::stated::GAP;
 use crate::subdivide::Subdivide;
 use crate::table::{TableOptions, planar_parts};
 use sightlines_cells::{CellGraph, Plan, Planar};
@@ -51,6 +52,8 @@ impl fmt::Debug for PlanBakeOptions<'_> {
 
 /// Cuts a plan, decides which cells see which, and makes the table.
 ///
+/// A plan that was [joined](crate::Gap::join) is taken with its joints, and the table states its gap; others are taken as they are.
+///
 /// Exact for plans without rounded crossings (see the triangulation's notes on noding); errs towards
 /// visible elsewhere.
 ///
@@ -78,7 +81,14 @@ pub fn bake_plan(plan: &Plan, options: &PlanBakeOptions<'_>) -> Result<BakedPlan
         Subdivide::Triangulation => TableKind::PlanTriangulation,
         Subdivide::Auto => unreachable!("a plan was cut by one of the two"),
     };
-    let mut info = vec![("subdivide".to_owned(), report.subdivide.to_string())];
+    // Sources of integers state that nothing was rounded.
+    report.n_near_misses = if plan.stated_precision() == Some(0.0) { 0 } else { plan.n_near_misses() };
+    report.n_joints = plan.joints().len();
+    let mut info = Vec::new();
+    if plan.gap() > 0.0 {
+        info.push((GAP.to_owned(), format!("{:?}", plan.gap())));
+    }
+    info.push(("subdivide".to_owned(), report.subdivide.to_string()));
     if report.subdivide == Subdivide::KdTree {
         info.push(("tau".to_owned(), options.tau.to_string()));
     }

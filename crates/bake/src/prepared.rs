@@ -10,7 +10,7 @@ use crate::region::{CellsFrom, PackRegionsError};
 use crate::reports::RegionReport;
 use crate::request::{BakeRequest, Runtime};
 use crate::{run, threads};
-use sightlines_cells::Scene;
+use sightlines_cells::{Plan, Scene};
 use sightlines_formats::SceneInfo;
 use sightlines_geometry::Aabb;
 use sightlines_packed::PackReport;
@@ -22,7 +22,8 @@ impl BakeRequest {
     /// Of a scene without a method this measures the scene, which may take seconds for millions of triangles.
     ///
     /// # Errors
-    /// [`BakeError::Meaningless`] for an option that means nothing here; [`BakeError::Move`] for a stated gap that cannot be had.
+    /// [`BakeError::Meaningless`] for an option that means nothing here; [`BakeError::Move`], and of a plan [`BakeError::Plan`], for a stated gap that
+    /// cannot be had.
     pub fn prepare<'i>(
         &self,
         input: impl Into<BakeInput<'i>>,
@@ -70,6 +71,8 @@ pub struct StatedViewers {
 pub struct PreparedBake<'i> {
     input: BakeInput<'i>,
     framed: Option<Framed>,
+    /// The plan with its joints, if it has any.
+    joined: Option<Plan>,
     recipe: Recipe,
     decisions: BakeDecisions,
 }
@@ -81,7 +84,11 @@ impl<'i> PreparedBake<'i> {
         let mut recipe = request.recipe();
         let BakeInput::Scene(of_file, file) = input else {
             decisions.choice = is_auto.then(|| no_choice(&input));
-            return Ok(Self { input, framed: None, recipe, decisions });
+            let joined = match input {
+                BakeInput::Plan(plan) => request.gap.join(plan)?,
+                _ => None,
+            };
+            return Ok(Self { input, framed: None, joined, recipe, decisions });
         };
         if let Some(cells) = &request.cells {
             recipe.cells = cells.clone();
@@ -116,14 +123,16 @@ impl<'i> PreparedBake<'i> {
                 (recipe, decisions.choice) = (chosen, is_told.then_some(choice));
             }
         }
-        Ok(Self { input, framed, recipe, decisions })
+        Ok(Self { input, framed, joined: None, recipe, decisions })
     }
 
-    /// What is baked: of a scene that has a frame, the scene along it.
+    /// What is baked: of a scene that has a frame, the scene along it; of a plan whose walls miss each other by no more than its gap, the plan with
+    /// joints.
     pub fn input(&self) -> BakeInput<'_> {
-        match (self.input, &self.framed) {
-            (BakeInput::Scene(_, file), Some(framed)) => BakeInput::Scene(&framed.moved.scene, file),
-            (input, _) => input,
+        match (self.input, &self.framed, &self.joined) {
+            (BakeInput::Scene(_, file), Some(framed), _) => BakeInput::Scene(&framed.moved.scene, file),
+            (BakeInput::Plan(_), _, Some(plan)) => BakeInput::Plan(plan),
+            (input, ..) => input,
         }
     }
 

@@ -68,6 +68,10 @@ pub struct PlanReport {
     pub n_portals: usize,
     /// Unordered pairs of different cells that see each other.
     pub n_visible_pairs: u64,
+    /// Joints that close openings no wider than the gap of the plan.
+    pub n_joints: usize,
+    /// Ends of walls that miss others by little, and yet by more than the gap: see [`Plan::n_near_misses`](sightlines_cells::Plan::n_near_misses).
+    pub n_near_misses: usize,
     /// Walls that do not block because the k-d tree cannot follow them.
     pub n_ignored_walls: usize,
     /// Crossings whose point had to be rounded.

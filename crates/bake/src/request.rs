@@ -26,8 +26,8 @@ pub struct BakeRequest {
     /// Scenes: what decides. None: what the properties of the scene suggest, as for [`SceneMethod::Auto`]; sightlines alone for what has
     /// [proofs or stab trees](Self::for_proofs), and for cells of a k-d tree with mirrors, of which they report what does not reflect.
     pub method: Option<SceneMethod>,
-    /// Scenes: how precise coordinates are, which decides whether walls that are nearly across an axis, of the file or of the building, are
-    /// taken to be so.
+    /// Plans and scenes: how precise coordinates are. In plans it decides which ends of walls are joined to others; in scenes whether walls that
+    /// are nearly across an axis, of the file or of the building, are taken to be so.
     pub gap: Gap,
     /// Scenes: where viewers can be, in scene units. None: the box around the view volumes that the file states, unless the cells are
     /// given boxes; else the box of the scene.
@@ -161,7 +161,7 @@ impl BakeRequest {
     }
 
     /// Options that mean something for scenes only, and whether each was named.
-    fn of_scenes(&self) -> [(&'static str, bool); 9] {
+    fn of_scenes(&self) -> [(&'static str, bool); 8] {
         let cells = |is: fn(&CellsFrom) -> bool| self.cells.as_ref().is_some_and(is);
         let places = match &self.cells {
             Some(CellsFrom::Places(how)) => Some(how),
@@ -169,7 +169,6 @@ impl BakeRequest {
         };
         let is_auto = matches!(self.method, None | Some(SceneMethod::Auto));
         [
-            ("gap", self.gap != Gap::OfFile),
             ("view_region", self.view_region.is_some()),
             ("detail_below", self.detail_below.is_some()),
             ("max_cells", self.max_cells.is_some()),
@@ -204,7 +203,8 @@ impl BakeRequest {
             refuse(&[("tau", self.tau.is_some())], "k-d trees", "a triangulation")?;
         }
         if matches!(input, BakeInput::Portals(_) | BakeInput::Map(..)) {
-            refuse(&[("tau", self.tau.is_some())], "plans and scenes in space", found)?;
+            let named = [("tau", self.tau.is_some()), ("gap", self.gap != Gap::OfFile)];
+            refuse(&named, "plans and scenes in space", found)?;
         } else {
             refuse(&[("fast", self.fast)], "portal files", found)?;
         }

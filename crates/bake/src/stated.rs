@@ -10,6 +10,15 @@ pub(crate) const TIME_LIMIT: &str = "time-limit";
 /// The key under which a table states the size below which objects were detail.
 pub(crate) const DETAIL_BELOW: &str = "detail-below";
 
+/// The key under which the table of a plan states its gap.
+pub(crate) const GAP: &str = "gap";
+
+/// The [gap](sightlines_cells::Plan::gap) that the table of a plan states: ends of walls were joined to others within it. 0 if it states none.
+pub fn stated_gap(table: &Table) -> f64 {
+    let stated = table.info_value(GAP).and_then(|text| text.parse().ok());
+    stated.filter(|_| table.dimension() == 2).unwrap_or(0.0)
+}
+
 /// The methods that hid pairs of a scene's table.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StatedMethods {

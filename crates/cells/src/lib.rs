@@ -21,7 +21,7 @@ pub mod unlike;
 pub use axial::{Axial, BoxCell};
 pub use convex::{Convex, ConvexCell3};
 pub use graph::{CellGraph, Exit, Portal, PortalId, Space};
-pub use plan::{LineId, Plan, PlanError, PlanLine, PlanObject};
+pub use plan::{Joint, LineId, Plan, PlanError, PlanLine, PlanObject};
 pub use planar::{ConvexCell2, Planar, WellFormedError};
 pub use scene::{ANYWHERE, MovingObject, Scene, SceneError, SceneObject};
 pub use sightlines_geometry::{AxialDoor, Point3, Portal2, Portal3};

@@ -1,5 +1,10 @@
 //! Scenes in the plane: lines that block sight or only divide, and objects.
 
+mod joints;
+mod precision;
+
+pub use joints::Joint;
+
 use sightlines_geometry::{Aabb, CoordinateError, Point2, SmallGrid, check_coordinate};
 
 /// Index of a line of a [`Plan`], in input order.
@@ -46,6 +51,9 @@ pub struct Plan {
     objects: Vec<PlanObject>,
     mirrors: Vec<LineId>,
     n_groups: u32,
+    precision: Option<f64>,
+    joints: Vec<Joint>,
+    gap: f64,
 }
 
 /// Why lines and objects do not make a plan.
@@ -98,6 +106,16 @@ pub enum PlanError {
         /// Index of the line.
         line: usize,
     },
+    /// Coordinates cannot be taken to be as imprecise as was stated.
+    #[error(
+        "a gap of {gap:?} is neither 0 nor at least {least:.2e}, what the coordinates of the plan are off by when it is turned"
+    )]
+    Gap {
+        /// The gap.
+        gap: f64,
+        /// The least one.
+        least: f64,
+    },
     /// More lines than ids.
     #[error("{0} lines are more than a plan can hold")]
     TooMany(usize),
@@ -133,7 +151,7 @@ impl Plan {
             }
         }
         let named = lines.iter().flat_map(|l| [l.left, l.right]).flatten().max();
-        Ok(Self { lines, objects, mirrors: Vec::new(), n_groups: named.map_or(0, |g| g + 1) })
+        Ok(Self { lines, objects, n_groups: named.map_or(0, |g| g + 1), ..Self::default() })
     }
 
     /// Opaque walls only, without groups or objects.

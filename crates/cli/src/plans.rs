@@ -1,8 +1,9 @@
 //! How floor plans are read: arguments, warnings, and what a table states of it.
 
-use crate::error::Result;
+use crate::error::{ErrorAbout, Result};
+use crate::numbers::size;
 use crate::refuse::refuse;
-use sightlines::bake::Baked;
+use sightlines::bake::{Baked, Gap};
 use sightlines::cells::Plan;
 use sightlines::formats::input::read_plan_file;
 use sightlines::formats::{PlanFile, PlanReadOptions, detect_file};
@@ -13,6 +14,28 @@ use std::path::Path;
 /// The lines of a plan that block sight.
 pub(crate) fn walls(plan: &Plan) -> Vec<Segment2> {
     plan.lines().iter().filter(|line| line.opaque).map(|line| Segment2::new(line.a, line.b)).collect()
+}
+
+/// How precise the coordinates of a plan are, as an argument.
+#[derive(Debug, Clone, Copy, Default, clap::Args)]
+pub(crate) struct GapArg {
+    /// Plans: how precise coordinates are, in units of the plan: ends of walls that miss others by no more than WIDTH are joined to them, so openings
+    /// up to WIDTH may count as closed. 0 takes every coordinate as it is [default: what the digits of the file explain]
+    #[arg(long, help_heading = "Method", value_name = "WIDTH", value_parser = size, allow_hyphen_values = true)]
+    gap: Option<f64>,
+}
+
+impl GapArg {
+    /// The option, if it was given.
+    pub(crate) fn given(self) -> [(&'static str, bool); 1] {
+        [("--gap", self.gap.is_some())]
+    }
+
+    /// The plan of a file with its walls joined.
+    pub(crate) fn join(self, path: &Path, plan: Plan) -> Result<Plan> {
+        let joined = self.gap.map_or(Gap::OfFile, Gap::Width).join(&plan).in_file(path)?;
+        Ok(joined.unwrap_or(plan))
+    }
 }
 
 /// The key of a table's information for the layers, and that for the deviation of curves.

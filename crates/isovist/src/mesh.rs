@@ -6,7 +6,7 @@ use crate::constructed::low_part;
 use crate::corner::{Corner, Exact, exact_of, orient_exact, orient_filter};
 use crate::edge::{Edge, NONE, next};
 use crate::locator::Locator;
-use sightlines_cells::{LineId, Plan};
+use sightlines_cells::{Joint, LineId, Plan};
 use sightlines_geometry::{Aabb, Point2, Segment2, orient2d};
 
 /// A floor plan, prepared for questions about points: triangles that fill a frame around the plan, with every wall along
@@ -22,8 +22,10 @@ pub struct WallMesh {
     /// What is missing of each crossing's coordinates.
     pub(crate) low: Vec<Point2>,
     pub(crate) edges: Vec<Edge>,
-    /// The lines of the plan.
+    /// The lines of the plan, and then its joints.
     pub(crate) walls: Vec<Segment2>,
+    /// For each of them the line of the plan: of a joint the one that it leads to.
+    lines: Vec<LineId>,
     frame: Aabb<2>,
     pub(crate) locator: Locator,
 }
@@ -68,14 +70,25 @@ impl WallMesh {
             }
             walls.push((Segment2::new(line.a, line.b), id));
         }
+        // A joint that sticks out of a wall is not let out of the frame by the margins around walls, but may be by a given frame.
+        let joints = plan.joints().iter().zip(plan.lines().len() as u32..);
+        for (joint, id) in joints {
+            if !inside(joint.to) {
+                return Err(MeshError::Frame { line: joint.line.0 as usize });
+            }
+            walls.push((joint.segment(), id));
+        }
         let builder = Builder::new(&walls, &frame)?;
         let (corners, crossings, edges) = builder.finish();
         let locator = Locator::new(&corners, &edges, &frame);
         let first = corners.len() - crossings.len();
         let low = crossings.iter().zip(&corners[first..]);
         let low = low.map(|([l, m], corner)| low_part(Exact::Crossing(*l, *m), corner.at)).collect();
-        let walls = plan.lines().iter().map(|line| Segment2::new(line.a, line.b)).collect();
-        Ok(Self { corners, crossings, low, edges, walls, frame, locator })
+        let segments = plan.lines().iter().map(|line| Segment2::new(line.a, line.b));
+        let walls = segments.chain(plan.joints().iter().map(Joint::segment)).collect();
+        let own = (0..plan.lines().len() as u32).map(LineId);
+        let lines = own.chain(plan.joints().iter().map(|joint| joint.line)).collect();
+        Ok(Self { corners, crossings, low, edges, walls, lines, frame, locator })
     }
 
     /// The box at which every view ends.
@@ -93,10 +106,10 @@ impl WallMesh {
         self.crossings.len()
     }
 
-    /// The line of the plan that an edge is a piece of.
+    /// The line of the plan that an edge is a piece of; of a joint the line that it leads to.
     pub(crate) fn wall_of(&self, edge: u32) -> Option<LineId> {
         let wall = self.edges[edge as usize].wall;
-        (wall != NONE).then_some(LineId(wall))
+        (wall != NONE).then(|| self.lines[wall as usize])
     }
 
     /// Start and end of an edge, as corners.

@@ -4,13 +4,13 @@ use crate::build::{KdOptions, subdivide};
 use crate::error::KdError;
 use crate::face::AxialFace;
 use crate::tree::{AxialCell, AxialPortal, AxialTree};
-use sightlines_cells::{CellGraph, ConvexCell2, LineId, Plan, PlanLine, Planar, Portal, Portal2};
+use sightlines_cells::{CellGraph, ConvexCell2, LineId, Plan, Planar, Portal, Portal2};
 use sightlines_geometry::Point2;
 
 /// What a k-d tree can follow of a plan.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct PlanFaces {
-    /// The opaque axis-parallel lines, in input order.
+    /// The opaque axis-parallel lines, in input order, and then the joints of the plan that are.
     pub faces: Vec<AxialFace<2>>,
     /// The opaque lines that run in another direction, ascending. They divide nothing and hide nothing.
     pub left_over: Vec<LineId>,
@@ -32,16 +32,17 @@ pub struct PlanSubdivision {
 pub fn plan_faces(plan: &Plan) -> PlanFaces {
     let mut out = PlanFaces::default();
     for (id, line) in (0u32..).map(LineId).zip(plan.lines()).filter(|(_, line)| line.opaque) {
-        match axial_face(line) {
+        match axial_face(line.a, line.b) {
             Some(face) => out.faces.push(face),
             None => out.left_over.push(id),
         }
     }
+    out.faces.extend(plan.joints().iter().filter_map(|joint| axial_face(joint.from, joint.to)));
     out
 }
 
-fn axial_face(line: &PlanLine) -> Option<AxialFace<2>> {
-    let (a, b) = (line.a.to_array(), line.b.to_array());
+fn axial_face(a: Point2, b: Point2) -> Option<AxialFace<2>> {
+    let (a, b) = (a.to_array(), b.to_array());
     let axis = (0..2).find(|&axis| a[axis] == b[axis])?;
     let end = |pick: fn(f64, f64) -> f64| std::array::from_fn(|k| pick(a[k], b[k]));
     Some(AxialFace::new(axis, end(f64::min), end(f64::max)))
@@ -89,7 +90,7 @@ fn planar_portal(portal: &AxialPortal<2>) -> Portal<Planar> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sightlines_cells::CellId;
+    use sightlines_cells::{CellId, PlanLine};
 
     fn line(ax: f64, ay: f64, bx: f64, by: f64) -> PlanLine {
         PlanLine::wall(Point2::new(ax, ay), Point2::new(bx, by))

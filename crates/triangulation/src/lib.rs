@@ -18,6 +18,7 @@
 
 mod crossing;
 mod grid;
+mod joined;
 mod merge;
 mod mesh;
 pub mod noding;

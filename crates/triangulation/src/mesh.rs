@@ -78,9 +78,9 @@ struct EdgeAttributes {
 
 impl EdgeAttributes {
     fn add(&mut self, plan: &Plan, noded: &Noded, piece: &Piece, forward: bool) {
-        let line = &plan.lines()[piece.line as usize];
-        let extra = &noded.extra[piece.line as usize];
         self.opaque |= piece.opaque;
+        let Some(line) = plan.lines().get(piece.line as usize) else { return };
+        let extra = &noded.extra[piece.line as usize];
         let (left, right) = if forward { (line.left, line.right) } else { (line.right, line.left) };
         self.left.extend(left.iter().chain(extra));
         self.right.extend(right.iter().chain(extra));

@@ -36,15 +36,23 @@
 //! crossing, and with them a side that names a group. So the lines that meet there name all their groups
 //! on both sides ([`Noded::extra`]).
 //!
+//! # Joints
+//! Where a plan has joints (see [`Plan::joined`]), an end that misses a wall by no more than 8 `reach` becomes a corner of that wall, which is
+//! bent through it, and ends that miss each other by so little become one corner. Any other joint is a piece of its own; one that leads to the
+//! inside of a wall ends where the wall is cut for it. All this is done once, before lines are cut again, so what was joined meets in common
+//! corners and stays so. Within `reach`, which is a sixteenth of the least gap at most, nothing is then swept over that is not joined: ends that near to a
+//! wall are joined to it, or hang together with it beside an opening narrower than the gap.
+//!
 //! What remains is the ordinary limit of a rounded model: a viewer within `reach` of a bent wall may be located in the
 //! cell on its other side.
 
 use crate::TriangulationError;
 use crate::crossing::cuts_at_crossing;
 use crate::grid::{PointGrid, SegmentGrid};
+use crate::joined::Joined;
 use crate::piece::{Cut, reach_of, sweeps};
 
-pub use crate::piece::Piece;
+pub use crate::piece::{JOINT, Piece};
 use sightlines_cells::Plan;
 use sightlines_geometry::{Point2, Segment2};
 
@@ -82,13 +90,14 @@ pub fn node(plan: &Plan) -> Result<Noded, TriangulationError> {
         extra: vec![Vec::new(); plan.lines().len()],
         ..Noded::default()
     };
+    let mut joined = Joined::new(plan);
     for _ in 0..MAX_ROUNDS {
         let meetings = find_meetings(&noded.pieces)?;
-        if meetings.is_empty() {
+        if meetings.is_empty() && joined.is_empty() {
             tidy(&mut noded);
             return Ok(noded);
         }
-        cut(plan, &mut noded, &meetings);
+        cut(plan, &mut noded, &meetings, &std::mem::take(&mut joined));
     }
     give_up_crossings(plan, &mut noded)?;
     tidy(&mut noded);
@@ -154,7 +163,7 @@ fn meeting(segments: &[Segment2], i: usize, j: usize) -> Option<Meeting> {
     (crossing || touching()).then_some(Meeting { lines: [i, j], crossing })
 }
 
-fn cut(plan: &Plan, noded: &mut Noded, meetings: &[Meeting]) {
+fn cut(plan: &Plan, noded: &mut Noded, meetings: &[Meeting], joined: &Joined) {
     let lines = std::mem::take(&mut noded.pieces);
     let ends = PointGrid::new(lines.iter().flat_map(|l| [l.a, l.b]));
     let mut cuts: Vec<Vec<Cut>> = vec![Vec::new(); lines.len()];
@@ -178,18 +187,21 @@ fn cut(plan: &Plan, noded: &mut Noded, meetings: &[Meeting]) {
             }
         }
     }
+    joined.cuts.iter().for_each(|&(line, at)| cuts[line as usize].push(Cut::At(at)));
     for (i, near) in crossings.iter_mut().enumerate() {
         blur_crowds(plan, &mut noded.extra, &lines, i, near);
     }
     for (line, cuts) in lines.iter().zip(cuts) {
         for mut piece in pieces(line, cuts) {
-            if piece.opaque && sweeps(line, &piece, &ends) {
+            if piece.opaque && plan.joints().is_empty() && sweeps(line, &piece, &ends) {
                 piece.opaque = false;
                 noded.n_dropped_pieces += 1;
             }
-            noded.pieces.push(piece);
+            (piece.a, piece.b) = (joined.corner(piece.a), joined.corner(piece.b));
+            noded.pieces.extend(Some(piece).filter(|piece| piece.a != piece.b));
         }
     }
+    noded.pieces.extend(&joined.pieces);
 }
 
 /// Makes lines name all their groups on both sides where rounding may swallow a region: where a rounded
@@ -213,9 +225,10 @@ fn blur_crowds(plan: &Plan, extra: &mut [Vec<u32>], lines: &[Piece], own: usize,
 
 /// Makes lines name all their groups on both sides.
 fn blur(plan: &Plan, extra: &mut [Vec<u32>], lines: &[u32]) {
+    let lines = || lines.iter().filter(|&&line| line != JOINT);
     let side = |l: &u32| [plan.lines()[*l as usize].left, plan.lines()[*l as usize].right];
-    let names: Vec<u32> = lines.iter().flat_map(side).flatten().collect();
-    for &line in lines {
+    let names: Vec<u32> = lines().flat_map(side).flatten().collect();
+    for &line in lines() {
         extra[line as usize].extend(&names);
     }
 }
@@ -269,9 +282,11 @@ fn give_up_crossings(plan: &Plan, noded: &mut Noded) -> Result<(), Triangulation
             }
             let victim = m.lines.into_iter().find(|&i| !noded.pieces[i].opaque).unwrap_or(m.lines[1]);
             let piece = noded.pieces[victim];
-            let line = &plan.lines()[piece.line as usize];
-            noded.everywhere.extend([line.left, line.right].into_iter().flatten());
-            noded.everywhere.extend(&noded.extra[piece.line as usize]);
+            if piece.line != JOINT {
+                let line = &plan.lines()[piece.line as usize];
+                noded.everywhere.extend([line.left, line.right].into_iter().flatten());
+                noded.everywhere.extend(&noded.extra[piece.line as usize]);
+            }
             noded.n_dropped_pieces += usize::from(piece.opaque);
             gone[victim] = true;
         }

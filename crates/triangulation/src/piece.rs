@@ -12,9 +12,12 @@ pub struct Piece {
     pub b: Point2,
     /// Whether it blocks sight.
     pub opaque: bool,
-    /// Index of the line.
+    /// Index of the line; [`JOINT`] for a joint.
     pub line: u32,
 }
+
+/// In place of the index of a line: a joint of the plan, which names no groups.
+pub const JOINT: u32 = u32::MAX;
 
 impl Piece {
     pub(crate) fn segment(&self) -> Segment2 {

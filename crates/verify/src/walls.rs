@@ -6,7 +6,7 @@
 //! back; in space the box around all cells takes its place.
 //!
 //! A line or triangle covers a border if it lies on its line or plane, exactly. So borders along walls whose crossings had to be rounded are not
-//! found to be covered, although they are.
+//! found to be covered, although they are. In a plan with joints a line covers what is within the gap, as openings up to that count as closed.
 
 use num_rational::BigRational;
 use num_traits::{Signed, ToPrimitive, Zero};
@@ -191,7 +191,8 @@ fn half(polygon: &[Exact], a: &Exact, b: &Exact, sign: i32) -> Vec<Exact> {
     part
 }
 
-/// Checks that every wall of the cells of a table is covered by opaque lines of a plan. Exact.
+/// Checks that every wall of the cells of a table is covered by opaque lines of a plan. Exact, but for a plan with a [gap](Plan::gap): there what is
+/// within the gap of a wall or a joint counts as covered.
 ///
 /// Cost: O(sides of cells * lines) comparisons of boxes.
 pub fn check_walls_of_plan(table: &Table, plan: &Plan) -> WallFindings {
@@ -203,7 +204,7 @@ pub fn check_walls_of_plan(table: &Table, plan: &Plan) -> WallFindings {
             portal.cells.iter().for_each(|cell| portals[cell.idx()].push(ends));
         }
     }
-    let lines: Vec<[Point2; 2]> = plan.lines().iter().filter(|l| l.opaque).map(|l| [l.a, l.b]).collect();
+    let lines: Vec<[Point2; 2]> = plan.walls().map(|wall| [wall.a, wall.b]).collect();
     let mut findings = WallFindings::default();
     for (cell, record) in table.cells().iter().enumerate() {
         let corners: Vec<Point2> = record.polygon.iter().map(|&[x, y]| Point2::new(x, y)).collect();
@@ -212,14 +213,18 @@ pub fn check_walls_of_plan(table: &Table, plan: &Plan) -> WallFindings {
             // Along the coordinate that changes more; along one line the order of points is that of either.
             let along = |p: Point2| if (b.x - a.x).abs() >= (b.y - a.y).abs() { p.x } else { p.y };
             let (low, high) = (along(a).min(along(b)), along(a).max(along(b)));
-            let on_line = |ends: &&[Point2; 2]| ends.iter().all(|&p| orient2d(a, b, p) == 0.0);
-            let mut covers: Vec<[f64; 2]> = portals[cell]
-                .iter()
-                .chain(&lines)
-                .filter(|[p, q]| along(*p).min(along(*q)) < high && along(*p).max(along(*q)) > low)
-                .filter(on_line)
-                .map(|[p, q]| [along(*p).min(along(*q)), along(*p).max(along(*q))])
-                .collect();
+            let is_on = |[p, q]: &[Point2; 2], gap: f64| match gap > 0.0 {
+                false => [p, q].iter().all(|&&p| orient2d(a, b, p) == 0.0),
+                true => [a, b].iter().all(|&end| orient2d(*p, *q, end).abs() <= gap * p.distance(*q)),
+            };
+            let cover = |ends: &[Point2; 2], gap: f64| {
+                let [p, q] = ends.map(along);
+                let range = [p.min(q) - gap, p.max(q) + gap];
+                (range[0] < high && range[1] > low && is_on(ends, gap)).then_some(range)
+            };
+            let portals = portals[cell].iter().filter_map(|ends| cover(ends, 0.0));
+            let mut covers: Vec<[f64; 2]> =
+                portals.chain(lines.iter().filter_map(|ends| cover(ends, plan.gap()))).collect();
             covers.sort_by(|x, y| x[0].total_cmp(&y[0]));
             let reach = covers.iter().fold(low, |reach, c| if c[0] <= reach { reach.max(c[1]) } else { reach });
             let is_outer = || hull.iter().all(|&p| orient2d(a, b, p) >= 0.0);

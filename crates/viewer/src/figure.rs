@@ -44,14 +44,14 @@ impl Figure {
         Self::of_objects(objects.iter().map(|(corners, triangles)| (&corners[..], &triangles[..])))
     }
 
-    /// The lines of a plan that block sight. O(lines).
+    /// The lines of a plan that block sight, and its joints. O(lines).
     pub fn of_plan(plan: &Plan) -> Self {
         let bounds = plan.bounds();
         let origin = if bounds.is_empty() { [0.0; 3] } else { [middle(&bounds, 0), middle(&bounds, 1), 0.0] };
         let wall = |a: sightlines_geometry::Point2, b: sightlines_geometry::Point2| {
             [from(origin[0], a.x), from(origin[1], a.y), from(origin[0], b.x), from(origin[1], b.y)]
         };
-        let walls = plan.lines().iter().filter(|line| line.opaque).map(|line| wall(line.a, line.b)).collect();
+        let walls = plan.walls().map(|segment| wall(segment.a, segment.b)).collect();
         Self { origin, walls, ..Self::default() }
     }
 

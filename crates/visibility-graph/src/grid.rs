@@ -106,7 +106,7 @@ impl PixelGrid {
         if !(spacing > 0.0 && spacing.is_finite()) {
             return Err(GridError::Spacing(spacing));
         }
-        let walls: Vec<Segment2> = plan.lines().iter().filter(|l| l.opaque).map(|l| Segment2::new(l.a, l.b)).collect();
+        let walls: Vec<Segment2> = plan.walls().collect();
         let bounds: Aabb<2> = Aabb::around(walls.iter().flat_map(|wall| [wall.a, wall.b]).map(|p| [p.x, p.y]));
         if bounds.is_empty() {
             return Err(GridError::NoWalls);

@@ -31,7 +31,7 @@ class Plan:
     """A floor plan, a street map, a section: walls that hide what is behind them, from both sides.
 
     Walls may cross, overlap, touch and repeat, and polygons may cross themselves: their outlines are walls. Coordinates are taken as they are, and
-    decisions are exact for them. It never changes.
+    decisions are exact for them; where ends of walls miss others only by rounding, they are joined to them. It never changes.
 
     :param source: a path of a file with a plan (GeoJSON, DXF, or a WAD with a map of Doom); an array of walls (n, 2, 2) or (n, 4), both ends of
         each; a geometry of shapely, a list of them, a GeoSeries, a GeoDataFrame, or anything with ``__geo_interface__``. Points are objects,
@@ -40,6 +40,8 @@ class Plan:
     :param map: which map of a WAD
     :param layers: which layers of a DXF file are read; by default all that are neither frozen nor off
     :param deviation: how far the straight pieces of a curve of a DXF file may be from it
+    :param gap: how precise coordinates are, in units of the plan: ends of walls that miss others by no more are joined to them, so openings up to
+        this width may count as closed. None: what the digits of coordinates explain; 0: exactly as they are
     :raises ValueError: for coordinates and shapes that cannot be used
     :raises OSError: for a file that cannot be read
     :raises Error: for a damaged file
@@ -61,6 +63,7 @@ class Plan:
         map: str | None = None,
         layers: Sequence[str] | None = None,
         deviation: float | None = None,
+        gap: float | None = None,
     ) -> None:
         self.crs = crs_of(source) if crs is None else crs
         self.layers = []
@@ -79,6 +82,7 @@ class Plan:
             self._inner = _native.Plan.from_geojson(geojson_of(mapping))
         else:
             self._inner = _native.Plan.from_walls(_walls(source))
+        self._inner = self._inner.joined(gap)
 
     @classmethod
     def _of(cls, native: _native.Plan, crs: Any = None) -> Plan:
@@ -90,6 +94,11 @@ class Plan:
     def walls(self) -> NDArray[np.float64]:
         """The walls: shape (n, 2, 2), both ends of each. Lines that do not block sight are left out."""
         return self._inner.walls()
+
+    @property
+    def gap(self) -> float:
+        """Openings up to this width are closed, as ends of walls are joined to others within it; 0 if there is nothing to join."""
+        return self._inner.gap()
 
     @property
     def objects(self) -> list[str]:
@@ -115,7 +124,7 @@ class Plan:
         return self._inner.to_geojson()
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return (_unpickle, (self.to_geojson(), self.crs))
+        return (_unpickle, (self.to_geojson(), self.crs, self.gap))
 
     def __repr__(self) -> str:
         return f"<sightlines.Plan: {self._inner.n_lines()} lines>"
@@ -309,5 +318,5 @@ def _walls(source: Any) -> NDArray[np.float64]:
     raise ValueError(f"walls: an array of shape {walls.shape}, where (n, 2, 2) or (n, 4) is expected")
 
 
-def _unpickle(text: str, crs: Any) -> Plan:
-    return Plan._of(_native.Plan.from_geojson(text), crs)
+def _unpickle(text: str, crs: Any, gap: float = 0.0) -> Plan:
+    return Plan._of(_native.Plan.from_geojson(text).joined(gap), crs)

@@ -7,6 +7,7 @@ mod doubled;
 mod explain;
 mod floor;
 mod fronts;
+mod joints;
 mod limit;
 mod line_space;
 mod live;

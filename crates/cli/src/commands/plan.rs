@@ -7,7 +7,7 @@ use crate::output::{self, JsonSchema, Serialize, bytes, coordinate};
 use crate::plans::PlanArgs;
 use crate::surfaces::SurfaceArgs;
 use crate::up::UpArgs;
-use sightlines::bake::{Bakeable, FloorCut, floor_cut};
+use sightlines::bake::{Bakeable, FloorCut};
 use sightlines::cells::Plan;
 use sightlines::formats::geojson::{write_plan, write_plan_file};
 use sightlines::formats::{Input, InputKind, SceneFile};
@@ -79,7 +79,7 @@ fn cut(path: &Path, file: &SceneFile, height: Option<f64>) -> Result<FloorCut> {
             coordinate(bounds.max[up])
         )
     })?;
-    floor_cut(&file.scene, file.info.up, height).in_file(path)
+    FloorCut::of_file(file, height).in_file(path)
 }
 
 /// The plan that was written.

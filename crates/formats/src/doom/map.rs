@@ -129,7 +129,8 @@ impl DoomMap {
             name: format!("thing {} #{index}", thing.kind),
             bounds: Aabb::around([[thing.x, thing.y]]),
         });
-        Plan::new(lines.collect(), objects.collect())
+        // Vertices are where an editor put them: integers, and in texts what was meant.
+        Ok(Plan::new(lines.collect(), objects.collect())?.with_precision(Some(0.0)))
     }
 }
 

@@ -11,7 +11,9 @@
 //! | `"name"`, else `"id"` | what its points are called |
 //! | `"object": "box"` | its points are corners of one object, not an object each |
 //!
-//! A member `crs` of the whole, as older files have, is kept as it is and written again ([`write_plan_file`]). Lines without length and
+//! A member `crs` of the whole, as older files have, is kept as it is and written again ([`write_plan_file`]). A member
+//! `sightlines_precision` of the whole states how precise coordinates are ([`Plan::precision`](sightlines_cells::Plan::precision)), in units of the
+//! plan; without it their digits tell. Lines without length and
 //! lines that repeat others are dropped and counted ([`PlanFile`](crate::PlanFile)). Other properties and members mean nothing here. The reader works as it goes and keeps nothing but the
 //! plan and one geometry, so a large file that is no plan costs no memory.
 

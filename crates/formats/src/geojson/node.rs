@@ -8,6 +8,7 @@ use super::coordinates::Coordinates;
 use super::geometry::{Geometry, GeometryKind};
 use super::plan_builder::PlanBuilder;
 use super::properties::{OfFeature, Properties, name_of, text_of};
+use super::write::PRECISION;
 use crate::error::{Malformed, malformed};
 use crate::json::{Any, NOT_AN_OBJECT, Scalar, Seed, Shape};
 use serde::de::{Error, IgnoredAny, MapAccess, SeqAccess};
@@ -63,6 +64,16 @@ impl<'de> Shape<'de> for Node<'_> {
     }
 }
 
+/// A length, if it is one.
+fn length_of(value: Scalar<'_>) -> Option<f64> {
+    let length = match value {
+        Scalar::Number(x) => x,
+        Scalar::Integer(x) => x as f64,
+        _ => return None,
+    };
+    Some(length).filter(|x| x.is_finite() && *x >= 0.0)
+}
+
 impl Node<'_> {
     fn read_member<'de, A: MapAccess<'de>>(
         &mut self,
@@ -110,6 +121,13 @@ impl Node<'_> {
             "crs" if top => {
                 let crs = map.next_value::<Box<RawValue>>()?;
                 builder.crs.replace(crs.get().to_owned()).is_some()
+            }
+            PRECISION if top => {
+                let Some(precision) = map.next_value_seed(Seed(Any(length_of)))? else {
+                    let what = format_args!("\"{PRECISION}\" is not a number from 0 on");
+                    return Err(builder.context.fail(what));
+                };
+                builder.precision.replace(precision).is_some()
             }
             _ => {
                 map.next_value::<IgnoredAny>()?;

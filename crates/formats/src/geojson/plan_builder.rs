@@ -16,6 +16,8 @@ pub(super) struct PlanBuilder {
     objects: Vec<PlanObject>,
     /// The JSON text of the member `crs`.
     pub(super) crs: Option<String>,
+    /// What the file states of its precision.
+    pub(super) precision: Option<f64>,
     pub(super) context: Context,
 }
 
@@ -25,7 +27,8 @@ impl PlanBuilder {
         // Coordinates and lengths were checked on the way; only the number of lines is left.
         let mut file = self.lines.finish(self.objects)?;
         file.warnings.extend(degrees_warning(&file.plan, self.crs.as_deref()));
-        Ok(PlanFile { crs: self.crs, ..file })
+        let plan = file.plan.with_precision(self.precision);
+        Ok(PlanFile { crs: self.crs, plan, ..file })
     }
 
     /// Adds the geometries of one feature to the plan.

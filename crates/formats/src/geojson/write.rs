@@ -4,11 +4,16 @@ use crate::PlanFile;
 use sightlines_cells::{LineId, Plan, PlanLine, PlanObject};
 use std::fmt::Write;
 
+/// The member that states how precise coordinates are.
+pub(super) const PRECISION: &str = "sightlines_precision";
+
 /// A plan as a GeoJSON FeatureCollection, which [`super::parse_plan`] reads back as the same plan.
 ///
 /// Lines come first, then objects, in the plan's order: lines as LineStrings, objects as Points, or as
 /// MultiPoints of two corners if they have extent. Numbers are the shortest decimals that mean them.
 /// Only groups below [`super::MAX_GROUPS`] are read back.
+///
+/// What the plan [states](Plan::stated_precision) of its precision becomes the member `sightlines_precision`; joints are not written.
 ///
 /// Of a plan with doubled lines, which [`Plan::new`] allows, they are dropped when it is read again.
 pub fn write_plan(plan: &Plan) -> String {
@@ -27,6 +32,10 @@ fn write_with(plan: &Plan, crs: Option<&str>) -> String {
     let mut text = String::from("{\"type\":\"FeatureCollection\",");
     if let Some(crs) = crs {
         text.extend(["\"crs\":", crs, ","]);
+    }
+    if let Some(precision) = plan.stated_precision() {
+        // Writing to a String cannot fail.
+        _ = write!(text, "\"{PRECISION}\":{precision:?},");
     }
     text.push_str("\"features\":[");
     for (index, feature) in features.enumerate() {

@@ -1,6 +1,7 @@
 //! Tests of isovists and of sight between points.
 
 mod fractions;
+mod joints;
 mod measures;
 mod oracle;
 mod regions;

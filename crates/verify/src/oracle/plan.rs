@@ -33,7 +33,7 @@ impl PlanWorld {
     /// `None` if the table has no outlines of its cells.
     pub(crate) fn new(table: &Table, plan: &Plan) -> Option<Self> {
         let cells = outlines(table)?;
-        let walls: Vec<[Point2; 2]> = plan.lines().iter().filter(|l| l.opaque).map(|l| [l.a, l.b]).collect();
+        let walls: Vec<[Point2; 2]> = plan.walls().map(|wall| [wall.a, wall.b]).collect();
         let around = |points: &[Point2]| Aabb::around(points.iter().map(|p| [p.x, p.y]));
         let wall_boxes: Vec<Aabb<2>> = walls.iter().map(|w| around(w)).collect();
         let cell_boxes: Vec<Aabb<2>> = cells.iter().map(|c| around(c)).collect();
@@ -41,7 +41,7 @@ impl PlanWorld {
         let bounds = cell_boxes.iter().fold(Aabb::EMPTY, |all: Aabb<2>, b| all.with(b.min).with(b.max));
         let size = if bounds.is_empty() { 0.0 } else { Point2::from(bounds.max).distance(Point2::from(bounds.min)) };
         let wall_tree = BoxTree::build(&wall_boxes, 4);
-        let rounded = has_rounded_crossings(plan);
+        let rounded = !plan.joints().is_empty() || has_rounded_crossings(plan);
         let mut gates = vec![Vec::new(); cells.len()];
         for record in table.portals() {
             let [left, right] = ends(record);
@@ -60,7 +60,7 @@ impl PlanWorld {
             slack: scale * 2f64.powi(-40),
             // Where lines cross at a point that is no pair of doubles, walls are bent by up to 2^-49 of its coordinates in each
             // of at most eight rounds (`triangulation::noding`), and who stands that near may be counted to the cell
-            // behind. 2^-40 is 64 times all of that.
+            // behind. Walls are bent through ends that are joined to them by 2^-46 at most, once. 2^-40 is 64 times all of that.
             clearance: if rounded { scale * 2f64.powi(-40) } else { 0.0 },
             size,
         })

@@ -47,6 +47,9 @@ pub struct VerifyReport {
     /// The frame of the table, if it has one: the scene was moved into it, and places are along its axes.
     #[serde(skip_serializing_if = "Option::is_none")]
     frame: Option<FrameFacts>,
+    /// Of a plan, if the table states it: openings up to this width count as closed, as ends of walls were joined to others within it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    gap: Option<f64>,
     /// What was checked besides the structure.
     checked: Checked,
     /// The lump that was checked, of a map's own visibility.
@@ -179,6 +182,7 @@ impl VerifyReport {
             n_followed: found.n_followed,
             n_sequences: found.n_sequences,
             frame: None,
+            gap: None,
             checked,
             own,
             no_rays: found.no_rays,
@@ -204,6 +208,11 @@ impl VerifyReport {
         let Some(frame) = frame else { return self };
         let (n_cracks, n_flattened) = (Some(self.remarks.cracks), Some(self.remarks.flattened));
         Self { frame: Some(frame.into()), n_cracks, n_flattened, wide_gap, ..self }
+    }
+
+    /// The same of a plan whose walls were joined within a gap, if it is above 0.
+    pub fn with_gap(self, gap: f64) -> Self {
+        Self { gap: Some(gap).filter(|gap| *gap > 0.0), ..self }
     }
 
     /// The same with a picture, if one was drawn.
@@ -253,6 +262,9 @@ impl fmt::Display for VerifyReport {
                 f,
                 "               the scene was moved into it, every corner by less than that; places are along its axes"
             )?;
+        }
+        if let Some(gap) = self.gap {
+            writeln!(f, "precision      walls that miss each other by no more than {gap:.2e} units were joined")?;
         }
         match self.no_rays {
             Some(why) => writeln!(f, "rays           none: {why}")?,

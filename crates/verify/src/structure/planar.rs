@@ -52,7 +52,7 @@ fn extent(plan: &Plan) -> Aabb<2> {
 }
 
 fn portals(table: &Table, plan: &Plan, cells: &[Vec<Point2>], findings: &mut Findings) {
-    let walls: Vec<[Point2; 2]> = plan.lines().iter().filter(|l| l.opaque).map(|l| [l.a, l.b]).collect();
+    let walls: Vec<[Point2; 2]> = plan.walls().map(|wall| [wall.a, wall.b]).collect();
     let boxes: Vec<Aabb<2>> = walls.iter().map(|w| Aabb::around(w.map(|p| [p.x, p.y]))).collect();
     let tree = BoxTree::build(&boxes, 4);
     for (portal, record) in table.portals().iter().enumerate() {

@@ -21,9 +21,10 @@ pub(crate) struct BakeArgs {
     /// [default: chosen from the scene]
     #[arg(long, help_heading = "Cells", value_name = "SIZE", value_parser = size, allow_hyphen_values = true)]
     detail_below: Option<f64>,
-    /// Scenes in space: how precise coordinates are, in scene units. Walls within WIDTH/2 of a plane across an axis of the building,
-    /// which may be turned in its file, are taken to lie in it. Errs towards hidden by no more than that: openings narrower than WIDTH may count as
-    /// closed, and what is thinner as hidden. 0 takes every coordinate as it is, and does not err so [default: for glTF what single
+    /// Plans and scenes in space: how precise coordinates are, in scene units. Plans: ends of walls that miss others by no more than WIDTH
+    /// are joined to them. Scenes: walls within WIDTH/2 of a plane across an axis of the building, which may be turned in its file, are taken to lie in
+    /// it. Errs towards hidden by no more than that: openings narrower than WIDTH may count as closed, and what is thinner as hidden. 0 takes every
+    /// coordinate as it is, and does not err so [default: for plans what the digits of the file explain; for glTF what single
     /// precision explains, about a millionth of the building's size, where that puts many walls into planes; else 0]
     #[arg(long, help_heading = "Method", value_name = "WIDTH", value_parser = size, allow_hyphen_values = true)]
     gap: Option<f64>,

@@ -3,7 +3,7 @@
 use super::brief::{Brief, of_cells};
 use crate::facts::times;
 use crate::output::{JsonSchema, Serialize, bytes, count, percent};
-use sightlines::bake::PlanReport;
+use sightlines::bake::{PlanReport, stated_gap};
 use sightlines::pvs::Table;
 use sightlines::report::Summary;
 use std::fmt;
@@ -19,6 +19,11 @@ pub(super) fn warn(path: &Path, report: &PlanReport) {
     say(report.n_ignored_walls, "wall", "do not block sight: the k-d tree does not follow them");
     say(report.n_lost_mirrors, "mirror", "do not reflect everywhere: a part is on no border of a cell");
     say(report.n_dropped_pieces, "piece", "of walls do not block sight: rounding could have closed a gap beside them");
+    say(
+        report.n_near_misses,
+        "end",
+        "of walls miss others by little: if they were meant to meet, --gap WIDTH joins those within WIDTH",
+    );
     if report.n_rounded_crossings > 0 {
         let n = count(report.n_rounded_crossings as u64, "crossing");
         tracing::info!("{}: {n} of lines had to be rounded, towards visible", path.display());
@@ -40,6 +45,12 @@ pub(crate) struct Outcome {
     subdivide: String,
     #[serde(flatten)]
     pub(crate) table: Summary,
+    /// Openings of walls up to this width were closed, in units of the plan; 0 if coordinates were taken exactly as they are.
+    gap: f64,
+    /// Joints that close such openings.
+    n_joints: usize,
+    /// Ends of walls that miss others by little, and yet by more than the gap.
+    n_near_misses: usize,
     /// Walls that block nothing because the k-d tree cannot follow them.
     n_ignored_walls: usize,
     /// Crossings of lines whose point was rounded, towards visible.
@@ -61,6 +72,9 @@ impl Outcome {
             map,
             subdivide: did.subdivide.to_string(),
             table: Summary::of(table),
+            gap: stated_gap(table),
+            n_joints: did.n_joints,
+            n_near_misses: did.n_near_misses,
             n_ignored_walls: did.n_ignored_walls,
             n_rounded_crossings: did.n_rounded_crossings,
             n_dropped_pieces: did.n_dropped_pieces,
@@ -109,6 +123,10 @@ impl fmt::Display for Outcome {
         let map = self.map.as_ref().map_or(String::new(), |name| format!(" of map {name}"));
         writeln!(f, "wrote {}{map}, {}", self.out, bytes(self.table.n_bytes as u64))?;
         writeln!(f, "method         {} in the plane, exact planar stabbing", self.subdivision())?;
+        if self.gap > 0.0 {
+            let joints = count(self.n_joints as u64, "joint");
+            writeln!(f, "precision      {joints} where walls miss each other by no more than {:.2e} units", self.gap)?;
+        }
         write!(f, "{}", self.facts())?;
         writeln!(f, "time           {}", self.times())
     }

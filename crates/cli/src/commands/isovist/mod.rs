@@ -8,7 +8,7 @@ use crate::input::{self, refuse};
 use crate::output::{self, JsonSchema, Serialize, bytes, count};
 use crate::output_kind::OutputKind as Kind;
 use crate::place::Point;
-use crate::plans::{PlanArgs, walls};
+use crate::plans::{GapArg, PlanArgs, walls};
 use crate::surfaces::SurfaceArgs;
 use sightlines::bake::Bakeable;
 use sightlines::cells::Plan;
@@ -32,6 +32,8 @@ pub(crate) struct IsovistArgs {
     map: Option<String>,
     #[command(flatten)]
     plans: PlanArgs,
+    #[command(flatten)]
+    gap: GapArg,
     #[command(flatten)]
     surfaces: SurfaceArgs,
     /// Scenes in space: the scene's table, so that no rays are spent on objects that it hides
@@ -92,6 +94,7 @@ pub(crate) fn run(args: &IsovistArgs, _: Verbosity) -> Result<Done> {
     refuse(&args.plan, &args.surfaces.given(), "scenes in space", "a plan")?;
     let limits = limits(args)?;
     let (plan, crs) = plan(args)?;
+    let plan = args.gap.join(&args.plan, plan)?;
     let mesh = WallMesh::new(&plan).in_file(&args.plan)?;
     let areas = areas(&mesh, &eyes(args)?, &limits)?;
     let names = Measures::default().named().map(|(name, _)| name);

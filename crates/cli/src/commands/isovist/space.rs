@@ -20,6 +20,7 @@ pub(super) fn run(args: &IsovistArgs, kind: Kind) -> Result<Done> {
         ("--fov", args.fov.is_some()),
     ];
     refuse(path, &given, "plans", "a scene in space")?;
+    refuse(path, &args.gap.given(), "plans", "a scene in space")?;
     if kind != Kind::Csv {
         bail!(
             "{}: isovists of scenes in space are written as CSV; give a name that ends in .csv",

@@ -82,7 +82,7 @@ pub(crate) fn run(args: &VerifyArgs, Verbosity { show_progress, .. }: Verbosity)
     let scene = truth::Real::read(&args.scene, args.map.as_deref(), args.prt.as_deref(), (&options, &plan))?;
     let scene = match own {
         Some(_) => scene.for_every_engine(&args.scene, args.map.as_deref())?.without_objects(),
-        None => scene,
+        None => scene.joined_for(&args.scene, table)?,
     };
     if own.is_some() {
         let found = "a map with its own";
@@ -121,6 +121,7 @@ pub(crate) fn run(args: &VerifyArgs, Verbosity { show_progress, .. }: Verbosity)
     let wide_gap = frame.and_then(|frame| scene.times_too_wide(frame.gap()));
     let outcome = VerifyReport::new(files, has_digests, &findings, violations, about, proofs, time)
         .with_picture(drawn)
+        .with_gap(scene.gap())
         .in_frame(frame.as_ref(), wide_gap)
         .with_unproven(unproven, args.proofs.is_strict());
     let is_true = outcome.is_true();

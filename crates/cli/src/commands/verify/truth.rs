@@ -4,7 +4,7 @@ use super::own::JUDGED_FOR;
 use crate::error::{ErrorAbout, Result};
 use crate::input::{self, refuse};
 use crate::map_portals::{do_not_fit, portals_for};
-use sightlines::bake::{Bakeable, Gap};
+use sightlines::bake::{Bakeable, Gap, stated_gap};
 use sightlines::cells::{CellGraph, Convex, Plan, Scene};
 use sightlines::formats::quake::graph_of_prt;
 use sightlines::formats::quake::visibility::check_portals;
@@ -63,13 +63,31 @@ impl Real {
     pub(super) fn without_objects(self) -> Self {
         match self {
             Self::Plan(plan) => {
-                Self::Plan(Plan::new(plan.lines().to_vec(), Vec::new()).expect("the lines are those of a plan"))
+                let gap = plan.gap();
+                let plan = Plan::new(plan.lines().to_vec(), Vec::new()).and_then(|plan| plan.joined(gap));
+                Self::Plan(plan.expect("the lines and the gap are those of a plan"))
             }
             Self::Map(graph, tree) => {
                 let listed = vec![Vec::new(); tree.listed.len()];
                 Self::Map(graph, MapTree { faces: Vec::new(), listed, ..tree })
             }
             other => other,
+        }
+    }
+
+    /// The same with walls of a plan joined as for a table.
+    pub(super) fn joined_for(self, path: &Path, table: &Table) -> Result<Self> {
+        match self {
+            Self::Plan(plan) => Ok(Self::Plan(plan.joined(stated_gap(table)).in_file(path)?)),
+            other => Ok(other),
+        }
+    }
+
+    /// The gap within which walls of a plan were joined; 0 for others.
+    pub(super) const fn gap(&self) -> f64 {
+        match self {
+            Self::Plan(plan) => plan.gap(),
+            _ => 0.0,
         }
     }
 

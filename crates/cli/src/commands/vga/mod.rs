@@ -12,7 +12,7 @@ use crate::named::one_of;
 use crate::output;
 use crate::output_kind::OutputKind as Kind;
 use crate::place::Point;
-use crate::plans::{PlanArgs, walls};
+use crate::plans::{GapArg, PlanArgs, walls};
 use crate::progress::Bar;
 use outcome::{Outcome, Range};
 use sightlines::bake::Bakeable;
@@ -48,6 +48,8 @@ pub(crate) struct VgaArgs {
     map: Option<String>,
     #[command(flatten)]
     plans: PlanArgs,
+    #[command(flatten)]
+    gap: GapArg,
     /// Distance of neighbouring points along an axis, in scene units; of points of a file the side of their squares in pictures
     #[arg(long, help_heading = "Points", value_name = "LENGTH", required_unless_present = "points")]
     spacing: Option<f64>,
@@ -234,11 +236,11 @@ impl VgaArgs {
     fn identity(&self, inputs: &Inputs) -> Identity {
         #[rustfmt::skip]
         let Self {
-            plan: _, map, plans, spacing, seed, points: _, measures, radius, metric_radius, angular_radius, turns, touch,
+            plan: _, map, plans, gap, spacing, seed, points: _, measures, radius, metric_radius, angular_radius, turns, touch,
             threads: _, memory: _, resume: _, measure, size: _, output: _, json: _,
         } = self;
         let mut identity = kept::identity("vga", inputs);
-        identity.debug("points", &(map, plans, spacing, seed));
+        identity.debug("points", &(map, plans, gap, spacing, seed));
         identity.debug("measures", &(measures, measure, radius, metric_radius, angular_radius, turns, touch));
         identity
     }
@@ -263,7 +265,7 @@ fn plan_of(args: &VgaArgs) -> Result<Plan> {
     if matches!(kind, Some(InputKind::Plan | InputKind::Wad)) {
         let read = input::read(path, map, &SceneReadOptions::default(), &options)?;
         if let Bakeable::Plan { plan, .. } = input::bakeable(path, read, map, None)? {
-            return Ok(plan);
+            return args.gap.join(path, plan);
         }
     }
     Err(input::neither(path, "a plan nor a WAD"))

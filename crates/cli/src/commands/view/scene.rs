@@ -1,10 +1,10 @@
 //! The scene that a table was made of, as it is drawn.
 
 use super::ViewArgs;
-use crate::error::Result;
+use crate::error::{ErrorAbout, Result};
 use crate::input;
 use crate::same_scene::{drawn, other};
-use sightlines::bake::Bakeable;
+use sightlines::bake::{Bakeable, stated_gap};
 use sightlines::pvs::Table;
 use sightlines::viewer::Figure;
 use std::path::Path;
@@ -27,6 +27,6 @@ pub(super) fn figure(path: &Path, args: &ViewArgs, table: &Table) -> Result<Figu
     }
     match table.digest().is_some_and(|digest| digest != plan.digest()) {
         true => Err(other(path, "its lines or objects differ from those of this file")),
-        false => Ok(Figure::of_plan(&plan)),
+        false => Ok(Figure::of_plan(&plan.joined(stated_gap(table)).in_file(path)?)),
     }
 }
