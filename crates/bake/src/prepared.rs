@@ -9,6 +9,7 @@ use crate::options::{Recipe, SceneMethod};
 use crate::region::{CellsFrom, PackRegionsError};
 use crate::reports::RegionReport;
 use crate::request::{BakeRequest, Runtime};
+use crate::surroundings::{Surrounding, surroundings};
 use crate::{run, threads};
 use sightlines_cells::Scene;
 use sightlines_formats::SceneInfo;
@@ -52,6 +53,9 @@ pub struct BakeDecisions {
     pub viewers: Option<StatedViewers>,
     /// How many times the surface of given cells the boxes have that are taken in their place; see [`growth_of_cells`].
     pub cells_growth: f64,
+    /// The objects around everything else, ascending: skies and the like, which every cell sees, and without which the rest is baked. None are looked for
+    /// where the cells, a view region or the view volumes of the file say where viewers are, or proofs or stab trees are to be made.
+    pub surroundings: Vec<u32>,
     /// How the methods were chosen, if that was asked for, or if it was found that more than sightlines pays.
     pub choice: Option<Choice>,
 }
@@ -70,6 +74,8 @@ pub struct StatedViewers {
 pub struct PreparedBake<'i> {
     input: BakeInput<'i>,
     framed: Option<Framed>,
+    /// The scene without its surroundings, along the frame, if it has any.
+    rest: Option<Scene>,
     recipe: Recipe,
     decisions: BakeDecisions,
 }
@@ -81,7 +87,7 @@ impl<'i> PreparedBake<'i> {
         let mut recipe = request.recipe();
         let BakeInput::Scene(of_file, file) = input else {
             decisions.choice = is_auto.then(|| no_choice(&input));
-            return Ok(Self { input, framed: None, recipe, decisions });
+            return Ok(Self { input, framed: None, rest: None, recipe, decisions });
         };
         if let Some(cells) = &request.cells {
             recipe.cells = cells.clone();
@@ -90,12 +96,25 @@ impl<'i> PreparedBake<'i> {
             decisions.viewers = file.and_then(stated_viewers);
             recipe.cut.view_region = decisions.viewers.map(|viewers| viewers.region);
         }
-        let framed = Framed::of(of_file, file, request)?;
+        let is_open = recipe.cut.view_region.is_none() && !matches!(recipe.cells, CellsFrom::Boxes(_));
+        if is_open && !request.for_proofs {
+            decisions.surroundings = surroundings(of_file);
+        }
+        let around = &decisions.surroundings[..];
+        let has_some = !around.is_empty();
+        let alone = has_some.then(|| of_file.without(around));
+        let framed = Framed::of_parts([of_file, alone.as_ref().unwrap_or(of_file)], file, request, around)?;
         decisions.cells_growth = growth_of_cells(request.cells.as_ref(), framed.as_ref());
         if let Some(framed) = &framed {
             framed.put_into(&mut recipe);
         }
-        let scene = framed.as_ref().map_or(of_file, |framed| &framed.moved.scene);
+        let whole = framed.as_ref().map_or(of_file, |framed| &framed.moved.scene);
+        let rest = if framed.is_some() { has_some.then(|| whole.without(around)) } else { alone };
+        if has_some {
+            recipe.digest = Some(of_file.digest());
+            recipe.surroundings = around.iter().map(|&object| Surrounding::of(whole, object)).collect();
+        }
+        let scene = rest.as_ref().unwrap_or(whole);
         let sightlines = request.method == Some(SceneMethod::Sightlines);
         // Mirrors reflect the cells of a k-d tree.
         if request.cells.is_none() && !sightlines && !request.for_proofs && scene.mirrors().is_empty() {
@@ -116,13 +135,14 @@ impl<'i> PreparedBake<'i> {
                 (recipe, decisions.choice) = (chosen, is_told.then_some(choice));
             }
         }
-        Ok(Self { input, framed, recipe, decisions })
+        Ok(Self { input, framed, rest, recipe, decisions })
     }
 
-    /// What is baked: of a scene that has a frame, the scene along it.
+    /// What is baked: of a scene that has a frame, the scene along it, and of one with surroundings, the rest.
     pub fn input(&self) -> BakeInput<'_> {
-        match (self.input, &self.framed) {
-            (BakeInput::Scene(_, file), Some(framed)) => BakeInput::Scene(&framed.moved.scene, file),
+        let moved = self.framed.as_ref().map(|framed| &framed.moved.scene);
+        match (self.input, self.rest.as_ref().or(moved)) {
+            (BakeInput::Scene(_, file), Some(scene)) => BakeInput::Scene(scene, file),
             (input, _) => input,
         }
     }
