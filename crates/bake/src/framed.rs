@@ -79,6 +79,9 @@ impl Framed {
     /// twentieth did not lie across one before; or if a side of a given cell is on a wall but for the rounding of the file. With a stated width, if
     /// any corner moves, or such a side.
     ///
+    /// The gap is then the one near the origin, or the one that coordinates stored far from it explain, if that brings a hundredth more of the area
+    /// across an axis.
+    ///
     /// Cells that are given along axes of their own ([`ViewCells::axes`](sightlines_formats::ViewCells)) are a gain: the frame is along
     /// these where less than half of the area lies across the axes of any frame, unless sightlines alone are used, and where nearly as much lies
     /// across theirs. If the file is as precise as doubles, the gap is then what taking the scene along the frame rounds ([`Gap::of_rounding`]); a stated gap of 0 leaves the

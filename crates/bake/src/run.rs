@@ -121,5 +121,5 @@ pub(crate) fn bake_packed<W: Write + Send>(
         surroundings::state(parts, &recipe.surroundings);
     };
     let around: Vec<u32> = recipe.surroundings.iter().map(|of| of.object).collect();
-    with_regions(scene, recipe, runtime, file, |regions| pack_regions_around(scene, regions, (&around, &stated), out))
+    with_regions(scene, recipe, runtime, file, |regions| pack_regions_around(scene, regions, &around, &stated, out))
 }

@@ -49,24 +49,26 @@ pub fn pack_regions<W: Write + Send>(
     state: &(dyn Fn(&mut TableParts) + Sync),
     out: W,
 ) -> Result<(W, RegionReport, PackReport), PackRegionsError> {
-    pack_regions_around(scene, options, (&[], state), out)
+    pack_regions_around(scene, options, &[], state, out)
 }
 
 /// The same, where all cells see the objects `around` the scene, of which it has no triangles.
 pub(crate) fn pack_regions_around<W: Write + Send>(
     scene: &Scene,
     options: &RegionBakeOptions<'_>,
-    (around, state): (&[u32], &(dyn Fn(&mut TableParts) + Sync)),
+    around: &[u32],
+    state: &(dyn Fn(&mut TableParts) + Sync),
     out: W,
 ) -> Result<(W, RegionReport, PackReport), PackRegionsError> {
-    threads::on(options.threads, || pack_here(scene, options, (around, state), out))
+    threads::on(options.threads, || pack_here(scene, options, around, state, out))
 }
 
 /// The same, on the threads that call it.
 fn pack_here<W: Write>(
     scene: &Scene,
     options: &RegionBakeOptions<'_>,
-    (around, state): (&[u32], &(dyn Fn(&mut TableParts) + Sync)),
+    around: &[u32],
+    state: &(dyn Fn(&mut TableParts) + Sync),
     out: W,
 ) -> Result<(W, RegionReport, PackReport), PackRegionsError> {
     let start = Instant::now();

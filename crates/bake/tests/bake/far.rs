@@ -45,7 +45,7 @@ fn framed(scene: &Scene, gap: Gap) -> Option<Framed> {
 fn walls(random: &mut Random) -> Scene {
     let wall = |k: usize, random: &mut Random| {
         let [x, z, long] = [13, 13, 6].map(|n| random.below(n) as f64);
-        let size = if k % 2 == 0 { [1.0 + long, 3.0, 0.25] } else { [0.25, 3.0, 1.0 + long] };
+        let size = if k.is_multiple_of(2) { [1.0 + long, 3.0, 0.25] } else { [0.25, 3.0, 1.0 + long] };
         block(&Aabb { min: [x, 0.0, z], max: [x + size[0], size[1], z + size[2]] }, false)
     };
     scene((0..6).map(|k| wall(k, random)).collect())

@@ -8,6 +8,7 @@ use sightlines_cells::{MovingObject, Scene, SceneObject};
 use sightlines_geometry::{Aabb, Point3, Random};
 use sightlines_packed::{PackOptions, SizeClass, pack};
 use sightlines_pvs::{ObjectId, Table};
+use sightlines_verify::{Truth, VerifyOptions, verify};
 
 fn boxed(min: Point3, max: Point3) -> SceneObject {
     block(&Aabb { min, max }, false)
@@ -198,6 +199,12 @@ fn rows_have_what_is_around_too() {
     let prepared = request.prepare(&with, &runtime).expect("good options");
     assert_eq!(prepared.decisions().surroundings, places);
     let table = prepared.run(&runtime).expect("a table").table;
+    // The impostor: a table of the rest that leaves out what is around.
+    let options = VerifyOptions { rays: 500, pairs: 50, tries: 8, seed: 7, threads: 1, ..VerifyOptions::default() };
+    let is_true = |table: &Table| verify(table, &Truth::Scene(&with), &options).expect("verified").is_true();
+    let mut parts = table.parts().clone();
+    parts.cell_objects[0].retain(|object| object.0 != places[0]);
+    assert!(is_true(&table) && !is_true(&Table::new(parts).expect("a table")));
     let (rows, report, _) = prepared.run_packed(Vec::new(), &runtime).expect("a packed table");
     let options = PackOptions { class: Some(SizeClass::Large), ..PackOptions::default() };
     assert_eq!(rows, pack(&table, &options).expect("packed"));
