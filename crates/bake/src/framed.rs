@@ -1,6 +1,6 @@
 //! Scenes, or cells given for them, that do not stand along the axes of the file: finding a frame before they are baked.
 
-use crate::gap::Gap;
+use crate::gap::{Gap, LEAST_GAIN};
 use crate::options::{Recipe, SceneMethod};
 use crate::region::{CellsFrom, upright};
 use crate::request::BakeRequest;
@@ -9,16 +9,20 @@ use sightlines_formats::{SceneInfo, ViewCell, ViewCells};
 use sightlines_frame::{Areas, FoundAxes, MoveError, Moved, are_near, axes_near, find_axes};
 use sightlines_geometry::Aabb;
 use sightlines_pvs::{Frame, GeometryDigest};
+use std::borrow::Cow;
 
 /// Unit vectors of the scene.
 type Axes = [[f64; 3]; 3];
 
 /// The axes of the scene.
 const PLAIN: Axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-/// Without a stated gap, a frame has to bring at least this share of the area across an axis that was not.
-const LEAST_GAIN: f64 = 0.05;
 /// The share of the area across the axes of the walls from which on other axes, of given cells, are as good.
 const AS_GOOD: f64 = 0.8;
+/// A gap that the size of stored coordinates explains is tried if it is so many times that near the origin: half of that holds the rounding of
+/// coordinates that are twice as large.
+const WIDER: f64 = 2.0;
+/// It is taken if it brings at least this share of the area across an axis.
+const MORE_WALLS: f64 = 0.01;
 /// Without a stated gap, at least this share of the area has to lie across an axis of the frame.
 const LEAST_FLAT: f64 = 0.5;
 
@@ -75,6 +79,9 @@ impl Framed {
     /// twentieth did not lie across one before; or if a side of a given cell is on a wall but for the rounding of the file. With a stated width, if
     /// any corner moves, or such a side.
     ///
+    /// The gap is then the one near the origin, or the one that coordinates stored far from it explain, if that brings a hundredth more of the area
+    /// across an axis.
+    ///
     /// Cells that are given along axes of their own ([`ViewCells::axes`](sightlines_formats::ViewCells)) are a gain: the frame is along
     /// these where less than half of the area lies across the axes of any frame, unless sightlines alone are used, and where nearly as much lies
     /// across theirs. If the file is as precise as doubles, the gap is then what taking the scene along the frame rounds ([`Gap::of_rounding`]); a stated gap of 0 leaves the
@@ -83,19 +90,54 @@ impl Framed {
     /// # Errors
     /// [`MoveError`] if a stated gap is below the rounding of the coordinates, or these become too large.
     pub fn of(scene: &Scene, file: Option<&SceneInfo>, request: &BakeRequest) -> Result<Option<Self>, MoveError> {
+        Self::of_parts([scene; 2], file, request, &[])
+    }
+
+    /// The same for a scene with surroundings: the rest decides, and all of the scene is taken along.
+    ///
+    /// * `whole`, `scene`: with the surroundings and without
+    pub(crate) fn of_parts(
+        [whole, scene]: [&Scene; 2],
+        file: Option<&SceneInfo>,
+        request: &BakeRequest,
+        surroundings: &[u32],
+    ) -> Result<Option<Self>, MoveError> {
         let asked = Asked::of(request);
         let (gap, is_stated) = match asked.gap {
             Gap::OfFile => (file.map_or(0.0, |file| Gap::of_file(scene, file)), false),
             Gap::OfSingle => (Gap::of_single(scene), false),
             Gap::Width(width) => (width, true),
         };
+        let before = Areas::of(scene);
+        let near = Self::with_gap([whole, scene], (gap, is_stated), before, asked, surroundings)?;
+        let wide =
+            if gap > 0.0 && !is_stated { Gap::of_stored(scene, file.map_or(&[], |f| &f.stored_sizes)) } else { 0.0 };
+        if wide < WIDER * gap || wide == 0.0 {
+            return Ok(near);
+        }
+        let walls = near.as_ref().map_or(before.axial, |near| near.after.axial);
+        let far = if walls < before.all {
+            Self::with_gap([whole, scene], (wide, false), before, asked, surroundings)?
+        } else {
+            None
+        };
+        Ok(far.filter(|far| far.after.axial - walls >= MORE_WALLS * before.all).or(near))
+    }
+
+    /// The frame with a gap.
+    fn with_gap(
+        [whole, scene]: [&Scene; 2],
+        (gap, is_stated): (f64, bool),
+        before: Areas,
+        asked: Asked<'_>,
+        surroundings: &[u32],
+    ) -> Result<Option<Self>, MoveError> {
         if !gap.is_finite() || gap <= 0.0 && is_stated {
             return Ok(None);
         }
-        let before = Areas::of(scene);
         let Some((axes, gap, along)) = axes(scene, gap, is_stated, before, asked) else { return Ok(None) };
         let Ok(frame) = Frame::new(axes, gap) else { return Ok(None) };
-        let moved = match Moved::new(scene, &frame) {
+        let moved = match Moved::new(whole, &frame) {
             Ok(moved) => moved,
             Err(error) if is_stated => return Err(error),
             Err(_) => return Ok(None),
@@ -106,12 +148,16 @@ impl Framed {
             (0..3).any(|k| b.min[k] >= b.max[k])
         };
         let is_upright = axes == PLAIN;
-        let after = Areas::of(&moved.scene);
-        let framed = Self { frame, digest: scene.digest(), along, moved, before, after };
+        let rest = match surroundings {
+            [] => Cow::Borrowed(&moved.scene),
+            around => Cow::Owned(moved.scene.without(around)),
+        };
+        let (after, becomes_flat) = (Areas::of(&rest), is_flat(&rest) && !is_flat(scene));
+        let framed = Self { frame, digest: whole.digest(), along, moved, before, after };
         // Of a scene with walls along the axes of its file, by default the cells alone are a reason.
         let has_walls = !is_stated && before.axial_share() > 1.0 - LEAST_GAIN;
         let stays = is_upright && (has_walls || framed.moved.n_snapped == 0) && !framed.moves_cells(asked.cells);
-        Ok(if stays || is_flat(&framed.moved.scene) && !is_flat(scene) { None } else { Some(framed) })
+        Ok(if stays || becomes_flat { None } else { Some(framed) })
     }
 
     /// Puts the frame into a recipe: given cells and the view region become boxes along it, around what they were.

@@ -1,8 +1,9 @@
 //! How precise the coordinates of a plan or a scene are.
 
-use sightlines_cells::{Plan, PlanError, Point3, Scene};
+use sightlines_cells::{Plan, PlanError, Point3, Scene, SceneObject};
 use sightlines_formats::SceneInfo;
 use sightlines_formats::scene::SceneFormat;
+use sightlines_frame::Areas;
 use sightlines_geometry::Aabb;
 
 /// How precise the coordinates of a plan or a scene are: openings narrower than this may count as closed, and things that
@@ -47,32 +48,55 @@ impl Gap {
     /// far from what is met: errors are of either sign, and most programs turn in double precision and round once (√3 u M). Half the gap is
     /// therefore 8 u M, and the gap 16 u M = 2^-20 M: about 0.02 mm for a building of 30 m.
     ///
-    /// M is twice the distance from the middle within which half of the corners lie, and never more than the largest coordinate or twice
-    /// the extent of the largest object. So neither a sky around a building, nor its place far from the origin or from other buildings,
+    /// M is twice the distance from the middle within which half of the corners lie, and never more than the largest coordinate, twice
+    /// the extent of the largest object, or eight times the largest coordinate of the object in the middle by that. So neither a sky around a
+    /// building, a site beside it, nor its place far from the origin or from other buildings,
     /// which nodes have in double precision, makes the gap wide. Where M is less
-    /// than what was rounded, fewer walls become flat, and nothing is wrongly closed.
+    /// than what was rounded, as far from the origin without nodes, fewer walls become flat, and nothing is wrongly closed: then a wider gap is
+    /// tried, with the M of [`Gap::of_stored`].
     pub fn of_file(scene: &Scene, file: &SceneInfo) -> f64 {
         if file.format == SceneFormat::Gltf { Self::of_single(scene) } else { 0.0 }
     }
 
     /// The precision of a scene whose coordinates were rounded to single precision, as [`Gap::of_file`] derives it.
     pub(crate) fn of_single(scene: &Scene) -> f64 {
-        let corners: Vec<Point3> = scene.occluding_triangles().flatten().collect();
+        let corners: Vec<Point3> =
+            scene.occluding_triangles().chain(scene.front_occluding_triangles()).flatten().collect();
         let middle = [0, 1, 2].map(|k| median(corners.iter().map(|p| p[k]).collect()));
         let far = |p: &Point3| (0..3).map(|k| (p[k] - middle[k]).abs()).fold(0.0, f64::max);
         let spread = median(corners.iter().map(far).collect());
         let largest = corners.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
         let extent = |b: Aabb<3>| (0..3).map(|k| b.max[k] - b.min[k]).fold(0.0, f64::max);
-        let object = scene.occluders().map(|(_, o)| extent(o.bounds())).fold(0.0, f64::max);
-        largest.min(2.0 * spread).min(2.0 * object) / f64::from(1 << 20)
+        let object = that_hide(scene).map(|(_, o)| extent(o.bounds())).fold(0.0, f64::max);
+        let middle = 8.0 * lower_median(own_sizes(scene).filter(|size| *size > 0.0).collect());
+        largest.min(2.0 * spread).min(2.0 * object).min(middle) / f64::from(1 << 20)
+    }
+
+    /// The widest gap that the rounding of single precision explains, where coordinates were not stored near the origin: 2^-20 M as for
+    /// [`Gap::of_file`], with an M of the coordinates' own sizes.
+    ///
+    /// A coordinate is rounded by a part of its own size, so M is the largest magnitude of a coordinate of an object as it is stored, that of the
+    /// object in the middle by it; of an even number the lower one. Half the gap is 8 u M, and rounding moves what was turned in double precision by √3 u M:
+    /// it holds the rounding of objects whose coordinates are up to four times as large, and a site of ten kilometres does not widen the gap of a house.
+    ///
+    /// Never more than 1024 times the gap near the origin, 2^-10 of about the size of the building, a choice: beyond, precision leaves no walls.
+    ///
+    /// * `stored`: the size of each object as its file stores it; that of its coordinates for objects without one
+    pub(crate) fn of_stored(scene: &Scene, stored: &[f64]) -> f64 {
+        let sizes = that_hide(scene).zip(own_sizes(scene)).filter(|((_, o), _)| !o.triangles.is_empty());
+        let sizes = sizes.map(|((object, _), size)| stored.get(object as usize).copied().unwrap_or(size));
+        let explained = lower_median(sizes.collect()) / f64::from(1 << 20);
+        explained.min(MOST_STORED * Self::of_single(scene))
     }
 
     /// How many times what single precision explains ([`Gap::of_file`]) a gap in scene units is, if that is more than 16 times; `None` for
     /// others. For remarks only: such a gap was stated by someone, and rays tell nothing of what is narrower. The 16 is a choice, not derived.
-    /// O(n) of triangles.
+    /// Far from the origin that is more where walls do not stand along the axes of the file. O(n) of triangles.
     pub fn times_too_wide(scene: &Scene, gap: f64) -> Option<f64> {
         // Where most corners are in one place, single precision explains nothing.
-        let explained = Self::of_single(scene).max(Self::of_rounding(scene));
+        let has_walls = Areas::of(scene).axial_share() > 1.0 - LEAST_GAIN;
+        let of_stored = if has_walls { 0.0 } else { Self::of_stored(scene, &[]) };
+        let explained = Self::of_single(scene).max(Self::of_rounding(scene)).max(of_stored);
         let times = if explained > 0.0 { gap / explained } else { 0.0 };
         (times > WIDE).then_some(times)
     }
@@ -93,6 +117,27 @@ impl Gap {
 /// From how many times the precision of a file on a gap is remarked.
 const WIDE: f64 = 16.0;
 
+/// Without a stated gap, a frame has to bring at least this share of the area across an axis that was not, and so has a wider gap.
+pub(crate) const LEAST_GAIN: f64 = 0.05;
+/// How many times the gap near the origin one far from it may be.
+const MOST_STORED: f64 = 1024.0;
+
+/// The objects that hide, if only from one side.
+fn that_hide(scene: &Scene) -> impl Iterator<Item = (u32, &SceneObject)> {
+    scene.occluders().chain(scene.fronts())
+}
+
+/// The largest magnitude of a coordinate of each object that hides.
+fn own_sizes(scene: &Scene) -> impl Iterator<Item = f64> {
+    that_hide(scene).map(|(_, o)| o.corners().flatten().flatten().fold(0.0f64, |m, x| m.max(x.abs())))
+}
+
+/// The value in the middle, the lower of two; 0 of none.
+fn lower_median(mut values: Vec<f64>) -> f64 {
+    let Some(half) = values.len().checked_sub(1).map(|last| last / 2) else { return 0.0 };
+    *values.select_nth_unstable_by(half, f64::total_cmp).1
+}
+
 /// The value in the middle; 0 of none.
 fn median(mut values: Vec<f64>) -> f64 {
     let half = values.len() / 2;
@@ -102,7 +147,6 @@ fn median(mut values: Vec<f64>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sightlines_cells::SceneObject;
     use sightlines_formats::SceneFile;
     use sightlines_formats::scene::{parse_glb, write_glb};
 

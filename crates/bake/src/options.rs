@@ -3,6 +3,7 @@
 use crate::methods::{BufferOptions, OcclusionMethod};
 use crate::region::CellsFrom;
 use crate::subdivide::Subdivide;
+use crate::surroundings::Surrounding;
 use sightlines_kdtree::SceneOptions;
 use sightlines_multifocal::Split;
 use sightlines_pvs::{Frame, GeometryDigest};
@@ -99,7 +100,7 @@ pub struct Recipe {
     pub cut: SceneOptions,
     /// Scenes: the frame that the scene is in, with its cells and view region; the table states it.
     pub frame: Option<Frame>,
-    /// Scenes in a frame: the digests of the scene as its file has it; the table states them in place of those of the scene that was moved.
+    /// Scenes in a frame, or with surroundings: the digests of the scene as its file has it; the table states them in place of those of the scene that is baked.
     pub digest: Option<GeometryDigest>,
     /// Scenes: what decides; never [`SceneMethod::Auto`].
     pub method: SceneMethod,
@@ -109,6 +110,8 @@ pub struct Recipe {
     pub buffers: BufferOptions,
     /// Scenes by a from-region method: when cells are cut into smaller volumes.
     pub split: Split,
+    /// Scenes: what is around the rest, which is baked without it; every cell sees it.
+    pub surroundings: Vec<Surrounding>,
     /// Portal files and Quake maps: only the first, coarse bound.
     pub fast: bool,
 }
@@ -127,9 +130,9 @@ impl Recipe {
     /// All that decides the table but the input, in words: two recipes with the same key make the same table of the same input.
     pub fn key(&self) -> String {
         // A new option does not compile until it is decided whether it is part of the key. `warn` is an address.
-        let Self { subdivide, cut, frame, digest, method, cells, buffers, split, fast } = self;
+        let Self { subdivide, cut, frame, digest, method, cells, buffers, split, surroundings, fast } = self;
         let BufferOptions { measure, planes, texels, occluders, carry, sheets, line_space, backend, warn: _ } = buffers;
         let buffers = (measure, planes, texels, occluders, carry, sheets, line_space, backend);
-        format!("{:?}", (subdivide, cut, frame, digest, (method, cells, buffers, split, fast)))
+        format!("{:?}", (subdivide, cut, frame, digest, (method, cells, buffers, split, surroundings, fast)))
     }
 }

@@ -9,6 +9,7 @@ use crate::options::{Recipe, SceneMethod};
 use crate::region::{CellsFrom, PackRegionsError};
 use crate::reports::RegionReport;
 use crate::request::{BakeRequest, Runtime};
+use crate::surroundings::{Surrounding, surroundings};
 use crate::{run, threads};
 use sightlines_cells::{Plan, Scene};
 use sightlines_formats::SceneInfo;
@@ -53,6 +54,9 @@ pub struct BakeDecisions {
     pub viewers: Option<StatedViewers>,
     /// How many times the surface of given cells the boxes have that are taken in their place; see [`growth_of_cells`].
     pub cells_growth: f64,
+    /// The objects around everything else, ascending: skies and the like, which every cell sees, and without which the rest is baked. None are looked for
+    /// where the cells, a view region or the view volumes of the file say where viewers are, or proofs or stab trees are to be made.
+    pub surroundings: Vec<u32>,
     /// How the methods were chosen, if that was asked for, or if it was found that more than sightlines pays.
     pub choice: Option<Choice>,
 }
@@ -73,6 +77,8 @@ pub struct PreparedBake<'i> {
     framed: Option<Framed>,
     /// The plan with its joints, if it has any.
     joined: Option<Plan>,
+    /// The scene without its surroundings, along the frame, if it has any.
+    rest: Option<Scene>,
     recipe: Recipe,
     decisions: BakeDecisions,
 }
@@ -88,7 +94,7 @@ impl<'i> PreparedBake<'i> {
                 BakeInput::Plan(plan) => request.gap.join(plan)?,
                 _ => None,
             };
-            return Ok(Self { input, framed: None, joined, recipe, decisions });
+            return Ok(Self { input, framed: None, joined, rest: None, recipe, decisions });
         };
         if let Some(cells) = &request.cells {
             recipe.cells = cells.clone();
@@ -97,12 +103,25 @@ impl<'i> PreparedBake<'i> {
             decisions.viewers = file.and_then(stated_viewers);
             recipe.cut.view_region = decisions.viewers.map(|viewers| viewers.region);
         }
-        let framed = Framed::of(of_file, file, request)?;
+        let is_open = recipe.cut.view_region.is_none() && !matches!(recipe.cells, CellsFrom::Boxes(_));
+        if is_open && !request.for_proofs {
+            decisions.surroundings = surroundings(of_file);
+        }
+        let around = &decisions.surroundings[..];
+        let has_some = !around.is_empty();
+        let alone = has_some.then(|| of_file.without(around));
+        let framed = Framed::of_parts([of_file, alone.as_ref().unwrap_or(of_file)], file, request, around)?;
         decisions.cells_growth = growth_of_cells(request.cells.as_ref(), framed.as_ref());
         if let Some(framed) = &framed {
             framed.put_into(&mut recipe);
         }
-        let scene = framed.as_ref().map_or(of_file, |framed| &framed.moved.scene);
+        let whole = framed.as_ref().map_or(of_file, |framed| &framed.moved.scene);
+        let rest = if framed.is_some() { has_some.then(|| whole.without(around)) } else { alone };
+        if has_some {
+            recipe.digest = Some(of_file.digest());
+            recipe.surroundings = around.iter().map(|&object| Surrounding::of(whole, object)).collect();
+        }
+        let scene = rest.as_ref().unwrap_or(whole);
         let sightlines = request.method == Some(SceneMethod::Sightlines);
         // Mirrors reflect the cells of a k-d tree.
         if request.cells.is_none() && !sightlines && !request.for_proofs && scene.mirrors().is_empty() {
@@ -123,14 +142,15 @@ impl<'i> PreparedBake<'i> {
                 (recipe, decisions.choice) = (chosen, is_told.then_some(choice));
             }
         }
-        Ok(Self { input, framed, joined: None, recipe, decisions })
+        Ok(Self { input, framed, joined: None, rest, recipe, decisions })
     }
 
-    /// What is baked: of a scene that has a frame, the scene along it; of a plan whose walls miss each other by no more than its gap, the plan with
-    /// joints.
+    /// What is baked: of a scene that has a frame, the scene along it, and of one with surroundings, the rest; of a plan whose walls miss each
+    /// other by no more than its gap, the plan with joints.
     pub fn input(&self) -> BakeInput<'_> {
-        match (self.input, &self.framed, &self.joined) {
-            (BakeInput::Scene(_, file), Some(framed), _) => BakeInput::Scene(&framed.moved.scene, file),
+        let moved = self.framed.as_ref().map(|framed| &framed.moved.scene);
+        match (self.input, self.rest.as_ref().or(moved), &self.joined) {
+            (BakeInput::Scene(_, file), Some(scene), _) => BakeInput::Scene(scene, file),
             (BakeInput::Plan(_), _, Some(plan)) => BakeInput::Plan(plan),
             (input, ..) => input,
         }

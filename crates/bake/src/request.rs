@@ -156,6 +156,7 @@ impl BakeRequest {
             cells: CellsFrom::KdTree,
             buffers: self.buffers.options(),
             split: self.split.unwrap_or_default(),
+            surroundings: Vec::new(),
             fast: self.fast,
         }
     }

@@ -7,10 +7,11 @@ use crate::methods::{BufferOptions, MethodError, OcclusionMethodFactory};
 use crate::options::Recipe;
 use crate::plan::{PlanBakeOptions, bake_plan};
 use crate::quake::{PrtOptions, bake_map, bake_prt};
-use crate::region::{PackRegionsError, RegionBakeOptions, bake_regions, pack_regions};
-use crate::reports::RegionReport;
+use crate::region::{PackRegionsError, RegionBakeOptions, bake_regions, pack_regions_around};
+use crate::reports::{RegionReport, Report};
 use crate::request::{BakeRequest, Runtime};
 use crate::scene::{PortalMode, SceneBakeOptions, bake_scene};
+use crate::surroundings::{self, seen_around};
 use sightlines_cells::Scene;
 use sightlines_formats::SceneInfo;
 use sightlines_packed::PackReport;
@@ -57,7 +58,14 @@ pub(crate) fn bake_here(input: BakeInput<'_>, recipe: &Recipe, runtime: &Runtime
                     .into_any()
             };
             let digest = recipe.digest.or(baked.table.digest());
-            baked.table = baked.table.with_frame(recipe.frame)?.with_digest(digest);
+            let n_seen = baked.table.n_cells() as u64 * recipe.surroundings.len() as u64;
+            let table = seen_around(baked.table, &recipe.surroundings)?;
+            baked.table = table.with_frame(recipe.frame)?.with_digest(digest);
+            match &mut baked.report {
+                Report::Scene(report) => report.n_objects_seen += n_seen,
+                Report::Regions(report) => report.n_objects_seen += n_seen,
+                _ => {}
+            }
             Ok(baked)
         }
         BakeInput::Portals(prt) => {
@@ -110,6 +118,8 @@ pub(crate) fn bake_packed<W: Write + Send>(
     let stated = |parts: &mut TableParts| {
         parts.frame = recipe.frame;
         parts.digest = recipe.digest.or(parts.digest);
+        surroundings::state(parts, &recipe.surroundings);
     };
-    with_regions(scene, recipe, runtime, file, |regions| pack_regions(scene, regions, &stated, out))
+    let around: Vec<u32> = recipe.surroundings.iter().map(|of| of.object).collect();
+    with_regions(scene, recipe, runtime, file, |regions| pack_regions_around(scene, regions, &around, &stated, out))
 }

@@ -3,14 +3,20 @@
 //! A line between two points outside of a closed surface crosses it as often inwards as outwards. So each of the two sees
 //! a front on the line, and neither sees the other; and what is inside is behind fronts. A single wall that is drawn from
 //! one side hides nothing from who stands behind it.
+//!
+//! That holds where the surface does not meet itself. Its triangles hang together by edges, so all of its fronts are then before one winding
+//! number and all backs before the next; far away it is 0, and of a positive volume inside 1. Where it crosses itself, a part may be inside out: from
+//! outside its backs are seen, which are not drawn.
 
 use crate::{Point3, SceneObject};
+use sightlines_geometry::{Aabb, BoxTree, Point2, orient2d, orient3d};
 use std::collections::BTreeMap;
 
 /// Whether every piece of an object is closed, with its fronts outwards: each edge is passed as often in one direction as in
-/// the other, by two triangles, and the volume inside is certainly positive. Triangles that share an edge are of one piece.
+/// the other, by two triangles, the volume inside is certainly positive, and no two triangles of the piece meet but in the corners and edges that they
+/// share. Triangles that share an edge are of one piece; two pieces may cross each other.
 ///
-/// Corners at one place are one. Whether a piece intersects itself is not looked at. O(n log n).
+/// Corners at one place are one. Exact but for the volume; errs towards "no". O(n log n) where few of the boxes around triangles meet.
 pub fn is_closed_outwards(object: &SceneObject) -> bool {
     let mut places: BTreeMap<[u64; 3], usize> = BTreeMap::new();
     let mut place = |p: Point3| {
@@ -50,7 +56,102 @@ pub fn is_closed_outwards(object: &SceneObject) -> bool {
             volumes.entry(root(&mut pieces, k)).or_insert(Volume { origin: p, sum: 0.0, magnitude: 0.0, n: 0 });
         volume.add([p, q, r]);
     }
-    !volumes.is_empty() && volumes.values().all(Volume::is_positive)
+    if volumes.is_empty() || !volumes.values().all(Volume::is_positive) {
+        return false;
+    }
+    let piece_of: Vec<usize> = (0..triangles.len()).map(|k| root(&mut pieces, k)).collect();
+    !meets_itself(&object.corners().collect::<Vec<_>>(), &triangles, &piece_of)
+}
+
+/// Whether two triangles of one piece have a point in common that is neither a corner nor on an edge of both. Exact.
+///
+/// * `places`: the corners of each triangle, by their places
+fn meets_itself(triangles: &[[Point3; 3]], places: &[[usize; 3]], piece_of: &[usize]) -> bool {
+    let boxes: Vec<Aabb<3>> = triangles.iter().map(|t| Aabb::around(*t)).collect();
+    let tree = BoxTree::build(&boxes, 4);
+    (0..triangles.len()).any(|i| {
+        let meets = |b: &Aabb<3>| (0..3).all(|k| b.min[k] <= boxes[i].max[k] && boxes[i].min[k] <= b.max[k]);
+        let mut found = false;
+        tree.visit(
+            |b| meets(b),
+            |j| {
+                let j = j as usize;
+                if !found && i < j && piece_of[i] == piece_of[j] && meets(&boxes[j]) {
+                    found = meet_apart([&triangles[i], &triangles[j]], [&places[i], &places[j]]);
+                }
+            },
+        );
+        found
+    })
+}
+
+/// Whether two triangles meet elsewhere than in what they share of their corners and edges.
+fn meet_apart([t, u]: [&[Point3; 3]; 2], [of_t, of_u]: [&[usize; 3]; 2]) -> bool {
+    let own =
+        |of: &[usize; 3], other: &[usize; 3]| -> Vec<usize> { (0..3).filter(|&k| !other.contains(&of[k])).collect() };
+    match (&own(of_t, of_u)[..], &own(of_u, of_t)[..]) {
+        // With an edge in common they meet in more of a plane only if both are on one side of it.
+        (&[k], &[l]) => {
+            let (a, b, c, d) = (t[(k + 1) % 3], t[(k + 2) % 3], t[k], u[l]);
+            orient3d(a, b, c, d) == 0.0
+                && (0..3).all(|axis| {
+                    let [a, b, c, d] = [a, b, c, d].map(|p| seen_along(p, axis));
+                    one_sided([orient2d(a, b, c), orient2d(a, b, d), 0.0])
+                })
+        }
+        // What enters the other triangle at a corner that both have leaves it by the side across, or ends in it.
+        (&[k, l], &[m, n]) => reaches([t[k], t[l]], u) || reaches([u[m], u[n]], t),
+        (&[_, _, _], &[_, _, _]) => {
+            let sides = |t: &[Point3; 3]| [0, 1, 2].map(|k| [t[k], t[(k + 1) % 3]]);
+            sides(t).into_iter().any(|side| reaches(side, u)) || sides(u).into_iter().any(|side| reaches(side, t))
+        }
+        // One on the other, or a corner twice.
+        _ => true,
+    }
+}
+
+/// Whether a segment has a point in common with a triangle, its border included.
+fn reaches([p, q]: [Point3; 2], t: &[Point3; 3]) -> bool {
+    let [a, b, c] = *t;
+    let [from, to] = [p, q].map(|p| orient3d(a, b, c, p));
+    if (from > 0.0 && to > 0.0) || (from < 0.0 && to < 0.0) {
+        return false;
+    }
+    if from == 0.0 && to == 0.0 {
+        // In one plane: seen along an axis along which the triangle has an area. One without area meets all.
+        let flat =
+            (0..3).map(|axis| t.map(|p| seen_along(p, axis)).into_iter().chain([p, q].map(|p| seen_along(p, axis))));
+        let flat = flat.map(|points| points.collect::<Vec<Point2>>()).find(|f| orient2d(f[0], f[1], f[2]) != 0.0);
+        return flat.is_none_or(|f| reaches_flat([f[3], f[4]], [f[0], f[1], f[2]]));
+    }
+    one_sided([[a, b], [b, c], [c, a]].map(|[a, b]| orient3d(p, q, a, b)))
+}
+
+fn reaches_flat([p, q]: [Point2; 2], t: [Point2; 3]) -> bool {
+    let sides = [0, 1, 2].map(|k| [t[k], t[(k + 1) % 3]]);
+    let is_inside = |p| one_sided(sides.map(|[a, b]| orient2d(a, b, p)));
+    let are_apart = |a: f64, b: f64, c: f64, d: f64| a.max(b) < c.min(d) || c.max(d) < a.min(b);
+    let crosses = |[a, b]: [Point2; 2]| {
+        !are_apart(a.x, b.x, p.x, q.x)
+            && !are_apart(a.y, b.y, p.y, q.y)
+            && !are_equal_signs(orient2d(a, b, p), orient2d(a, b, q))
+            && !are_equal_signs(orient2d(p, q, a), orient2d(p, q, b))
+    };
+    is_inside(p) || is_inside(q) || sides.into_iter().any(crosses)
+}
+
+fn are_equal_signs(a: f64, b: f64) -> bool {
+    (a > 0.0 && b > 0.0) || (a < 0.0 && b < 0.0)
+}
+
+/// Whether no two of three numbers have different signs.
+fn one_sided(of: [f64; 3]) -> bool {
+    of.iter().all(|x| *x >= 0.0) || of.iter().all(|x| *x <= 0.0)
+}
+
+/// A point as it is seen along an axis.
+fn seen_along(p: Point3, axis: usize) -> Point2 {
+    Point2::new(p[(axis + 1) % 3], p[(axis + 2) % 3])
 }
 
 /// Six times the volume that triangles enclose, and how far rounding can be off.
@@ -141,5 +242,107 @@ mod tests {
             o.vertices.push(o.vertices[3]);
             o.triangles[1] = [0, 1, 4];
         }));
+    }
+
+    /// The walls over an outline of four corners, and its floor and ceiling cut along a diagonal.
+    fn prism(outline: [[i32; 2]; 4], from: usize) -> SceneObject {
+        let at = |[x, y]: [i32; 2], z: f64| [f64::from(x), f64::from(y), z];
+        let vertices = outline.iter().map(|&p| at(p, 0.0)).chain(outline.iter().map(|&p| at(p, 3.0))).collect();
+        let (a, b, c, d) = (from, from + 1, from + 2, (from + 3) % 4);
+        let flat = [[a, b, c], [a, c, d]];
+        let walls = (0..4).flat_map(|i| [[i, (i + 1) % 4, (i + 1) % 4 + 4], [i, (i + 1) % 4 + 4, i + 4]]);
+        let all = flat.iter().map(|&[a, b, c]| [a, c, b]).chain(flat.iter().map(|t| t.map(|i| i + 4))).chain(walls);
+        let triangles = all.map(|t| t.map(|i| i as u32)).collect();
+        SceneObject { name: String::new(), vertices, triangles }
+    }
+
+    fn turn([a, b, c]: [[i32; 2]; 3]) -> i32 {
+        ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])).signum()
+    }
+
+    /// Whether two segments have a point in common. In integers.
+    fn touch([a, b]: [[i32; 2]; 2], [c, d]: [[i32; 2]; 2]) -> bool {
+        let apart = |k: usize| a[k].max(b[k]) < c[k].min(d[k]) || c[k].max(d[k]) < a[k].min(b[k]);
+        !apart(0) && !apart(1) && turn([a, b, c]) * turn([a, b, d]) <= 0 && turn([c, d, a]) * turn([c, d, b]) <= 0
+    }
+
+    /// All outlines of four corners on a small grid: a prism is closed exactly if its outline, in integers, does not meet itself. What is told
+    /// apart are mostly prisms whose lobes differ in size, so that the volume is positive and one lobe is inside out.
+    #[test]
+    fn what_crosses_itself_is_not_closed() {
+        let grid: Vec<[i32; 2]> = (0..4).flat_map(|x| (0..3).map(move |y| [x, y])).collect();
+        let n = grid.len();
+        let (mut n_closed, mut n_crossed, mut n_missed) = (0, 0, 0);
+        for code in 0..n.pow(4) {
+            let o: [[i32; 2]; 4] = std::array::from_fn(|k| grid[code / n.pow(k as u32) % n]);
+            let doubled: i32 = (0..4).map(|k| o[k][0] * o[(k + 1) % 4][1] - o[k][1] * o[(k + 1) % 4][0]).sum();
+            let flat = |from: usize| {
+                [turn([o[from], o[from + 1], o[from + 2]]), turn([o[from], o[from + 2], o[(from + 3) % 4]])]
+            };
+            // Three corners on a line leave triangles without area, which readers leave out.
+            if doubled <= 0 || (0..4).any(|k| turn([o[k], o[(k + 1) % 4], o[(k + 2) % 4]]) == 0) {
+                continue;
+            }
+            let is_simple = !touch([o[0], o[1]], [o[2], o[3]]) && !touch([o[1], o[2]], [o[3], o[0]]);
+            let from = (0..2).find(|&from| flat(from) == [1, 1]);
+            if is_simple {
+                let from = from.expect("an outline of four corners has a diagonal inside");
+                assert!(is_closed_outwards(&prism(o, from)), "{o:?}");
+                n_closed += 1;
+            } else {
+                for from in 0..2 {
+                    let object = prism(o, from);
+                    assert!(!is_closed_outwards(&object), "{o:?}");
+                    n_crossed += 1;
+                    // The impostor: edges and volume alone do not tell.
+                    let volume = object.corners().fold(
+                        Volume { origin: [0.0; 3], sum: 0.0, magnitude: 0.0, n: 0 },
+                        |mut v, t| {
+                            v.add(t);
+                            v
+                        },
+                    );
+                    n_missed += u32::from(volume.is_positive());
+                }
+            }
+        }
+        assert!(n_closed > 1000 && n_crossed > 500 && n_missed == n_crossed, "{n_closed} {n_crossed} {n_missed}");
+    }
+
+    /// Two of its triangles that only touch elsewhere than in shared corners are enough, and so are folds.
+    #[test]
+    fn triangles_meet_only_in_what_they_share() {
+        let t = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]];
+        let meet = |u: [Point3; 3]| {
+            let all: Vec<Point3> = t.iter().chain(&u).copied().collect();
+            let places = |t: &[Point3; 3]| t.map(|p| all.iter().position(|q| *q == p).expect("one of the corners"));
+            let both =
+                [meet_apart([&t, &u], [&places(&t), &places(&u)]), meet_apart([&u, &t], [&places(&u), &places(&t)])];
+            assert_eq!(both[0], both[1], "{u:?}");
+            both[0]
+        };
+        let apart = [
+            [[0.0, 0.0, 1.0], [4.0, 0.0, 1.0], [0.0, 4.0, 1.0]],
+            [[4.0, 4.0, 0.0], [4.0, 4.0, 2.0], [6.0, 4.0, 0.0]],
+            [[5.0, 0.0, 0.0], [9.0, 0.0, 0.0], [9.0, 4.0, 0.0]],
+            [[0.0, 0.0, 0.0], [0.0, 0.0, 3.0], [3.0, 3.0, 3.0]],
+            [[0.0, 0.0, 0.0], [-4.0, 0.0, 0.0], [0.0, -4.0, 0.0]],
+            [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, -4.0, 0.0]],
+            [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 1.0]],
+        ];
+        assert!(!apart.into_iter().any(meet));
+        let meeting = [
+            [[1.0, 1.0, -1.0], [1.0, 1.0, 1.0], [5.0, 5.0, 0.5]],
+            [[1.0, 1.0, 0.0], [1.0, 1.0, 3.0], [2.0, 1.0, 3.0]],
+            [[2.0, 2.0, 0.0], [3.0, 3.0, 1.0], [3.0, 3.0, 2.0]],
+            [[2.0, 0.0, 0.0], [2.0, -1.0, 1.0], [2.0, -1.0, 2.0]],
+            [[1.0, 1.0, 0.0], [2.0, 1.0, 0.0], [1.0, 2.0, 0.0]],
+            [[-1.0, -1.0, 0.0], [9.0, -1.0, 0.0], [-1.0, 9.0, 0.0]],
+            [[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 1.0, 3.0]],
+            [[0.0, 0.0, 0.0], [6.0, 6.0, 1.0], [6.0, 6.0, -1.0]],
+            [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [1.0, 1.0, 0.0]],
+            t,
+        ];
+        assert!(meeting.into_iter().all(meet));
     }
 }

@@ -417,6 +417,17 @@ impl Scene {
         Cow::Owned(still)
     }
 
+    /// The scene without some of its objects: these have neither corners nor triangles, and all keep their indices.
+    #[must_use]
+    pub fn without(&self, objects: &[u32]) -> Self {
+        let mut rest = self.clone();
+        for &object in objects {
+            let object = &mut rest.objects[object as usize];
+            (object.vertices, object.triangles) = (Vec::new(), Vec::new());
+        }
+        rest
+    }
+
     /// The corners of all triangles that hide what is behind them, object by object.
     pub fn occluding_triangles(&self) -> impl Iterator<Item = [Point3; 3]> + '_ {
         self.occluders().flat_map(|(_, object)| object.corners())

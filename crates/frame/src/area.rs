@@ -17,7 +17,7 @@ impl Areas {
     /// Of the triangles of a scene that hide what is behind them. O(n) for n triangles.
     pub fn of(scene: &Scene) -> Self {
         let mut areas = Self::default();
-        for t in scene.occluding_triangles() {
+        for t in scene.occluding_triangles().chain(scene.front_occluding_triangles()) {
             let area = area(&t);
             areas.all += area;
             areas.axial += if (0..3).any(|k| spread(&t, k) == 0.0) { area } else { 0.0 };

@@ -95,7 +95,7 @@ fn faces(scene: &Scene) -> Vec<Face> {
         let normal = unit(normal(corners))?;
         Some(Face { corners, normal, area: area(&corners) })
     };
-    scene.occluding_triangles().filter_map(face).collect()
+    scene.occluding_triangles().chain(scene.front_occluding_triangles()).filter_map(face).collect()
 }
 
 struct Fit<'a> {

@@ -62,7 +62,7 @@ impl Moved {
     pub fn new(scene: &Scene, frame: &Frame) -> Result<Self, MoveError> {
         let turned: Vec<Vec<Point3>> =
             scene.objects().iter().map(|o| o.vertices.iter().map(|&p| frame.to_frame(p)).collect()).collect();
-        let triangles = scene.occluders().flat_map(|(object, o)| {
+        let triangles = scene.occluders().chain(scene.fronts()).flat_map(|(object, o)| {
             let corners = &turned[object as usize];
             o.triangles.iter().map(|t| t.map(|i| corners[i as usize]))
         });

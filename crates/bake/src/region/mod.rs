@@ -40,6 +40,7 @@ use sightlines_pvs::{BitMatrix, SceneMethods, Table, TableKind, TableParts};
 use sightlines_stabtree::{BoxVisibility, PairMask, SearchOptions, box_visibility};
 use std::fmt;
 use std::time::Instant;
+pub(crate) use stream::pack_regions_around;
 pub use stream::{PackRegionsError, pack_regions};
 
 /// The cells of the table of a scene.

@@ -49,13 +49,25 @@ pub fn pack_regions<W: Write + Send>(
     state: &(dyn Fn(&mut TableParts) + Sync),
     out: W,
 ) -> Result<(W, RegionReport, PackReport), PackRegionsError> {
-    threads::on(options.threads, || pack_here(scene, options, state, out))
+    pack_regions_around(scene, options, &[], state, out)
+}
+
+/// The same, where all cells see the objects `around` the scene, of which it has no triangles.
+pub(crate) fn pack_regions_around<W: Write + Send>(
+    scene: &Scene,
+    options: &RegionBakeOptions<'_>,
+    around: &[u32],
+    state: &(dyn Fn(&mut TableParts) + Sync),
+    out: W,
+) -> Result<(W, RegionReport, PackReport), PackRegionsError> {
+    threads::on(options.threads, || pack_here(scene, options, around, state, out))
 }
 
 /// The same, on the threads that call it.
 fn pack_here<W: Write>(
     scene: &Scene,
     options: &RegionBakeOptions<'_>,
+    around: &[u32],
     state: &(dyn Fn(&mut TableParts) + Sync),
     out: W,
 ) -> Result<(W, RegionReport, PackReport), PackRegionsError> {
@@ -100,7 +112,7 @@ fn pack_here<W: Write>(
         }
         things.clear();
         things.extend(row.objects.iter().cloned().flatten().map(ObjectId));
-        things.extend(touching[cell as usize].iter().copied().map(ObjectId));
+        things.extend(touching[cell as usize].iter().chain(around).copied().map(ObjectId));
         things.sort_unstable();
         things.dedup();
         writer.push(&seen, Some(&things))?;

@@ -64,6 +64,8 @@ pub(super) struct Builder {
     doors: Vec<u32>,
     /// Of all objects up to the last that has one.
     sources: Vec<Option<ObjectSource>>,
+    /// Of all objects, or none.
+    stored_sizes: Vec<f64>,
     simplified: Option<Simplification>,
     /// How many faces are invalid, and what is wrong with the first.
     left_out: Option<(usize, Malformed)>,
@@ -118,6 +120,11 @@ impl Builder {
             [node, primitive].map(|index| u32::try_from(index).ok().filter(|&index| index < u32::MAX));
         self.sources.resize(self.objects.len().saturating_sub(1), None);
         self.sources.push(node.zip(primitive).map(|(node, primitive)| ObjectSource { node, primitive }));
+    }
+
+    /// Notes how large the coordinates of the object that was added last are as they are stored; for each object, or for none.
+    pub(super) fn note_stored_size(&mut self, size: f64) {
+        self.stored_sizes.push(size);
     }
 
     /// Marks the object that was added last as a mirror.
@@ -230,6 +237,7 @@ impl Builder {
             n_front_occluding_triangles: self.n_front_occluding,
             simplified,
             read_with: read_with.clone(),
+            stored_sizes: self.stored_sizes,
             surfaces: self.surfaces,
             view_volumes: self.view_volumes.into_iter().map(|(_, b)| b).filter(|b| !b.is_empty()).collect(),
             ignored_view_volumes,

@@ -228,12 +228,19 @@ fn build(
             let placed =
                 |(vertex, p)| check_point(p).within(format_args!("position {vertex}")).map_err(|what| at.fail(k, what));
             let corners = local.mesh.corners.iter().copied();
-            let vertices: Vec<Point3> = match moved.as_ref().and_then(|moved| moved.at_rest.as_ref()) {
+            let at_rest = moved.as_ref().and_then(|moved| moved.at_rest.as_ref());
+            let vertices: Vec<Point3> = match at_rest {
                 Some(at_rest) => corners.zip(at_rest.iter().copied()).map(placed).collect::<Result<_, _>>()?,
                 None => {
                     let world = local.positions.iter().map(|&p| at.world.apply(p));
                     corners.zip(world).map(placed).collect::<Result<_, _>>()?
                 }
+            };
+            let largest = |p: Point3| p.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+            let stored_size = match at_rest {
+                // Sums of stored corners, by weights.
+                Some(_) => vertices.iter().map(|&p| largest(p)).fold(0.0, f64::max),
+                None => local.positions.iter().map(|&p| largest(at.world.reach(p))).fold(0.0, f64::max),
             };
             let moved = match &class {
                 Some(class) if class.opens => Some(Moved { at_rest: None, within: opened(&vertices) }),
@@ -241,6 +248,7 @@ fn build(
             };
             builder.add(name, vertices, local.mesh.triangles.iter().copied(), at.world.mirrors(), moved.is_some());
             builder.note_source(at.index, k);
+            builder.note_stored_size(stored_size);
             if at.is_mirror(document, primitive) {
                 builder.mark_mirror();
             }

@@ -107,6 +107,9 @@ pub struct SceneInfo {
     pub simplified: Option<Simplification>,
     /// What it was read with.
     pub read_with: SceneReadOptions,
+    /// For each object the largest magnitude of its coordinates as the file stores them, before nodes move them elsewhere, in scene units: what
+    /// a format of single precision rounds. Empty if nothing moves them.
+    pub stored_sizes: Vec<f64>,
     /// The objects that are not simply walls, ascending.
     pub surfaces: Vec<Classified>,
     /// The boxes around objects that show where viewers can be ([`Role::ViewVolume`]), in their order, in scene units.

@@ -107,6 +107,11 @@ impl Transform {
     pub(super) fn apply(&self, p: Point3) -> Point3 {
         self.rows.map(|row| row[0] * p[0] + row[1] * p[1] + row[2] * p[2] + row[3])
     }
+
+    /// How large the coordinates of `p` are where it is put, but for the translation: the magnitudes of the products.
+    pub(super) fn reach(&self, p: Point3) -> Point3 {
+        self.rows.map(|row| (row[0] * p[0]).abs() + (row[1] * p[1]).abs() + (row[2] * p[2]).abs())
+    }
 }
 
 fn sign(x: f64) -> i8 {

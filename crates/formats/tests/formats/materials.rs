@@ -295,6 +295,26 @@ fn single_sides_hide_by_default_and_not_if_asked() {
     assert!(file.scene.see_through().is_empty() && file.scene.front_occluders().is_empty());
 }
 
+/// A closed prism over a bow tie has one lobe inside out, through which engines show what is in it: it hides from its fronts only. The twin, over the
+/// same corners in another order, is closed; the impostor is that only edges are looked at, in which the two do not differ.
+#[test]
+fn closed_things_that_cross_themselves_hide_from_their_fronts() {
+    let asked = SceneReadOptions::default();
+    let fronts_of = |outline: [[f32; 2]; 4]| {
+        let mut doc = doc(&[json!({"name": "a"})], &[json!({})]);
+        let corners: Vec<[f32; 3]> = [0.0, 3.0].iter().flat_map(|&z| outline.map(|[x, y]| [x, y, z])).collect();
+        let closed = doc.positions(&corners);
+        let walls = (0..4u32).flat_map(|i| [i, (i + 1) % 4, (i + 1) % 4 + 4, i, (i + 1) % 4 + 4, i + 4]);
+        let sides: Vec<u32> = [0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7].into_iter().chain(walls).collect();
+        let sides = doc.indices(&sides, 1);
+        doc.json["meshes"][0]["primitives"][0] = json!({"attributes": {"POSITION": closed}, "indices": sides});
+        let scene = read_with(&doc, &asked).scene;
+        (scene.is_opaque(0), scene.front_occluders().to_vec())
+    };
+    assert_eq!(fronts_of([[0., 0.], [8., 0.], [2., 3.], [8., 3.]]), (false, vec![0]));
+    assert_eq!(fronts_of([[0., 0.], [8., 0.], [8., 3.], [2., 3.]]), (true, vec![]));
+}
+
 #[test]
 fn sides_are_left_out_only_where_that_is_certain() {
     let flat = json!({"scale": [-1.0, 1.0, 0.0]});

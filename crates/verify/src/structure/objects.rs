@@ -26,10 +26,17 @@ pub(super) fn of_plan(table: &Table, plan: &Plan, findings: &mut Findings) {
 
 /// Compares names, boxes, numbers of triangles, places in the file, and lists with those of a scene in space.
 pub(super) fn of_scene(table: &Table, scene: &Scene, findings: &mut Findings) {
+    let cells = Aabb::<3>::around(table.cells().iter().flat_map(|cell| [cell.min, cell.max]));
     let drawn = |object: usize| {
         let b = scene.extent(object as u32);
         // What is not drawn is nowhere, and tables have it at the origin.
-        if b.is_empty() { ([0.0; 3], [0.0; 3]) } else { (b.min, b.max) }
+        if b.is_empty() {
+            return ([0.0; 3], [0.0; 3]);
+        }
+        // The box of what is around a scene holds all cells too, which errs towards visible.
+        let wide = if cells.is_empty() { b } else { b.with(cells.min).with(cells.max) };
+        let is_wide = table.objects().get(object).is_some_and(|o| (o.min, o.max) == (wide.min, wide.max));
+        if is_wide { (wide.min, wide.max) } else { (b.min, b.max) }
     };
     let objects = scene.objects().iter().enumerate().map(|(k, o)| (o.name.as_str(), drawn(k).0, drawn(k).1));
     if !compare(table, objects, findings) {

@@ -1,6 +1,7 @@
 //! What was built, in three lines: what was taken for what, by which method into which cells, and the result. Of a scene a fourth says
 //! whether it was worth it.
 
+use super::viewers::Surroundings;
 use super::{Built, Outcome, worth};
 use crate::output::{bytes, count, percent, seconds_of};
 use sightlines::report::ViewerShare;
@@ -77,6 +78,7 @@ impl Built {
         }
         brief.cells += &self.placed.brief();
         self.viewers.iter().for_each(|viewers| brief.cells += &viewers.brief());
+        brief.cells += &Surroundings(&self.surroundings).brief();
         brief
     }
 }

@@ -162,6 +162,7 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
     let auto = decisions.choice.clone().map(auto::Chosen::new);
     let is_chosen = request.method.is_none_or(|method| method == SceneMethod::Auto) && !request.for_proofs;
     let viewers = decisions.viewers.map(viewers::Viewers::from);
+    let surroundings = source.names(&decisions.surroundings);
     let placed = framed::Placed::of(&prepared);
     args.refuse_for_regions(&source, recipe)?;
     let (class, threads) = args.fit(&source, recipe)?;
@@ -179,6 +180,7 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
                 auto: None,
                 outcome: Outcome::Rows(Box::new(outcome)),
                 viewers: None,
+                surroundings,
                 placed,
                 surfaces: None,
                 given_doors: Vec::new(),
@@ -212,6 +214,7 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
             auto,
             outcome,
             viewers,
+            surroundings,
             placed,
             surfaces,
             given_doors,
@@ -374,6 +377,9 @@ pub(crate) struct Built {
     /// Where viewers can be, if the file states it and the options do not.
     #[serde(skip_serializing_if = "Option::is_none")]
     viewers: Option<viewers::Viewers>,
+    /// Scenes: the names of the objects around everything else, such as skies, if there are any. Every cell sees them, and the rest is baked without them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    surroundings: Vec<String>,
     #[serde(flatten)]
     placed: framed::Placed,
     /// Of a scene in space.
@@ -406,7 +412,7 @@ impl fmt::Display for Built {
         write!(f, "{}", self.outcome)?;
         self.worth().iter().try_for_each(|sentence| writeln!(f, "worth it       {sentence}"))?;
         self.viewers.iter().try_for_each(|viewers| write!(f, "{viewers}"))?;
-        write!(f, "{}", self.placed)?;
+        write!(f, "{}{}", viewers::Surroundings(&self.surroundings), self.placed)?;
         self.surfaces.iter().try_for_each(|surfaces| write!(f, "{surfaces}"))?;
         self.given_doors.iter().try_for_each(|door| write!(f, "{door}"))?;
         self.stab.iter().try_for_each(|stab| write!(f, "{stab}"))?;

@@ -58,6 +58,12 @@ impl Source {
         }
     }
 
+    /// The names of objects of a scene.
+    pub(super) fn names(&self, objects: &[u32]) -> Vec<String> {
+        let Bakeable::Scene(SceneFile { scene, .. }) = &self.content else { return Vec::new() };
+        objects.iter().map(|&object| scene.objects()[object as usize].name.clone()).collect()
+    }
+
     /// The error, with the name of the file that it is about.
     pub(super) fn failed(&self, path: &Path, source: BakeError) -> anyhow::Error {
         let map = match &self.content {
