@@ -287,7 +287,8 @@ fn walls_with_one_side_hide_from_their_front() {
             assert!(n_violations(&of_front, &seen) > 0, "{name}");
         }
     }
-    assert!(n_hidden >= 2 && n_caught >= 7, "{n_hidden} {n_caught}");
+    // By line space, and by sightlines, for their own cells and for others.
+    assert!(n_hidden >= 4 && n_caught >= 7, "{n_hidden} {n_caught}");
     assert_ne!(front.digest(), seen.digest());
     assert_ne!(front.digest(), both_sides.digest());
 }

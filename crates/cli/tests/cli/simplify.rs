@@ -433,8 +433,10 @@ fn promises_name_the_eyes_that_they_are_for() {
     let volume = ["simplify", "--volume=1.5,1.5,1.5,2.5,1.9,2.5", "--method", "none"];
     let (both, is_single) = promise("both.glb", &volume);
     assert!(both.contains("for every eye; ") && !is_single, "{both}");
-    let (single, is_single) = promise("single.glb", &volume);
+    let (single, is_single) = promise("single.glb", &[&volume[..], &["--backs", "culled"]].concat());
     assert!(single.contains("for every eye that sees the back of no single-sided face; ") && is_single, "{single}");
-    let (drawn, is_single) = promise("single.glb", &[&volume[..], &["--both-sides"]].concat());
-    assert!(drawn.contains("for every eye; ") && !is_single, "{drawn}");
+    for more in [&[][..], &["--backs", "drawn"]] {
+        let (drawn, is_single) = promise("single.glb", &[&volume[..], more].concat());
+        assert!(drawn.contains("for every eye; ") && !is_single, "{drawn}");
+    }
 }

@@ -21,8 +21,8 @@ use std::time::Instant;
 #[command(
     after_help = "Triangles that no eye in the boxes can see are always removed. The budget is a share of the sphere \
                   of directions: for every eye in the boxes, at most that share of the view shows another face than \
-                  before. This bound is proven, of eyes that see the back of no single-sided face: such faces hide from \
-                  both sides, and a table takes their backs to be unseen. Materials, textures, names and everything else in a glTF are kept; \
+                  before. This bound is proven; with --backs culled of eyes that see the back of no single-sided face, as a table then \
+                  takes backs to be unseen. Materials, textures, names and everything else in a glTF are kept; \
                   textures in separate files are embedded. GLB holds single precision: a GLB \
                   that is made of an OBJ has rounded coordinates, which moves surfaces beside what the bound allows; the output states \
                   by how much. A result with moved triangles is marked, and is refused \
