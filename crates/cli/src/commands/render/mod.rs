@@ -39,8 +39,7 @@ const MOST_PIXELS: u64 = 1 << 27;
                   where an engine would draw nothing: compare with --cull backface,pvs, or build the table with --both-sides."
 )]
 pub(crate) struct RenderArgs {
-    /// The scene: GLB, glTF or OBJ
-    #[arg(value_name = "SCENE")]
+    #[arg(value_name = "SCENE", help = crate::input::with_formats("The scene: {scenes}"))]
     scene: PathBuf,
     #[command(flatten)]
     surfaces: SurfaceArgs,
