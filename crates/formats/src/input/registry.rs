@@ -23,7 +23,7 @@ pub static FORMATS: [Format; 12] = [
     Format { name: "bsp", titles: &["BSP"], noun: "a Quake map", extensions: &["bsp"], sign: Sign::Magic(&BspFormat::MAGICS), kind: InputKind::Bsp, read: |s| Ok(Input::Bsp(Bsp::parse(s.bytes()?.into_owned())?)) },
     Format { name: "levels", titles: &["JSON"], noun: "an index of levels", extensions: &["json"], sign: Sign::JsonMember("sightlines_levels"), kind: InputKind::Levels, read: |s| Ok(Input::Levels(levels::parse_levels_index(&s.bytes()?)?)) },
     Format { name: "view-cells", titles: &["JSON"], noun: "view cells", extensions: &["json"], sign: Sign::JsonMember("cells"), kind: InputKind::ViewCells, read: |s| Ok(Input::ViewCells(view_cells::parse_view_cells(&s.bytes()?)?)) },
-    Format { name: "geojson", titles: &["GeoJSON"], noun: "JSON, such as a floor plan", extensions: &["geojson", "json"], sign: Sign::Json, kind: InputKind::Plan, read: plan },
+    Format { name: "geojson", titles: &["GeoJSON"], noun: "JSON, such as a floor plan", extensions: &["geojson", "json", "geojsonl", "geojsons", "ndjson", "jsonl"], sign: Sign::Json, kind: InputKind::Plan, read: plan },
     Format { name: "dxf", titles: &["DXF"], noun: "a DXF drawing", extensions: &["dxf"], sign: Sign::Dxf, kind: InputKind::Plan, read: |s| Ok(Input::Plan(dxf::parse_dxf(&s.bytes()?, &PlanReadOptions::default())?)) },
 ];
 
