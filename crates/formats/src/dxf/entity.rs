@@ -1,6 +1,7 @@
 //! The entities of a drawing, in their own coordinates.
 
 use super::affine::Insert;
+use super::compound::{hatch, multiline, solid};
 use super::groups::{Group, Groups, extension, next_record};
 use super::layers::Layers;
 use super::spline::Spline;
@@ -54,6 +55,12 @@ pub(super) enum Shape {
         parameters: [f64; 2],
     },
     Spline(Spline),
+    /// Several that were made as one.
+    Parts {
+        parts: Vec<Shape>,
+        /// Whether they are the border of a filled area, and walls only on a layer that was asked for.
+        is_filling: bool,
+    },
     /// Own coordinates.
     Insert(Insert),
     /// Not read: its kind.
@@ -98,7 +105,7 @@ impl<'a> Fields<'_, 'a> {
     }
 
     /// The point whose x has this code; y and z follow in steps of ten. Without z it is at height 0.
-    fn point(&self, code: i32, what: &str) -> Result<[f64; 3], Malformed> {
+    pub(super) fn point(&self, code: i32, what: &str) -> Result<[f64; 3], Malformed> {
         Ok([self.needed(code, what)?, self.needed(code + 10, what)?, self.number(code + 20, 0.0)?])
     }
 
@@ -132,6 +139,10 @@ pub(super) fn read_entity<'a>(groups: &mut Groups<'a>, layers: &mut Layers) -> R
         b"ARC" => arc(&fields("ARC"), true)?,
         b"ELLIPSE" => ellipse(&fields("ELLIPSE"))?,
         b"SPLINE" => spline(&fields("SPLINE"))?,
+        b"MLINE" => understood(multiline(&fields("MLINE"))?, "MLINE that is not understood"),
+        b"SOLID" => solid(&fields("SOLID"))?,
+        b"TRACE" => solid(&fields("TRACE"))?,
+        b"HATCH" => understood(hatch(&fields("HATCH")).ok().flatten(), "HATCH"),
         b"INSERT" => Shape::Insert(insert(&fields("INSERT"))?),
         kind => Shape::Other(decode(kind).into()),
     };
@@ -145,6 +156,11 @@ pub(super) fn read_entity<'a>(groups: &mut Groups<'a>, layers: &mut Layers) -> R
     };
     let normal = about.normal()?;
     Ok(Read::Entity(Entity { line: record.line, layer, normal, shown, shape }))
+}
+
+/// A shape, or something that is ignored under a name.
+fn understood(shape: Option<Shape>, name: &str) -> Shape {
+    shape.unwrap_or_else(|| Shape::Other(name.into()))
 }
 
 fn light_polyline(fields: &Fields<'_, '_>) -> Result<Shape, Malformed> {
