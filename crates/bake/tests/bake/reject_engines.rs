@@ -163,6 +163,7 @@ fn polyobjects_have_the_numbers_of_their_engine() {
         let seen = [
             of_doom(3001, [348, 349]),
             of_doom(761, [20, 21]),
+            of_doom(761, [348, 349]),
             of_doom(761 | 3 << 12, [20, 21]),
             of_doom(762, [20, 21]),
             as_text("Doom", [348, 349]),
@@ -183,7 +184,7 @@ fn polyobjects_have_the_numbers_of_their_engine() {
         assert_eq!((seen.as_flattened().contains(&true), hidden.as_flattened().contains(&false)), (false, false));
         (n_seen, n_hidden) = (n_seen + seen.len(), n_hidden + hidden.len());
     }
-    assert_eq!((n_seen, n_hidden), (28, 32));
+    assert_eq!((n_seen, n_hidden), (32, 32));
 }
 
 /// Engines begin at either end of the first line, and take places as equal that are so near that they cannot tell them apart.

@@ -8,17 +8,17 @@ const SRB2_SPAWN_SPOTS: [i32; 2] = [761, 762];
 const SRB2_KIND: i32 = 0xFFF;
 
 impl Content {
-    /// Specials of lines: the first line of a polyobject, behind whose end the others go on, and a line that is one by itself.
+    /// Specials of lines: the first line of a polyobject, behind whose end the others go on, and a line that is one by itself; for each engine.
     ///
-    /// Source: those of Hexen, of the Eternity Engine (polyobj.h) and of Sonic Robo Blast 2 (p_polyobj.h). The last are others of Doom: in a binary map,
-    /// which does not say whose it is, they count if a polyobject appears in it.
-    fn polyobject_specials(&self) -> [i32; 2] {
+    /// Source: those of Hexen, of the Eternity Engine (polyobj.h) and of Sonic Robo Blast 2 (p_polyobj.h). The last mean something else in Doom: in a map
+    /// that does not say whose it is, they count if a polyobject appears in it.
+    fn polyobject_specials(&self) -> &'static [[i32; 2]] {
         let appear = || self.things.iter().any(|thing| SRB2_SPAWN_SPOTS.contains(&(thing.kind & SRB2_KIND)));
         match self.numbering {
-            Numbering::Hexen => [1, 5],
-            Numbering::Srb2 => [20, 21],
-            Numbering::Doom if appear() => [20, 21],
-            Numbering::Doom => [348, 349],
+            Numbering::Hexen => &[[1, 5]],
+            Numbering::Srb2 => &[[20, 21]],
+            Numbering::Doom if appear() => &[[348, 349], [20, 21]],
+            Numbering::Doom => &[[348, 349]],
         }
     }
 }
@@ -28,12 +28,13 @@ impl Content {
 /// several lines do.
 /// O(n log n).
 pub(super) fn in_polyobjects(content: &Content) -> Vec<bool> {
-    let [start, explicit] = content.polyobject_specials();
+    let known = content.polyobject_specials();
     let mut found = vec![false; content.lines.len()];
     let mut todo = Vec::new();
     for (k, (line, &special)) in content.lines.iter().zip(&content.specials).enumerate() {
-        found[k] = special == start || special == explicit;
-        todo.extend([line.v1, line.v2].into_iter().filter(|_| special == start));
+        found[k] = known.as_flattened().contains(&special);
+        let is_start = known.iter().any(|[start, _]| *start == special);
+        todo.extend([line.v1, line.v2].into_iter().filter(|_| is_start));
     }
     if todo.is_empty() {
         return found;

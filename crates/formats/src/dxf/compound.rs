@@ -48,7 +48,7 @@ pub(super) fn multiline(fields: &Fields<'_, '_>) -> Result<Option<Shape>, Malfor
                 [] => lines.push(Shape::Line([a, b])),
                 [0.0, ends @ ..] => {
                     let stops: Vec<f64> = [0.0].into_iter().chain(ends.iter().copied()).chain([length]).collect();
-                    let drawn = stops.chunks_exact(2).filter(|pair| pair[0] < pair[1]);
+                    let drawn = stops.chunks_exact(2).filter(|pair| 0.0 <= pair[0] && pair[0] < pair[1]);
                     lines.extend(
                         drawn.map(|pair| Shape::Line([if pair[0] == 0.0 { a } else { at(pair[0]) }, at(pair[1])])),
                     );
