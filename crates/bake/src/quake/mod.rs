@@ -72,8 +72,8 @@ pub struct VisMap {
 /// With [`PrtOptions::wishes`] the map shows and hides what they say; sounds and what is heard follow what it says.
 ///
 /// # Errors
-/// [`PrtBakeError`], before the search, for wishes about leafs that there are not, for portals of another map, for several clusters without a portal, and for a map whose leafs lie under another
-/// lump; after it, for an answer that is too large for the map.
+/// [`PrtBakeError`], before the search, for wishes about leafs that there are not, for portals of another map, for several clusters without a
+/// portal, and for a map whose leafs lie under another lump; after it, for an answer that is too large for the map.
 pub fn vis_map(bsp: &Bsp, prt: &Prt, options: PrtOptions<'_>) -> Result<VisMap, PrtBakeError> {
     check_portals(bsp, prt)?;
     // What would be refused at the end is refused before the search too: that may take hours.

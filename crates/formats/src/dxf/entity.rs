@@ -1,12 +1,14 @@
 //! The entities of a drawing, in their own coordinates.
 
+mod compound;
+
 use super::affine::Insert;
-use super::compound::{hatch, multiline, solid};
 use super::groups::{Group, Groups, extension, next_record};
 use super::layers::Layers;
 use super::spline::Spline;
 use super::text::decode;
 use crate::error::{Malformed, malformed};
+use compound::{hatch, multiline, solid};
 
 /// An entity, and what concerns all of them.
 #[derive(Debug)]

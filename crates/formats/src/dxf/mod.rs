@@ -34,7 +34,6 @@
 
 mod affine;
 mod clip;
-mod compound;
 mod curve;
 mod drawing;
 mod entity;

@@ -1,7 +1,7 @@
 //! Entities that are made of others: multilines, filled quadrangles, and hatches.
 
-use super::entity::{Fields, Shape};
-use super::groups::Group;
+use super::{Fields, Shape};
+use crate::dxf::groups::Group;
 use crate::error::Malformed;
 
 /// A multiline: for each of its elements the lines along it, without the caps at its ends, which its style decides.
