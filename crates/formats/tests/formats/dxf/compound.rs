@@ -10,8 +10,10 @@ fn model(entities: &Dxf) -> Vec<u8> {
     entities.model(&Dxf::new())
 }
 
-/// A multiline: its vertices, each with its miter and the numbers of each of its elements.
-fn multiline(flags: u8, vertices: &[([f64; 2], [f64; 2], &[&[f64]])]) -> Dxf {
+/// A vertex of a multiline, its miter, and the numbers of each of its elements.
+type Vertex<'v> = ([f64; 2], [f64; 2], &'v [&'v [f64]]);
+
+fn multiline(flags: u8, vertices: &[Vertex<'_>]) -> Dxf {
     let begun = Dxf::new().entity("MLINE", "0").put(2, "STANDARD").put(40, 1).put(70, 0).put(71, flags);
     vertices.iter().fold(begun.at(10, [9.0, 9.0]).put(30, 0), |dxf, &(at, miter, elements)| {
         let dxf = dxf.at(11, at).put(31, 0).at(12, [1.0, 0.0]).put(32, 0).at(13, miter).put(33, 0);
