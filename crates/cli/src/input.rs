@@ -8,7 +8,7 @@ use crate::map_portals::cannot_be_made;
 use crate::{foreign, plans, surfaces};
 use sightlines::bake::{Bakeable, BakeableError};
 use sightlines::formats::doom::{DoomMap, MapChoiceError, choose_map, list_maps};
-use sightlines::formats::input::{Format, HEAD, Sign};
+use sightlines::formats::input::{Format, HEAD, Sign, titles};
 use sightlines::formats::quake::Prt;
 use sightlines::formats::scene::{SceneReadOptions, Simplification, read_scene_with};
 use sightlines::formats::{Input, InputKind, PlanReadOptions, ReadError, SceneFile, Source, Wad, detect_file};
@@ -71,18 +71,24 @@ pub(crate) fn no_places(path: &Path, what: &str) -> anyhow::Error {
     anyhow!("{}: the table is of a portal file, which does not say where its cells are: {what}", path.display())
 }
 
-/// A file of no kind that a command takes.
+/// A file of no kind that a command takes; see [`with_formats`].
 pub(crate) fn neither(path: &Path, expected: &str) -> anyhow::Error {
+    let expected = with_formats(expected);
     match foreign::name_of(path) {
         Some((noun, remedy)) => anyhow!("{}: is {noun}, neither {expected}: {remedy}", path.display()),
         None => anyhow!("{}: neither {expected}", path.display()),
     }
 }
 
-/// What `build` takes, in the words of errors.
-const BUILDABLE: &str = "a WAD nor a GeoJSON or DXF plan nor a GLB, glTF or OBJ nor a Quake map or portal file";
+/// A text with the names of the formats of plans in place of `{plans}`, and of scenes in space in place of `{scenes}`.
+pub(crate) fn with_formats(text: &str) -> String {
+    text.replace("{plans}", &titles(InputKind::Plan)).replace("{scenes}", &titles(InputKind::Scene))
+}
 
-/// Reads a file from which a table can be built: a WAD, a plan as GeoJSON or DXF, a scene in space, a portal file, or a Quake map. `map` is
+/// What `build` takes, in the words of errors.
+const BUILDABLE: &str = "a WAD nor a {plans} plan nor a {scenes} nor a Quake map or portal file";
+
+/// Reads a file from which a table can be built: a WAD, a plan, a scene in space, a portal file, or a Quake map. `map` is
 /// refused for all but WADs.
 ///
 /// * `options`: of scenes in space

@@ -17,6 +17,7 @@ use sightlines::formats::input::{FORMATS, Source, detect};
 use sightlines::formats::levels::{LevelFile, LevelsIndex, parse_levels_index, write_levels_index};
 use sightlines::formats::points::{NamedPoint, parse_points};
 use sightlines::formats::quake::prt::{parse_prt, write_prt};
+use sightlines::formats::quake::vis_patch::{parse_vis_patches, write_vis_patches};
 use sightlines::formats::quake::{Bsp, BspFormat, graph_of_prt};
 use sightlines::formats::scene::{SceneFile, parse_glb, parse_glb_with_source, parse_obj, write_glb};
 use sightlines::formats::view_cells::parse_view_cells;
@@ -564,6 +565,15 @@ fn check_anything(bytes: &[u8]) -> bool {
         | check_obj(bytes)
         | check_view_cells(bytes)
         | check_registry(bytes)
+        | check_vis_patches(bytes)
+}
+
+/// What is read of visibility without its map is written as it was.
+fn check_vis_patches(bytes: &[u8]) -> bool {
+    let Ok(patches) = parse_vis_patches(bytes) else { return false };
+    let written = write_vis_patches(&patches).expect("no more than was read");
+    assert_eq!(parse_vis_patches(&written), Ok(patches));
+    true
 }
 
 /// Whether any format of the registry reads the bytes; whatever it is taken for, what is recognised has to be among the formats.

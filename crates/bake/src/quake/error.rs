@@ -40,6 +40,18 @@ pub enum PrtBakeError {
         /// How far away its farthest corner is from the nearest such plane, in map units.
         by: f64,
     },
+    /// An override of a leaf that cannot be seen.
+    #[error("leaf {leaf} of an override is none of the map's that can be seen")]
+    NoLeaf {
+        /// The leaf, by its number in the map.
+        leaf: u32,
+    },
+    /// An override that hides a cluster from itself.
+    #[error("leafs {} and {} of an override are in one cluster, which sees itself", leafs[0], leafs[1])]
+    OneCluster {
+        /// The leafs, by their numbers in the map.
+        leafs: [u32; 2],
+    },
     /// The parts of the table do not fit together: a defect of this crate.
     #[error("the table is inconsistent: {0}")]
     Table(#[from] TableError),

@@ -10,11 +10,13 @@ mod error;
 mod portals;
 mod sample;
 mod table;
+mod wishes;
 mod world;
 
 pub use error::PrtBakeError;
 pub use portals::{MapPortals, PortalsError, portals_of_map};
 pub use sample::{ProvenPairs, SampledProofs, WrongPair};
+pub use wishes::{VisWishes, WishReport};
 pub use world::bake_map;
 
 use crate::baked::{Baked, BakedPrt};
@@ -28,6 +30,7 @@ use sightlines_pvs::Table;
 use sightlines_stabtree::{ConvexOptions, ConvexSearch};
 use std::fmt;
 use std::time::Instant;
+use wishes::Granting;
 
 /// How to find out which clusters see which.
 #[derive(Default)]
@@ -40,6 +43,8 @@ pub struct PrtOptions<'a> {
     pub units: Units<'a>,
     /// Which textures make sounds in a map of Quake; of no use for a table.
     pub sounds: AmbientTextures,
+    /// What a map is to show and hide, whatever is visible; of no use for a table.
+    pub wishes: VisWishes,
 }
 
 impl fmt::Debug for PrtOptions<'_> {
@@ -53,8 +58,10 @@ impl fmt::Debug for PrtOptions<'_> {
 pub struct VisMap {
     /// The map.
     pub bytes: Vec<u8>,
-    /// Which clusters see which.
+    /// Which clusters see which. The map says the same, but for wishes.
     pub clusters: ClusterVisibility,
+    /// What wishes changed.
+    pub wished: WishReport,
     /// The clusters, and the portals that the search went through.
     pub graph: CellGraph<Convex>,
 }
@@ -62,19 +69,23 @@ pub struct VisMap {
 /// Finds out which clusters of a map see which, and writes that into the map: its visibility lump, and what
 /// leafs say of it. Everything else stays as it is; visibility that was there is replaced.
 ///
+/// With [`PrtOptions::wishes`] the map shows and hides what they say; sounds and what is heard follow what it says.
+///
 /// # Errors
-/// [`PrtBakeError`], before the search, for portals of another map, for several clusters without a portal, and for a map whose leafs lie under another
-/// lump; after it, for an answer that is too large for the map.
+/// [`PrtBakeError`], before the search, for wishes about leafs that there are not, for portals of another map, for several clusters without a
+/// portal, and for a map whose leafs lie under another lump; after it, for an answer that is too large for the map.
 pub fn vis_map(bsp: &Bsp, prt: &Prt, options: PrtOptions<'_>) -> Result<VisMap, PrtBakeError> {
     check_portals(bsp, prt)?;
     // What would be refused at the end is refused before the search too: that may take hours.
     bsp.leaf_sounds()?;
     bsp.check_leafs()?;
     let graph = graph(prt)?;
+    let granting = Granting::new(&options.wishes, (bsp, prt), &graph)?;
     let sounds = options.sounds;
     let clusters = see(&graph, options)?;
-    let lump = lump_with_sounds(bsp, &prt.leaf_clusters(), &clusters.seen.cells, sounds)?;
-    Ok(VisMap { bytes: bsp.with_visibility(&lump)?, clusters, graph })
+    let (says, wished) = granting.grant(&clusters.seen.cells);
+    let lump = lump_with_sounds(bsp, &prt.leaf_clusters(), &says, sounds)?;
+    Ok(VisMap { bytes: bsp.with_visibility(&lump)?, clusters, wished, graph })
 }
 
 /// Finds out which clusters of a portal file see which, and makes a table of them: cell `k` is cluster `k`.
@@ -102,7 +113,7 @@ fn graph(prt: &Prt) -> Result<CellGraph<Convex>, PrtBakeError> {
 }
 
 fn see(graph: &CellGraph<Convex>, options: PrtOptions<'_>) -> Result<ClusterVisibility, PrtBakeError> {
-    let PrtOptions { search, progress, units, sounds: _ } = options;
+    let PrtOptions { search, progress, units, sounds: _, wishes: _ } = options;
     let start = Instant::now();
     let mut running = ConvexSearch::new(graph, search);
     if units.are_kept() {

@@ -24,8 +24,21 @@ fn hexen(sketch: &Sketch, special: impl Fn(usize) -> u8) -> DoomMap {
     read(&Wad::parse(wad.with_edits(&[Edit::Replace { lump, bytes }]).unwrap()).unwrap())
 }
 
+/// The map in Doom's format, its lines with these specials, and with a thing of this kind.
+fn binary(sketch: &Sketch, thing: u16, special: impl Fn(usize) -> u16) -> DoomMap {
+    let wad = wad_of(sketch);
+    let [lines, things] = [MapLump::Linedefs, MapLump::Things].map(|lump| list_maps(&wad)[0].lump(lump).unwrap());
+    let mut bytes = wad.lump_bytes(lines).to_vec();
+    for (k, record) in bytes.chunks_exact_mut(14).enumerate() {
+        record[6..8].copy_from_slice(&special(k).to_le_bytes());
+    }
+    let place: Vec<u8> = [80, 32, 0, thing, 0].into_iter().flat_map(u16::to_le_bytes).collect();
+    let edits = [Edit::Replace { lump: lines, bytes }, Edit::Replace { lump: things, bytes: place }];
+    read(&Wad::parse(wad.with_edits(&edits).unwrap()).unwrap())
+}
+
 /// The map as text in a namespace, its lines with these specials.
-fn text(sketch: &Sketch, namespace: &str, special: impl Fn(usize) -> u8) -> DoomMap {
+fn text<N: std::fmt::Display>(sketch: &Sketch, namespace: &str, special: impl Fn(usize) -> N) -> DoomMap {
     let text = udmf::text_of(&read(&wad_of(sketch))).replace("\"zdoom\"", &format!("\"{namespace}\""));
     let mut k = 0;
     let lines = text.lines().map(|line| match line.strip_prefix("LineDef") {
@@ -130,6 +143,48 @@ fn polyobjects_hide_nothing() {
         assert!(!is_hidden(&hexen(&three_rooms(&ring([x, 8], [x + 4, 56])), |_| 0)));
     }
     assert_eq!(n_hidden, 3 * 7);
+}
+
+/// The numbers of Eternity and of Sonic Robo Blast 2 count where they are theirs, and nowhere else.
+#[test]
+fn polyobjects_have_the_numbers_of_their_engine() {
+    let (mut n_seen, mut n_hidden) = (0, 0);
+    let rooms = three_rooms(&ring([90, 0], [94, 64]));
+    for first in 0..4 {
+        let start = |number: u16| move |k: usize| if k == N_FIXED + first { number } else { 0 };
+        let all = |number: u16| move |k: usize| if k >= N_FIXED { number } else { 0 };
+        let of_doom = |thing: u16, [one, each]: [u16; 2]| {
+            [is_hidden(&binary(&rooms, thing, start(one))), is_hidden(&binary(&rooms, thing, all(each)))]
+        };
+        let as_text = |namespace: &str, [one, each]: [u16; 2]| {
+            [is_hidden(&text(&rooms, namespace, start(one))), is_hidden(&text(&rooms, namespace, all(each)))]
+        };
+        // A thing 761, with bits above its kind, too.
+        let seen = [
+            of_doom(3001, [348, 349]),
+            of_doom(761, [20, 21]),
+            of_doom(761, [348, 349]),
+            of_doom(761 | 3 << 12, [20, 21]),
+            of_doom(762, [20, 21]),
+            as_text("Doom", [348, 349]),
+            as_text("heretic", [348, 349]),
+            as_text("srb2", [20, 21]),
+        ];
+        // Impostors: the same numbers where they mean something else.
+        let hidden = [
+            of_doom(3001, [20, 21]),
+            of_doom(3001, [1, 5]),
+            of_doom(760, [20, 21]),
+            of_doom(761, [22, 22]),
+            of_doom(3001, [349 + 1, 349 + 1]),
+            as_text("doom", [20, 21]),
+            as_text("zdoom", [348, 349]),
+            as_text("srb2", [1, 5]),
+        ];
+        assert_eq!((seen.as_flattened().contains(&true), hidden.as_flattened().contains(&false)), (false, false));
+        (n_seen, n_hidden) = (n_seen + seen.len(), n_hidden + hidden.len());
+    }
+    assert_eq!((n_seen, n_hidden), (32, 32));
 }
 
 /// Engines begin at either end of the first line, and take places as equal that are so near that they cannot tell them apart.

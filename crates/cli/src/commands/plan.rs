@@ -17,8 +17,9 @@ use std::path::{Path, PathBuf};
 /// Arguments of `plan`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct PlanCommandArgs {
-    /// A scene as GLB, glTF or OBJ; or a plan: DXF, GeoJSON, or a map of a WAD
-    #[arg(value_name = "IN")]
+    #[arg(value_name = "IN", help = crate::input::with_formats(
+        "A scene as {scenes}; or a plan: {plans}, or a map of a WAD"
+    ))]
     input: PathBuf,
     /// Scenes in space: the height to cut at, in units of the scene along the axis that points up. Best between those of corners: a
     /// plane that touches an edge closes it

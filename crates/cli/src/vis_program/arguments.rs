@@ -28,6 +28,16 @@ pub(super) struct VisProgramArgs {
     /// Test level; all give the same, exact answer
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 4)]
     pub(super) level: i64,
+    /// Hide leafs that are farther from each other than N, though they see each other; 0 hides none
+    #[arg(
+        long,
+        help_heading = "Method",
+        value_name = "N",
+        visible_alias = "maxdistance",
+        allow_hyphen_values = true,
+        default_value_t = 0.0
+    )]
+    pub(super) visdist: f64,
     /// Number of threads; 0 uses every core
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::numbers::threads)]
     pub(super) threads: usize,
@@ -92,9 +102,6 @@ pub(super) struct VisProgramArgs {
     #[arg(long, help_heading = "Messages", overrides_with = "log")]
     pub(super) nolog: bool,
 
-    /// No effect: what is far away is not hidden
-    #[arg(long, help_heading = "Without effect", value_name = "N", visible_alias = "maxdistance")]
-    pub(super) visdist: Option<OsString>,
     /// No effect: belongs to another method
     #[arg(long, help_heading = "Without effect", value_name = "N")]
     pub(super) targetchecks: Option<OsString>,
@@ -235,7 +242,7 @@ mod tests {
 
     #[test]
     fn values_may_have_dashes_and_flags_a_number() {
-        assert_eq!(parse("-visdist -5 a").unwrap().visdist, Some("-5".into()));
+        assert_eq!(parse("-visdist -5 a").unwrap().visdist, -5.0);
         assert_eq!(parse("-path -log -path b a").unwrap().path, ["-log", "b"]);
         let flags = ["", " 1", " -1", " 0"].map(|value| parse(&format!("-lowpriority{value} a")).unwrap().lowpriority);
         assert_eq!(flags, [true, true, true, false]);

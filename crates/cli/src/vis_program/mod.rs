@@ -9,6 +9,7 @@ mod hearing;
 mod priority;
 
 use crate::command::Answer;
+use crate::commands::vis::outcome::Wishes;
 use crate::commands::vis::{Beginning, Sound, VisArgs, VisRun, compute};
 use crate::error::Result;
 use crate::kept::Keeping;
@@ -64,6 +65,7 @@ fn see(args: &VisProgramArgs, map: &Path, console: &Console) -> Result<()> {
     let mut vis = VisArgs::of_map(map.to_owned());
     (vis.fast, vis.threads, vis.resume.save_after) = (args.fast, args.threads, args.save_after);
     vis.silence = args.silenced();
+    vis.visdist = (args.visdist > 0.0 && args.visdist.is_finite()).then_some(args.visdist);
     let how = if args.fast { "a coarse bound of the visibility" } else { "the exact visibility" };
     let mut begin = |&Beginning { bsp, prt, prt_path, resumed }: &Beginning<'_>| {
         let leafs = count(bsp.n_visible_leafs() as u64, "leaf");
@@ -87,6 +89,9 @@ fn see(args: &VisProgramArgs, map: &Path, console: &Console) -> Result<()> {
     };
     let outcome = compute(&vis, run)?;
     console.say(Kind::Statistics, &format!("pairs      {}", outcome.clusters.brief_pairs()))?;
+    for line in outcome.wishes.iter().flat_map(Wishes::lines) {
+        console.say(Kind::Always, &format!("wishes     {line}"))?;
+    }
     if args.verbose {
         console.say(Kind::Statistics, outcome.clusters.to_string().trim_end())?;
         let pairs = outcome.clusters.undecided_pairs().to_string();
@@ -137,7 +142,6 @@ impl VisProgramArgs {
     /// The options given that have no effect.
     fn without_effect(&self) -> Vec<&'static str> {
         let given = [
-            (self.visdist.is_some(), "-visdist has no effect: what is far away is not hidden"),
             (self.targetchecks.is_some(), "-targetchecks has no effect: it belongs to another method"),
             (self.gamedir.is_some(), "-gamedir has no effect: no file of the game is needed"),
             (self.basedir.is_some(), "-basedir has no effect: no file of the game is needed"),

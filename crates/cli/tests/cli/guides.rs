@@ -46,7 +46,7 @@ fn follow(folder: &Folder, name: &str) -> usize {
 fn outputs_of(folder: &Folder, name: &str) -> Vec<(String, String)> {
     let mut outputs = Vec::new();
     for (kind, text) in blocks(&guide(name)) {
-        if let Some(file) = ["json ", "csv ", "rej "].iter().find_map(|kinds| kind.strip_prefix(kinds)) {
+        if let Some(file) = ["json ", "csv ", "rej ", "text "].iter().find_map(|kinds| kind.strip_prefix(kinds)) {
             folder.write(file, &text);
         }
         if kind != "sh" {

@@ -55,5 +55,6 @@ mod vis_errors;
 mod vis_program;
 mod vis_program_errors;
 mod vis_real;
+mod vis_wishes;
 mod walk;
 mod workers;

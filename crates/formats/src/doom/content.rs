@@ -47,6 +47,18 @@ pub struct Thing {
     pub kind: i32,
 }
 
+/// Whose numbers the specials of lines are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) enum Numbering {
+    /// Of Doom, and of what its ports added.
+    #[default]
+    Doom,
+    /// Of Hexen, and of all engines that number as it does.
+    Hexen,
+    /// Of Sonic Robo Blast 2.
+    Srb2,
+}
+
 /// What is read from a map in any format; of a map as text with every index checked.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Content {
@@ -55,8 +67,10 @@ pub(super) struct Content {
     pub(super) side_sectors: Vec<u32>,
     pub(super) n_sectors: usize,
     pub(super) things: Vec<Thing>,
-    /// What each line does, where the format numbers that as Hexen does; else empty.
-    pub(super) hexen_specials: Vec<i32>,
+    /// What each line does, by the numbers of `numbering`.
+    pub(super) specials: Vec<i32>,
+    /// Whose numbers these are.
+    pub(super) numbering: Numbering,
     /// The game that the format is of.
     pub(super) game: Option<Game>,
 }

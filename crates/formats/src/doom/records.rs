@@ -1,6 +1,6 @@
 //! The records of binary maps.
 
-use super::content::{Content, LineDef, Thing};
+use super::content::{Content, LineDef, Numbering, Thing};
 use super::{Game, MapFormat, MapLump, MapLumps};
 use crate::bytes::{i16_at, u16_at};
 use crate::error::{Malformed, malformed};
@@ -16,7 +16,8 @@ pub(super) fn parse(wad: &Wad, lumps: &MapLumps) -> Result<Content, Malformed> {
     let point = |r| [f64::from(i16_at(r, 0)), f64::from(i16_at(r, 2))];
     let vertices = read.of(MapLump::Vertexes, 4)?.map(point).collect();
     let lines = read.of(MapLump::Linedefs, if hexen { 16 } else { 14 })?;
-    let hexen_specials = lines.clone().filter(|_| hexen).map(|r| r[6].into()).collect();
+    let special = |r: &[u8]| if hexen { r[6].into() } else { u16_at(r, 6).into() };
+    let specials = lines.clone().map(special).collect();
     let lines = lines.map(line_def).collect();
     let side_sectors = read.of(MapLump::Sidedefs, 30)?.map(|r| u32::from(u16_at(r, 28))).collect();
     let n_sectors = read.of(MapLump::Sectors, 26)?.len();
@@ -26,7 +27,8 @@ pub(super) fn parse(wad: &Wad, lumps: &MapLumps) -> Result<Content, Malformed> {
         (Some(_), true) => read.of(MapLump::Things, 20)?.map(|r| thing(r, 2, 10)).collect(),
     };
     let game = hexen.then_some(Game::Hexen);
-    Ok(Content { vertices, lines, side_sectors, n_sectors, things, hexen_specials, game })
+    let numbering = if hexen { Numbering::Hexen } else { Numbering::Doom };
+    Ok(Content { vertices, lines, side_sectors, n_sectors, things, specials, numbering, game })
 }
 
 /// Access to the records of a map's lumps.

@@ -8,8 +8,25 @@ use sightlines_geometry::{Aabb, Point2, PolygonRegion, Segment2, check_coordinat
 #[derive(Debug)]
 struct Clip {
     region: PolygonRegion,
+    /// Whether all but the region is drawn.
+    is_hole: bool,
     /// The clip of the insert that this one is in.
     outer: Option<usize>,
+}
+
+impl Clip {
+    /// The parts of a line that are drawn, in its direction.
+    fn parts(&self, line: Segment2) -> Vec<Segment2> {
+        let inside = self.region.parts(line);
+        if !self.is_hole {
+            return inside;
+        }
+        // From the end of each part to the beginning of the next.
+        let ends = inside.iter().flat_map(|part| [part.a, part.b]);
+        let ends: Vec<Point2> = [line.a].into_iter().chain(ends).chain([line.b]).collect();
+        let outside = ends.chunks_exact(2).filter(|pair| pair[0] != pair[1]);
+        outside.map(|pair| Segment2 { a: pair[0], b: pair[1] }).collect()
+    }
 }
 
 /// The clips of all inserts that have one.
@@ -18,27 +35,33 @@ pub(super) struct Clips(Vec<Clip>);
 
 impl Clips {
     /// Adds a polygon, of which only what is inside of `outer` counts.
+    ///
+    /// * `is_hole`: whether what is outside of the polygon is drawn
     pub(super) fn add(
         &mut self,
         corners: impl Iterator<Item = [f64; 2]>,
+        is_hole: bool,
         outer: Option<usize>,
     ) -> Result<usize, Malformed> {
         let checked = |[x, y]: [f64; 2]| Ok(Point2::new(check_coordinate(x)?, check_coordinate(y)?));
         let corners = corners.map(checked).collect::<Result<Vec<_>, Malformed>>()?;
-        self.0.push(Clip { region: PolygonRegion::new(&corners), outer });
+        self.0.push(Clip { region: PolygonRegion::new(&corners), is_hole, outer });
         Ok(self.0.len() - 1)
     }
 
     /// The clip and those around it.
-    fn all(&self, clip: Option<usize>) -> impl Iterator<Item = &PolygonRegion> {
+    fn all(&self, clip: Option<usize>) -> impl Iterator<Item = &Clip> {
         let first = clip.map(|k| &self.0[k]);
-        std::iter::successors(first, |clip| clip.outer.map(|k| &self.0[k])).map(|clip| &clip.region)
+        std::iter::successors(first, |clip| clip.outer.map(|k| &self.0[k]))
     }
 
     /// The point of a clip's bounds that is nearest.
     pub(super) fn nearest(&self, clip: Option<usize>, point: [f64; 2]) -> [f64; 2] {
-        let into = |p: [f64; 2], of: &PolygonRegion| {
-            let Aabb { min, max } = of.bounds();
+        let into = |p: [f64; 2], of: &Clip| {
+            if of.is_hole {
+                return p;
+            }
+            let Aabb { min, max } = of.region.bounds();
             std::array::from_fn(|k| p[k].max(min[k]).min(max[k]))
         };
         self.all(clip).fold(point, into)
@@ -76,12 +99,12 @@ impl Clips {
         /// How many take as long as an element.
         const CHEAP: usize = 1 << 8;
         let mut parts = vec![line];
-        for region in self.all(clip) {
-            *n_compared += parts.len() * region.n_sides();
+        for clip in self.all(clip) {
+            *n_compared += parts.len() * clip.region.n_sides();
             if *n_compared / CHEAP > MAX_ELEMENTS {
                 return Err(too_many());
             }
-            parts = parts.into_iter().flat_map(|part| region.parts(part)).collect();
+            parts = parts.into_iter().flat_map(|part| clip.parts(part)).collect();
         }
         Ok(parts)
     }

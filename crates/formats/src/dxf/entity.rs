@@ -1,11 +1,14 @@
 //! The entities of a drawing, in their own coordinates.
 
+mod compound;
+
 use super::affine::Insert;
 use super::groups::{Group, Groups, extension, next_record};
 use super::layers::Layers;
 use super::spline::Spline;
 use super::text::decode;
 use crate::error::{Malformed, malformed};
+use compound::{hatch, multiline, solid};
 
 /// An entity, and what concerns all of them.
 #[derive(Debug)]
@@ -54,6 +57,12 @@ pub(super) enum Shape {
         parameters: [f64; 2],
     },
     Spline(Spline),
+    /// Several that were made as one.
+    Parts {
+        parts: Vec<Shape>,
+        /// Whether they are the border of a filled area, and walls only on a layer that was asked for.
+        is_filling: bool,
+    },
     /// Own coordinates.
     Insert(Insert),
     /// Not read: its kind.
@@ -98,7 +107,7 @@ impl<'a> Fields<'_, 'a> {
     }
 
     /// The point whose x has this code; y and z follow in steps of ten. Without z it is at height 0.
-    fn point(&self, code: i32, what: &str) -> Result<[f64; 3], Malformed> {
+    pub(super) fn point(&self, code: i32, what: &str) -> Result<[f64; 3], Malformed> {
         Ok([self.needed(code, what)?, self.needed(code + 10, what)?, self.number(code + 20, 0.0)?])
     }
 
@@ -132,6 +141,10 @@ pub(super) fn read_entity<'a>(groups: &mut Groups<'a>, layers: &mut Layers) -> R
         b"ARC" => arc(&fields("ARC"), true)?,
         b"ELLIPSE" => ellipse(&fields("ELLIPSE"))?,
         b"SPLINE" => spline(&fields("SPLINE"))?,
+        b"MLINE" => understood(multiline(&fields("MLINE"))?, "MLINE that is not understood"),
+        b"SOLID" => solid(&fields("SOLID"))?,
+        b"TRACE" => solid(&fields("TRACE"))?,
+        b"HATCH" => understood(hatch(&fields("HATCH")).ok().flatten(), "HATCH"),
         b"INSERT" => Shape::Insert(insert(&fields("INSERT"))?),
         kind => Shape::Other(decode(kind).into()),
     };
@@ -145,6 +158,11 @@ pub(super) fn read_entity<'a>(groups: &mut Groups<'a>, layers: &mut Layers) -> R
     };
     let normal = about.normal()?;
     Ok(Read::Entity(Entity { line: record.line, layer, normal, shown, shape }))
+}
+
+/// A shape, or something that is ignored under a name.
+fn understood(shape: Option<Shape>, name: &str) -> Shape {
+    shape.unwrap_or_else(|| Shape::Other(name.into()))
 }
 
 fn light_polyline(fields: &Fields<'_, '_>) -> Result<Shape, Malformed> {

@@ -104,13 +104,19 @@ impl Walk<'_> {
                     match &entity.shape {
                         Shape::Insert(insert) => self.insert(entity, insert, map, on)?,
                         _ if !self.chosen.is_read[on as usize] => self.hide(on),
-                        Shape::Other(kind) => *self.out.ignored.entry(kind.to_string()).or_default() += 1,
+                        Shape::Other(kind) => self.ignore(kind),
+                        Shape::Parts { is_filling: true, .. } if !self.chosen.by_name => self.ignore("HATCH"),
                         shape => self.curve(entity, shape, map).map_err(at)?,
                     }
                 }
             }
         }
         Ok(())
+    }
+
+    /// Counts an entity that is not read.
+    fn ignore(&mut self, kind: &str) {
+        *self.out.ignored.entry(kind.to_owned()).or_default() += 1;
     }
 
     /// Counts an entity that is not drawn. Those on layers that were not asked for are not worth a word.
@@ -132,7 +138,7 @@ impl Walk<'_> {
         let &idx = found.ok_or_else(|| at(malformed!("there is no block \"{}\"", insert.block)))?;
         let block = &drawing.blocks[idx];
         if block.is_external {
-            *self.out.ignored.entry("INSERT of another file".to_owned()).or_default() += 1;
+            self.ignore("INSERT of another file");
             return Ok(());
         }
         if self.open.contains(&idx) {
@@ -146,11 +152,11 @@ impl Walk<'_> {
         let outer = self.clip;
         match drawing.filters.of(insert.extension) {
             Clip::Off => {}
-            Clip::Inside(corners) if insert.counts == [1, 1] && own.keeps_above() => {
+            Clip::Polygon { corners, is_hole } if insert.counts == [1, 1] && own.keeps_above() => {
                 self.count(corners.len()).map_err(at)?;
                 let placed = own.after(&Affine::of_insert(insert, block.base, [0, 0]));
                 let corners = corners.into_iter().map(|p| placed.point(p)).map(|[x, y, _]| [x, y]);
-                self.clip = Some(self.out.clips.add(corners, outer).map_err(at)?);
+                self.clip = Some(self.out.clips.add(corners, is_hole, outer).map_err(at)?);
             }
             _ => {
                 *self.out.not_clipped.entry(block.name.clone()).or_default() += 1;
@@ -205,6 +211,7 @@ impl Walk<'_> {
                 self.count(spline.n_corners())?;
                 self.add(&spline.pieces(), map)
             }
+            Shape::Parts { parts, .. } => parts.iter().try_for_each(|part| self.curve(entity, part, map)),
             Shape::Insert(_) | Shape::Other(_) => Ok(()),
         }
     }

@@ -1,11 +1,13 @@
 //! Clipped inserts (XCLIP): which insert has which clip.
 //!
 //! The entry `ACAD_FILTER` of an insert's extension dictionary is a dictionary whose entry `SPATIAL` is the clip: a polygon, or two corners of
-//! a box. One that is inverted is stored as a polygon too, that of the rest, with a slit to its border.
+//! a box. One that is inverted is stored as a polygon too, that of the rest, with a slit to its border. Beside it, in a record that the entry
+//! `ACAD_XREC_ROUNDTRIP` of the clip's own extension dictionary leads to, are the polygon that was inverted, and the one of the rest. Some programs store the
+//! polygon that was inverted in both places: then all but what is inside is drawn. What is neither is not understood.
 
 use super::affine::Affine;
 use super::entity::Fields;
-use super::groups::{Groups, handle, next_record};
+use super::groups::{Group, Groups, extension, handle, next_record};
 use crate::error::Malformed;
 use std::collections::HashMap;
 
@@ -13,7 +15,19 @@ use std::collections::HashMap;
 #[derive(Debug, Default)]
 pub(super) struct Filters {
     dictionaries: HashMap<u64, Vec<NamedHandle>>,
-    clips: HashMap<u64, Clip>,
+    clips: HashMap<u64, Stored>,
+    /// By record: the polygon that was inverted, and that of the rest.
+    inverted: HashMap<u64, [Vec<[f64; 2]>; 2]>,
+}
+
+/// A clip as its object has it.
+#[derive(Debug)]
+struct Stored {
+    clip: Clip,
+    /// Its corners as they are stored.
+    corners: Vec<[f64; 2]>,
+    /// Its extension dictionary.
+    extension: Option<u64>,
 }
 
 type NamedHandle = (Vec<u8>, Option<u64>);
@@ -23,8 +37,8 @@ type NamedHandle = (Vec<u8>, Option<u64>);
 pub(super) enum Clip {
     /// All of it.
     Off,
-    /// What is inside of a polygon in the coordinates of the block's entities.
-    Inside(Vec<[f64; 3]>),
+    /// What is inside of a polygon in the coordinates of the block's entities, or all the rest.
+    Polygon { corners: Vec<[f64; 3]>, is_hole: bool },
     /// Some of it.
     NotUnderstood,
 }
@@ -45,7 +59,19 @@ impl Filters {
                 found.dictionaries.insert(own, entries.collect());
             } else if record.is(0, "SPATIAL_FILTER") {
                 let fields = Fields { kind: "SPATIAL_FILTER", line: record.line, groups: &fields };
-                found.clips.insert(own, read_clip(&fields).ok().flatten().unwrap_or(Clip::NotUnderstood));
+                let clip = read_clip(&fields).ok().flatten().unwrap_or(Clip::NotUnderstood);
+                let corners = corners(fields.groups).unwrap_or_default();
+                found.clips.insert(own, Stored { clip, corners, extension: extension(fields.groups) });
+            } else if record.is(0, "XRECORD") {
+                let part = |name| {
+                    let begin = fields.iter().position(|group| group.is(102, name))? + 1;
+                    let n = fields[begin..].iter().position(|group| group.code == 102).unwrap_or(fields.len() - begin);
+                    corners(&fields[begin..begin + n]).ok()
+                };
+                if let Some(inverted) = part("ACAD_INVERTEDCLIP_ROUNDTRIP") {
+                    let rest = part("ACAD_INVERTEDCLIP_ROUNDTRIP_COMPARE").unwrap_or_default();
+                    found.inverted.insert(own, [inverted, rest]);
+                }
             }
         }
     }
@@ -58,8 +84,28 @@ impl Filters {
             return Clip::NotUnderstood;
         };
         let Some(spatial) = entry(filters, b"SPATIAL") else { return Clip::Off };
-        spatial.and_then(|handle| self.clips.get(&handle)).cloned().unwrap_or(Clip::NotUnderstood)
+        spatial.and_then(|handle| self.clips.get(&handle)).map_or(Clip::NotUnderstood, |stored| self.inverted(stored))
     }
+
+    /// A clip, which may have been inverted.
+    fn inverted(&self, stored: &Stored) -> Clip {
+        let own = stored.extension.and_then(|handle| self.dictionaries.get(&handle));
+        let record = own.and_then(|own| entry(own, b"ACAD_XREC_ROUNDTRIP")).flatten();
+        match (record.and_then(|handle| self.inverted.get(&handle)), stored.clip.clone()) {
+            (Some([hole, _]), Clip::Polygon { corners, .. }) if *hole == stored.corners => {
+                Clip::Polygon { corners, is_hole: true }
+            }
+            (Some([_, rest]), Clip::Polygon { .. }) if *rest != stored.corners => Clip::NotUnderstood,
+            (_, clip) => clip,
+        }
+    }
+}
+
+/// The points of some groups.
+fn corners(groups: &[Group<'_>]) -> Result<Vec<[f64; 2]>, Malformed> {
+    let of =
+        |code| groups.iter().filter(move |group| group.code == code).map(Group::number).collect::<Result<Vec<_>, _>>();
+    Ok(of(10)?.into_iter().zip(of(20)?).map(<[f64; 2]>::from).collect())
 }
 
 fn entry(dictionary: &[NamedHandle], name: &[u8]) -> Option<Option<u64>> {
@@ -91,5 +137,6 @@ fn read_clip(fields: &Fields<'_, '_>) -> Result<Option<Clip>, Malformed> {
     if !to_block.keeps_above() {
         return Ok(None);
     }
-    Ok(Some(Clip::Inside(corners.into_iter().map(|[x, y]| to_block.point([x, y, 0.0])).collect())))
+    let corners = corners.into_iter().map(|[x, y]| to_block.point([x, y, 0.0])).collect();
+    Ok(Some(Clip::Polygon { corners, is_hole: false }))
 }

@@ -8,7 +8,10 @@
 //! | LINE, LWPOLYLINE, POLYLINE | lines; bulges are arcs; of a POLYLINE that was smoothed the points of the smooth curve count |
 //! | ARC, CIRCLE, ELLIPSE, SPLINE with control points | straight pieces |
 //! | INSERT | the entities of its block: nested, scaled, mirrored, turned, in rows and columns, and of a clipped one (XCLIP) what is inside of the clip |
-//! | anything else (TEXT, HATCH, DIMENSION, SOLID, POINT, meshes …) | ignored, and counted in a warning; so are inserts of other files (external references) |
+//! | MLINE | the lines of its elements, without caps |
+//! | SOLID, TRACE | their outline |
+//! | HATCH that is filled, on a layer that is named in [`PlanReadOptions::layers`] | its borders, if these are polylines, lines and arcs; on others it is ignored, as it may be a floor or a shade |
+//! | anything else (TEXT, other HATCHes, DIMENSION, POINT, meshes …) | ignored, and counted in a warning; so are inserts of other files (external references) |
 //!
 //! **Curves.** All vertices lie on the curve up to rounding, and no point of the curve is further from its pieces than the deviation
 //! ([`PlanReadOptions::deviation`], by default [`DEFAULT_DEVIATION`] of the longer side of the plan). Pieces are chords, so they err

@@ -11,6 +11,9 @@
 //! | `"name"`, else `"id"` | what its points are called |
 //! | `"object": "box"` | its points are corners of one object, not an object each |
 //!
+//! Several texts one behind the other are one plan: a text a line, as newline-delimited GeoJSON has them, or a sequence of RFC 8142, in which
+//! a record separator stands before each.
+//!
 //! A member `crs` of the whole, as older files have, is kept as it is and written again ([`write_plan_file`]). A member
 //! `sightlines_precision` of the whole states how precise coordinates are ([`Plan::precision`](sightlines_cells::Plan::precision)), in units of the
 //! plan; without it their digits tell. Lines without length and
@@ -24,7 +27,10 @@ mod node;
 mod plan_builder;
 mod properties;
 mod read;
+mod sequence;
 mod write;
+
+pub(crate) use sequence::is_sequence;
 
 pub use read::{parse_plan, parse_plan_file, read_plan, read_plan_file};
 pub use write::{write_plan, write_plan_file};

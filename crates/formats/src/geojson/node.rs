@@ -84,7 +84,7 @@ impl Node<'_> {
         let (top, feature) = (self.level == Level::Top, self.level == Level::Feature);
         let builder = &mut *self.builder;
         if top && ["geometry", "coordinates", "geometries"].contains(&key) {
-            builder.context.place.feature = Some(0);
+            builder.context.place.feature.get_or_insert(0);
         }
         let base = if let Level::Geometry(base) = self.level { base.unwrap_or(0) } else { 0 };
         let is_repeated = match key {
@@ -120,6 +120,9 @@ impl Node<'_> {
             }
             "crs" if top => {
                 let crs = map.next_value::<Box<RawValue>>()?;
+                if builder.crs_before.as_ref().is_some_and(|before| before != crs.get()) {
+                    return Err(builder.context.fail("another \"crs\" than that of the texts before"));
+                }
                 builder.crs.replace(crs.get().to_owned()).is_some()
             }
             PRECISION if top => {

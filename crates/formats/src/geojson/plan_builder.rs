@@ -18,12 +18,21 @@ pub(super) struct PlanBuilder {
     pub(super) crs: Option<String>,
     /// What the file states of its precision.
     pub(super) precision: Option<f64>,
+    /// That of the texts before, where several are one plan.
+    pub(super) crs_before: Option<String>,
     pub(super) context: Context,
 }
 
 impl PlanBuilder {
+    /// Goes on to another text; its index counts as that of its feature, if it has only one.
+    pub(super) fn begin_record(&mut self, record: usize) {
+        self.crs_before = self.crs.take().or(self.crs_before.take());
+        self.context.place.feature = Some(record);
+    }
+
     /// The plan, when all is read.
-    pub(super) fn finish(self) -> Result<PlanFile, Malformed> {
+    pub(super) fn finish(mut self) -> Result<PlanFile, Malformed> {
+        self.crs = self.crs.or(self.crs_before);
         // Coordinates and lengths were checked on the way; only the number of lines is left.
         let mut file = self.lines.finish(self.objects)?;
         file.warnings.extend(degrees_warning(&file.plan, self.crs.as_deref()));

@@ -1,8 +1,9 @@
-//! Reading: one pass over the text, feature by feature.
+//! Reading: one pass over the text, feature by feature, of one JSON text or of one after the other.
 
 use super::context::Place;
 use super::node::{Level, Node};
 use super::plan_builder::PlanBuilder;
+use super::sequence::{Sequence, is_sequence};
 use crate::bytes::without_mark;
 use crate::error::{Malformed, in_file};
 use crate::json::Seed;
@@ -15,7 +16,7 @@ use std::path::Path;
 
 /// Reads a plan from a GeoJSON text; see the module for what means what.
 ///
-/// Lines come in the order of the text. Rings are closed. Positions that repeat the one before them are dropped, and so are lines
+/// Several texts, one behind the other, are one plan. Lines come in the order of the text. Rings are closed. Positions that repeat the one before them are dropped, and so are lines
 /// without two different positions and lines that repeat others. A byte order mark is skipped. O(length).
 ///
 /// # Errors
@@ -29,8 +30,12 @@ pub fn parse_plan(text: &[u8]) -> Result<Plan, Malformed> {
 /// # Errors
 /// As [`parse_plan`].
 pub fn parse_plan_file(text: &[u8]) -> Result<PlanFile, Malformed> {
-    let mut builder = PlanBuilder::default();
-    let result = run(&mut builder, &mut serde_json::Deserializer::from_slice(without_mark(text)));
+    let (mut builder, text) = (PlanBuilder::default(), without_mark(text));
+    let result = if is_sequence(text) {
+        run(&mut builder, &mut serde_json::Deserializer::from_reader(Sequence(text)))
+    } else {
+        run(&mut builder, &mut serde_json::Deserializer::from_slice(text))
+    };
     result.map_err(|error| builder.context.explain(&error))?;
     builder.finish()
 }
@@ -53,9 +58,15 @@ pub fn read_plan_file(path: impl AsRef<Path>) -> Result<PlanFile, ReadError> {
         let mut file = BufReader::new(File::open(path)?);
         let head = file.fill_buf()?;
         let n_skipped = head.len() - without_mark(head).len();
+        let is_sequence = is_sequence(without_mark(head));
         file.consume(n_skipped);
         let mut builder = PlanBuilder::default();
-        match run(&mut builder, &mut serde_json::Deserializer::from_reader(file)) {
+        let result = if is_sequence {
+            run(&mut builder, &mut serde_json::Deserializer::from_reader(Sequence(file)))
+        } else {
+            run(&mut builder, &mut serde_json::Deserializer::from_reader(file))
+        };
+        match result {
             Ok(()) => Ok(builder.finish()?),
             Err(error) if error.is_io() => Err(ReadErrorKind::Io(error.into())),
             Err(error) => Err(builder.context.explain(&error).into()),
@@ -63,13 +74,28 @@ pub fn read_plan_file(path: impl AsRef<Path>) -> Result<PlanFile, ReadError> {
     })
 }
 
-/// Reads one value and nothing after it.
+/// Reads values up to the end of the text, one behind the other; at least one.
 fn run<'de, R: serde_json::de::Read<'de>>(
     builder: &mut PlanBuilder,
     json: &mut serde_json::Deserializer<R>,
 ) -> Result<(), serde_json::Error> {
     Seed(Node { builder, level: Level::Top }).deserialize(&mut *json)?;
-    // What follows the value is not in any feature.
-    builder.context.place = Place::default();
-    json.end()
+    for record in 1.. {
+        // What follows a value is not in any feature.
+        builder.context.place = Place::default();
+        let behind = match json.end() {
+            Ok(()) => break,
+            Err(error) if error.is_syntax() => (error.line(), error.column()),
+            Err(error) => return Err(error),
+        };
+        builder.begin_record(record);
+        if let Err(error) = Seed(Node { builder, level: Level::Top }).deserialize(&mut *json) {
+            if (error.line(), error.column()) == behind {
+                // Not even the beginning of a value.
+                builder.context.place = Place::default();
+            }
+            return Err(error);
+        }
+    }
+    Ok(())
 }

@@ -11,6 +11,8 @@ use std::path::Path;
 pub struct Format {
     /// Its name for programs, unique.
     pub name: &'static str,
+    /// What people call it: `GLB` and `glTF`.
+    pub titles: &'static [&'static str],
     /// What a file of it is, for people, with an article.
     pub noun: &'static str,
     /// How names of such files end: lower case, without the dot.

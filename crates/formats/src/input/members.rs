@@ -1,10 +1,11 @@
 //! The members of a JSON object, looked at without reading all of it.
 
 use crate::bytes::without_mark;
+use crate::geojson::is_sequence;
 
-/// Whether a text begins as a JSON object.
+/// Whether a text begins as a JSON object, or as a sequence of them.
 pub(super) fn is_object(head: &[u8]) -> bool {
-    inside(head).is_some()
+    inside(head).is_some() || is_sequence(without_mark(head))
 }
 
 /// What follows the brace that opens the object.

@@ -1,6 +1,6 @@
 //! Which format a file has, and what it holds, in one place.
 //!
-//! [`FORMATS`] lists what is read: name, endings, how it is recognised, reader. [`detect`] returns the format of bytes with a
+//! [`FORMATS`] lists what is read: names, endings, how it is recognised, reader. [`detect`] returns the format of bytes with a
 //! name, [`detect_file`] that of a file, and [`Source::read`] reads it. A new format is a module with a reader, one line
 //! in that list, and a sample in its test.
 //!
@@ -20,7 +20,7 @@ mod registry;
 
 pub use crate::beside::{Folder, Neighbours};
 pub use format::{Format, InputKind, Sign};
-pub use registry::{FORMATS, detect};
+pub use registry::{FORMATS, detect, titles};
 
 use crate::error::{ReadErrorKind, in_file};
 use crate::quake::prt::parse_prt;
@@ -156,6 +156,10 @@ pub fn read_plan_file(path: impl AsRef<Path>, options: &PlanReadOptions) -> Resu
         Some(format) if format.name == "dxf" => {
             in_file(path, || Ok(dxf::parse_dxf(&Source::File(path).bytes()?, options)?))
         }
+        Some(format) if format.kind == InputKind::Plan => match Source::File(path).read_as(format)? {
+            Input::Plan(file) => Ok(file),
+            _ => geojson::read_plan_file(path),
+        },
         _ => geojson::read_plan_file(path),
     }
 }

@@ -13,18 +13,18 @@ use std::path::Path;
 /// The formats that are read. What lies further up is recognised first.
 #[rustfmt::skip]
 pub static FORMATS: [Format; 12] = [
-    Format { name: "wad", noun: "a WAD", extensions: &["wad"], sign: Sign::Magic(&[b"IWAD", b"PWAD"]), kind: InputKind::Wad, read: |s| Ok(Input::Wad(Wad::parse(s.bytes()?.into_owned())?)) },
-    Format { name: "pvs", noun: "a table", extensions: &["pvs"], sign: Sign::Magic(&[&format::MAGIC]), kind: InputKind::Table, read: |s| Ok(Input::Table(Box::new(Table::from_bytes(&s.bytes()?)?))) },
-    Format { name: "pvz", noun: "a packed table", extensions: &["pvz"], sign: Sign::Magic(&[PACKED]), kind: InputKind::Packed, read: |_| Ok(Input::Packed) },
-    Format { name: "proofs", noun: "proofs of a table", extensions: &["cert"], sign: Sign::Magic(&[PROOFS]), kind: InputKind::Proofs, read: |_| Ok(Input::Proofs) },
-    Format { name: "gltf", noun: "a scene", extensions: &["glb", "gltf"], sign: Sign::MagicOrNamedJson(GLB_MAGIC), kind: InputKind::Scene, read: |s| scene(s, parse_gltf_with) },
-    Format { name: "obj", noun: "a scene", extensions: &["obj"], sign: Sign::Name, kind: InputKind::Scene, read: |s| scene(s, parse_obj_with) },
-    Format { name: "prt", noun: "a portal file", extensions: &["prt"], sign: Sign::Magic(&PrtDialect::MAGICS), kind: InputKind::Prt, read: |s| Ok(Input::Prt(prt::parse_prt(&s.bytes()?)?)) },
-    Format { name: "bsp", noun: "a Quake map", extensions: &["bsp"], sign: Sign::Magic(&BspFormat::MAGICS), kind: InputKind::Bsp, read: |s| Ok(Input::Bsp(Bsp::parse(s.bytes()?.into_owned())?)) },
-    Format { name: "dxf", noun: "a DXF drawing", extensions: &["dxf"], sign: Sign::Dxf, kind: InputKind::Plan, read: |s| Ok(Input::Plan(dxf::parse_dxf(&s.bytes()?, &PlanReadOptions::default())?)) },
-    Format { name: "levels", noun: "an index of levels", extensions: &["json"], sign: Sign::JsonMember("sightlines_levels"), kind: InputKind::Levels, read: |s| Ok(Input::Levels(levels::parse_levels_index(&s.bytes()?)?)) },
-    Format { name: "view-cells", noun: "view cells", extensions: &["json"], sign: Sign::JsonMember("cells"), kind: InputKind::ViewCells, read: |s| Ok(Input::ViewCells(view_cells::parse_view_cells(&s.bytes()?)?)) },
-    Format { name: "geojson", noun: "JSON, such as a floor plan", extensions: &["geojson", "json"], sign: Sign::Json, kind: InputKind::Plan, read: plan },
+    Format { name: "wad", titles: &["WAD"], noun: "a WAD", extensions: &["wad"], sign: Sign::Magic(&[b"IWAD", b"PWAD"]), kind: InputKind::Wad, read: |s| Ok(Input::Wad(Wad::parse(s.bytes()?.into_owned())?)) },
+    Format { name: "pvs", titles: &["PVS"], noun: "a table", extensions: &["pvs"], sign: Sign::Magic(&[&format::MAGIC]), kind: InputKind::Table, read: |s| Ok(Input::Table(Box::new(Table::from_bytes(&s.bytes()?)?))) },
+    Format { name: "pvz", titles: &["PVZ"], noun: "a packed table", extensions: &["pvz"], sign: Sign::Magic(&[PACKED]), kind: InputKind::Packed, read: |_| Ok(Input::Packed) },
+    Format { name: "proofs", titles: &["CERT"], noun: "proofs of a table", extensions: &["cert"], sign: Sign::Magic(&[PROOFS]), kind: InputKind::Proofs, read: |_| Ok(Input::Proofs) },
+    Format { name: "gltf", titles: &["GLB", "glTF"], noun: "a scene", extensions: &["glb", "gltf"], sign: Sign::MagicOrNamedJson(GLB_MAGIC), kind: InputKind::Scene, read: |s| scene(s, parse_gltf_with) },
+    Format { name: "obj", titles: &["OBJ"], noun: "a scene", extensions: &["obj"], sign: Sign::Name, kind: InputKind::Scene, read: |s| scene(s, parse_obj_with) },
+    Format { name: "prt", titles: &["PRT"], noun: "a portal file", extensions: &["prt"], sign: Sign::Magic(&PrtDialect::MAGICS), kind: InputKind::Prt, read: |s| Ok(Input::Prt(prt::parse_prt(&s.bytes()?)?)) },
+    Format { name: "bsp", titles: &["BSP"], noun: "a Quake map", extensions: &["bsp"], sign: Sign::Magic(&BspFormat::MAGICS), kind: InputKind::Bsp, read: |s| Ok(Input::Bsp(Bsp::parse(s.bytes()?.into_owned())?)) },
+    Format { name: "levels", titles: &["JSON"], noun: "an index of levels", extensions: &["json"], sign: Sign::JsonMember("sightlines_levels"), kind: InputKind::Levels, read: |s| Ok(Input::Levels(levels::parse_levels_index(&s.bytes()?)?)) },
+    Format { name: "view-cells", titles: &["JSON"], noun: "view cells", extensions: &["json"], sign: Sign::JsonMember("cells"), kind: InputKind::ViewCells, read: |s| Ok(Input::ViewCells(view_cells::parse_view_cells(&s.bytes()?)?)) },
+    Format { name: "geojson", titles: &["GeoJSON"], noun: "JSON, such as a floor plan", extensions: &["geojson", "json", "geojsonl", "geojsons", "ndjson", "jsonl"], sign: Sign::Json, kind: InputKind::Plan, read: plan },
+    Format { name: "dxf", titles: &["DXF"], noun: "a DXF drawing", extensions: &["dxf"], sign: Sign::Dxf, kind: InputKind::Plan, read: |s| Ok(Input::Plan(dxf::parse_dxf(&s.bytes()?, &PlanReadOptions::default())?)) },
 ];
 
 /// The first bytes of a packed table: `sightlines_packed::format::MAGIC`, which this crate does not use.
@@ -46,6 +46,14 @@ pub fn detect(name: &Path, head: &[u8]) -> Option<&'static Format> {
         (Some(content), _) => Some(content),
         (None, named) => named,
     }
+}
+
+/// The formats that hold such content, as one says them: `GLB, glTF or OBJ`.
+pub fn titles(kind: InputKind) -> String {
+    let mut all: Vec<&str> =
+        FORMATS.iter().filter(|format| format.kind == kind).flat_map(|f| f.titles).copied().collect();
+    let last = all.pop().unwrap_or_default();
+    if all.is_empty() { last.to_owned() } else { format!("{} or {last}", all.join(", ")) }
 }
 
 fn scene(

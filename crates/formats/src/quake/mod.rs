@@ -12,8 +12,10 @@
 
 pub mod bsp;
 mod leafs;
+pub mod overrides;
 pub mod prt;
 pub mod rle;
+pub mod vis_patch;
 pub mod visibility;
 
 pub use bsp::{Bsp, BspFormat};

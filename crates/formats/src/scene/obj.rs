@@ -204,8 +204,10 @@ fn read_libraries<'l>(line: &'l str, beside: Option<&dyn Neighbours>) -> (Vec<Ve
     for name in before_comment(line).split_ascii_whitespace() {
         read(name).map_or_else(|| missing.push(name), |bytes| files.push(bytes));
     }
-    // If there is none, it may be one name.
-    if files.is_empty() { (files, vec![line]) } else { (files, missing) }
+    // If there is none, or the line does not fall into names of libraries, it may be one name; the others are then of something else.
+    let is_name = |word: &&str| word.len() > 4 && word.to_ascii_lowercase().ends_with(".mtl");
+    let is_one = files.is_empty() || !missing.iter().all(is_name);
+    if is_one { (Vec::new(), vec![line]) } else { (files, missing) }
 }
 
 /// The parts of an OBJ that matter here.

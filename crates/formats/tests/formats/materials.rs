@@ -512,6 +512,11 @@ fn missing_libraries_take_no_others_with_them() {
         ("a.mtl b.mtl", &[a, b], None, [true, false, false]),
         // None of them: it may be one name with spaces.
         ("my walls.mtl", &[a, b], Some(missing("my walls.mtl")), [false, false, false]),
+        // So it may if a word is no name of a library; what is beside it by another word is then another one.
+        ("my a.mtl", &[a, b], Some(missing("my a.mtl")), [false, false, false]),
+        ("my a.mtl", &[("my a.mtl", b.1), a], None, [false, false, false]),
+        ("a.mtl of house.MTL", &[a, b], Some(missing("a.mtl of house.MTL")), [false, false, false]),
+        ("a.mtl no.MTL", &[a, b], Some(missing("no.MTL")), [true, false, false]),
     ] {
         let file = obj(&format!("mtllib {line}\n{text}"), files, &SceneReadOptions::default()).unwrap();
         assert_eq!(hiding(&file).into_iter().map(|(_, hides)| hides).collect::<Vec<_>>(), hides, "{line}");

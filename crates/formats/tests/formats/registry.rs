@@ -44,7 +44,14 @@ fn samples(format: &Format) -> Vec<(&'static str, Vec<u8>)> {
             vec![("json", write_levels_index(&index).into_bytes())]
         }
         "view-cells" => vec![("json", VIEW_CELLS.as_bytes().to_vec())],
-        "geojson" => vec![("json", PLAN.as_bytes().to_vec()), ("geojson", format!("\u{FEFF}\n {PLAN}").into_bytes())],
+        "geojson" => [
+            ("json", PLAN.to_owned()),
+            ("geojson", format!("\u{FEFF}\n {PLAN}")),
+            ("ndjson", format!("{PLAN}\n{PLAN}\n")),
+            ("geojsons", format!("\x1E{PLAN}\n\x1E{PLAN}\n")),
+        ]
+        .map(|(ending, text)| (ending, text.into_bytes()))
+        .to_vec(),
         name => panic!("a sample for the format {name} is missing"),
     }
 }
@@ -106,7 +113,9 @@ fn each_format_recognises_its_own_samples_and_no_other() {
     for format in &FORMATS {
         for (_, bytes) in samples(format) {
             let is_strong = !is_by_name(format, &bytes) && !bytes.trim_ascii_start().starts_with(b"{");
-            for other in FORMATS.iter().filter(|_| is_strong && !bytes.starts_with(b"\xEF")) {
+            for other in
+                FORMATS.iter().filter(|_| is_strong && !bytes.starts_with(b"\xEF") && !bytes.starts_with(b"\x1E"))
+            {
                 for ending in other.extensions {
                     assert_eq!(name_of(&format!("x.{ending}"), &bytes), Some(format.name), "{}.{ending}", format.name);
                     n += 1;

@@ -49,8 +49,9 @@ use std::time::Duration;
 /// Arguments of `build`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct BuildArgs {
-    /// The input: a WAD, a floor plan as GeoJSON or DXF, a scene as GLB, glTF or OBJ, a Quake map, or its portal file alone
-    #[arg(value_name = "IN")]
+    #[arg(value_name = "IN", help = crate::input::with_formats(
+        "The input: a WAD, a floor plan as {plans}, a scene as {scenes}, a Quake map, or its portal file alone"
+    ))]
     input: PathBuf,
     /// The map of the WAD; optional if there is only one
     #[arg(long, help_heading = "Input", value_name = "NAME")]

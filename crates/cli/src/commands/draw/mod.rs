@@ -27,10 +27,11 @@ pub(crate) struct DrawArgs {
     /// The table
     #[arg(value_name = "FILE.pvs")]
     table: PathBuf,
-    /// Scenes in space: what the table was built from, a GLB, glTF or OBJ or a Quake map. A floor plan shows all
-    /// surfaces that it cuts, slanted ones too, and an isometric view the surfaces in place of the cells; single-sided ones are left out
-    /// from behind [default: what the cells tell of]
-    #[arg(long, help_heading = "Picture", value_name = "SCENE")]
+    #[arg(long, help_heading = "Picture", value_name = "SCENE", help = crate::input::with_formats(
+        "Scenes in space: what the table was built from, a {scenes} or a Quake map. A floor plan shows all surfaces that it cuts, slanted \
+         ones too, and an isometric view the surfaces in place of the cells; single-sided ones are left out from behind [default: what the \
+         cells tell of]"
+    ))]
     scene: Option<PathBuf>,
     /// Show what is visible from this cell
     #[arg(long, help_heading = "Viewer", value_name = "N", conflicts_with = "eye")]

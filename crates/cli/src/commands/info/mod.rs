@@ -20,9 +20,9 @@ use std::path::{Path, PathBuf};
 /// Arguments of `info`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct InfoArgs {
-    /// A table (plain or packed), a WAD, a GeoJSON or DXF floor plan, a scene as GLB, glTF or OBJ, a Quake map, or a portal
-    /// file
-    #[arg(value_name = "FILE")]
+    #[arg(value_name = "FILE", help = crate::input::with_formats(
+        "A table (plain or packed), a WAD, a {plans} floor plan, a scene as {scenes}, a Quake map, or a portal file"
+    ))]
     file: PathBuf,
     #[command(flatten)]
     surfaces: SurfaceArgs,
@@ -55,8 +55,7 @@ pub(crate) fn run(args: &InfoArgs, _: Verbosity) -> Result<Done> {
         Some(InputKind::Prt) => Done::new(json, quake::PrtInfo::read(path)?),
         Some(InputKind::Bsp) => Done::new(json, quake::BspInfo::read(path)?),
         _ => {
-            let expected =
-                "a table nor a WAD nor a GeoJSON or DXF plan nor a GLB, glTF or OBJ nor a Quake map or portal file";
+            let expected = "a table nor a WAD nor a {plans} plan nor a {scenes} nor a Quake map or portal file";
             return Err(input::neither(path, expected));
         }
     })

@@ -3,6 +3,7 @@
 use crate::error::Result;
 use crate::output::{JsonSchema, Serialize};
 use crate::plans;
+use sightlines::formats::input::FORMATS;
 use sightlines::formats::{PlanReadOptions, detect_file};
 use std::fmt;
 use std::path::Path;
@@ -59,9 +60,14 @@ impl PlanInfo {
     }
 }
 
+/// What people call the format with that name.
+fn title_of(name: &str) -> &'static str {
+    FORMATS.iter().find(|format| format.name == name).map_or("GeoJSON", |format| format.titles[0])
+}
+
 impl fmt::Display for PlanInfo {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{}: {} plan", self.file, if self.kind == "dxf" { "DXF" } else { "GeoJSON" })?;
+        writeln!(f, "{}: {} plan", self.file, title_of(self.kind))?;
         let axial = if self.axial { ", all parallel to an axis" } else { "" };
         writeln!(f, "walls          {}{axial}", self.n_walls)?;
         writeln!(f, "transparent    {}", self.n_transparent)?;

@@ -24,8 +24,9 @@ use std::path::{Path, PathBuf};
 /// Arguments of `isovist`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct IsovistArgs {
-    /// A plan as GeoJSON or DXF, or a map of a WAD; or a scene in space, of which `plan --height` cuts a plan
-    #[arg(value_name = "PLAN|SCENE")]
+    #[arg(value_name = "PLAN|SCENE", help = crate::input::with_formats(
+        "A plan as {plans}, or a map of a WAD; or a scene in space, of which `plan --height` cuts a plan"
+    ))]
     plan: PathBuf,
     /// The map of the WAD; optional if there is only one
     #[arg(long, help_heading = "Input", value_name = "NAME")]

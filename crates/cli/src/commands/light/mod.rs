@@ -38,8 +38,7 @@ const MOST_RAYS: u32 = 65_536;
                   visible share of the light only."
 )]
 pub(crate) struct LightArgs {
-    /// The scene: GLB, glTF or OBJ
-    #[arg(value_name = "SCENE")]
+    #[arg(value_name = "SCENE", help = crate::input::with_formats("The scene: {scenes}"))]
     scene: PathBuf,
     #[command(flatten)]
     surfaces: SurfaceArgs,

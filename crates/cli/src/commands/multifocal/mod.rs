@@ -33,8 +33,7 @@ use std::path::{Path, PathBuf};
                   the plane (in the order x, y, z, x, y) points to the right, the next one up."
 )]
 pub(crate) struct MultifocalArgs {
-    /// The scene: GLB, glTF or OBJ
-    #[arg(value_name = "SCENE")]
+    #[arg(value_name = "SCENE", help = crate::input::with_formats("The scene: {scenes}"))]
     scene: PathBuf,
     #[command(flatten)]
     surfaces: SurfaceArgs,

@@ -38,8 +38,7 @@ const MOST_PIXELS: u64 = 1 << 27;
                   magenta, except where its ray meets both faces at equal depth. Faces are drawn from both sides."
 )]
 pub(crate) struct RenderArgs {
-    /// The scene: GLB, glTF or OBJ
-    #[arg(value_name = "SCENE")]
+    #[arg(value_name = "SCENE", help = crate::input::with_formats("The scene: {scenes}"))]
     scene: PathBuf,
     #[command(flatten)]
     surfaces: SurfaceArgs,

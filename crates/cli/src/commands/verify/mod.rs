@@ -22,12 +22,13 @@ use std::time::Instant;
 /// Arguments of `verify`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct VerifyArgs {
-    /// The table (plain or packed), or a Quake map or WAD whose own visibility or REJECT lump is checked
-    #[arg(value_name = "FILE.pvs|MAP.bsp|FILE.wad")]
+    /// The table (plain or packed), or a Quake map or WAD whose own visibility or REJECT lump is checked, or a VisPatch file with the visibility of
+    /// the map
+    #[arg(value_name = "FILE.pvs|MAP.bsp|MAP.vis|FILE.wad")]
     table: PathBuf,
-    /// The input it was built from: a WAD, a GeoJSON or DXF floor plan, a scene as GLB, glTF or OBJ, a Quake map, or its
-    /// portal file alone
-    #[arg(value_name = "SCENE")]
+    #[arg(value_name = "SCENE", help = crate::input::with_formats(
+        "The input it was built from: a WAD, a {plans} floor plan, a scene as {scenes}, a Quake map, or its portal file alone"
+    ))]
     scene: PathBuf,
     /// The map of the WAD; optional if there is only one
     #[arg(long, help_heading = "Input", value_name = "NAME")]

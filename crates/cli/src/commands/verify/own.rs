@@ -1,14 +1,16 @@
 //! The visibility that a map has of its own, which engines load: read, and summed up.
 
-use crate::error::{Result, anyhow, bail};
+use crate::error::{ErrorAbout, Result, anyhow, bail};
 use crate::input;
 use crate::map_portals::{do_not_fit, portals_for};
 use sightlines::bake::BakeError;
 use sightlines::formats::InputKind;
 use sightlines::formats::doom::Game;
-use sightlines::formats::quake::{Prt, read_bsp, read_prt};
+use sightlines::formats::quake::vis_patch::parse_vis_patches;
+use sightlines::formats::quake::{Bsp, Prt, read_bsp, read_prt};
 use sightlines::triangulation::subdivide;
 use sightlines::verify::{OwnError, OwnVisibility};
+use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The own visibility of a map, if `path` is one; `scene` is what it will be checked against.
@@ -16,21 +18,38 @@ use std::path::{Path, PathBuf};
 /// # Errors
 /// For a map without visibility of its own, for files that cannot be read, and for those that do not go together.
 pub(super) fn read(path: &Path, scene: &Path, map: Option<&str>, prt: Option<&Path>) -> Result<Option<OwnVisibility>> {
+    if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("vis")) && path.is_file() {
+        return of_bsp(path, &patched(path, scene)?, scene, prt).map(Some);
+    }
     match input::kind_of(path)? {
-        Some(InputKind::Bsp) => of_bsp(path, scene, prt).map(Some),
+        Some(InputKind::Bsp) => of_bsp(path, &read_bsp(path)?, scene, prt).map(Some),
         Some(InputKind::Wad) => of_wad(path, scene, map).map(Some),
         _ => Ok(None),
     }
 }
 
 /// Reads the lump of a Quake map; the portal file of the scene lists the cluster of each leaf.
-fn of_bsp(path: &Path, scene: &Path, prt: Option<&Path>) -> Result<OwnVisibility> {
-    let bsp = read_bsp(path)?;
+fn of_bsp(path: &Path, bsp: &Bsp, scene: &Path, prt: Option<&Path>) -> Result<OwnVisibility> {
     let (named, portals) = portals_of(path, scene, prt)?;
-    OwnVisibility::of_bsp(&bsp, &portals).map_err(|error| match error {
+    OwnVisibility::of_bsp(bsp, &portals).map_err(|error| match error {
         OwnError::OtherMap(source) => do_not_fit(&named, path, &source),
         error => refused(path, None, error),
     })
+}
+
+/// The map of the scene with the visibility that a VisPatch file has for it.
+fn patched(path: &Path, scene: &Path) -> Result<Bsp> {
+    if input::kind_of(scene)? != Some(InputKind::Bsp) {
+        bail!("{}: is visibility without its map, and {} is no Quake map", path.display(), scene.display());
+    }
+    let bsp = read_bsp(scene)?;
+    let patches = parse_vis_patches(&fs::read(path).in_file(path)?).in_file(path)?;
+    let name = scene.file_name().unwrap_or_default().to_string_lossy();
+    let Some(patch) = patches.iter().find(|patch| patch.map.eq_ignore_ascii_case(&name)) else {
+        let names: Vec<&str> = patches.iter().map(|patch| patch.map.as_str()).collect();
+        bail!("{}: there is no visibility for {name} in it, but for {}", path.display(), names.join(", "));
+    };
+    patch.put_into(&bsp).and_then(Bsp::parse).in_file(path)
 }
 
 /// A table is wrong if it hides what every engine shows, and those of Doom show the least.

@@ -40,8 +40,9 @@ use std::time::Instant;
                   points."
 )]
 pub(crate) struct VgaArgs {
-    /// The plan: GeoJSON, DXF, or a map of a WAD
-    #[arg(value_name = "PLAN")]
+    #[arg(value_name = "PLAN", help = crate::input::with_formats(
+        "The plan: {plans}, or a map of a WAD"
+    ))]
     plan: PathBuf,
     /// The map of the WAD; optional if there is only one
     #[arg(long, help_heading = "Input", value_name = "NAME")]

@@ -20,9 +20,10 @@ pub(crate) struct ViewArgs {
     /// The table, plain or packed
     #[arg(value_name = "FILE.pvs")]
     table: PathBuf,
-    /// What it was built from: a WAD, a GeoJSON or DXF floor plan, a scene as GLB, glTF or OBJ, or a Quake map [default: the page shows cells
-    /// and boxes of objects]
-    #[arg(long, help_heading = "Input", value_name = "SCENE")]
+    #[arg(long, help_heading = "Input", value_name = "SCENE", help = crate::input::with_formats(
+        "What it was built from: a WAD, a {plans} floor plan, a scene as {scenes}, or a Quake map [default: the page shows \
+         cells and boxes of objects]"
+    ))]
     scene: Option<PathBuf>,
     /// The map of the WAD; optional if there is only one
     #[arg(long, help_heading = "Input", value_name = "NAME", requires = "scene")]

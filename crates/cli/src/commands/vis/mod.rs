@@ -4,7 +4,7 @@ pub(crate) mod outcome;
 mod sounds;
 
 use crate::command::{Done, JsonArg, Verbosity};
-use crate::error::{Result, anyhow, bail};
+use crate::error::{ErrorAbout, Result, anyhow, bail};
 pub(crate) use outcome::Outcome;
 pub(crate) use sounds::Sound;
 
@@ -15,12 +15,17 @@ use crate::map_portals::{MapPortals, do_not_fit, portal_file, portals_for};
 use crate::memory::MemoryArgs;
 use crate::output;
 use crate::progress::Bar;
+use outcome::Wishes;
+use sightlines::bake::quake::VisWishes;
 use sightlines::bake::{PrtBakeError, PrtOptions, portals_need, vis_map};
 use sightlines::checkpoint::{Identity, Inputs};
 use sightlines::formats::InputKind;
+use sightlines::formats::quake::overrides::parse_overrides;
+use sightlines::formats::quake::vis_patch::{VisPatch, write_vis_patches};
 use sightlines::formats::quake::visibility::check_portals;
 use sightlines::formats::quake::{Bsp, Prt, VisibilityError, read_bsp};
 use sightlines::stabtree::ConvexOptions;
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -46,11 +51,20 @@ pub(crate) struct VisArgs {
     /// Prove this many visible and as many hidden pairs, and check the proofs independently
     #[arg(long, help_heading = "Method", value_name = "N")]
     certify: Option<usize>,
+    /// Hide leafs that are farther from each other than DIST, in map units, though they see each other: a wish, not visibility. The boxes count that the
+    /// map states for them. What is nearer is shown as without it; the report counts the pairs
+    #[arg(long, help_heading = "Output", value_name = "DIST", value_parser = crate::numbers::above_zero, allow_hyphen_values = true)]
+    pub(crate) visdist: Option<f64>,
+    /// Show and hide pairs of leafs, whatever is visible: a text with lines `show A B` and `hide A B`, with the numbers of leafs in the map. What
+    /// is hidden is B from A alone, as by a one-way mirror; the report counts what was changed
+    #[arg(long, help_heading = "Output", value_name = "FILE.txt")]
+    overrides: Option<PathBuf>,
     /// Make no part of a Quake map sound of these nearby
     #[arg(long, help_heading = "Output", value_name = "SOUND,…", value_delimiter = ',')]
     pub(crate) silence: Vec<Sound>,
-    /// The map to write [default: the input]
-    #[arg(short, long, help_heading = "Output", value_name = "OUT.bsp")]
+    /// The map to write; or, if the name ends in .vis, a VisPatch file with the visibility alone, for maps of Quake (BSP 29) that stay as they are
+    /// [default: the input]
+    #[arg(short, long, help_heading = "Output", value_name = "OUT.bsp|OUT.vis")]
     pub(crate) output: Option<PathBuf>,
     #[command(flatten)]
     json: JsonArg,
@@ -67,6 +81,8 @@ impl VisArgs {
             memory: MemoryArgs::default(),
             resume: ResumeArgs::default(),
             certify: None,
+            visdist: None,
+            overrides: None,
             silence: Vec::new(),
             output: None,
             json: JsonArg::default(),
@@ -121,7 +137,8 @@ pub(crate) fn compute(args: &VisArgs, run: VisRun<'_, '_>) -> Result<Outcome> {
     let file = portal_file(&args.map, args.prt.as_deref());
     let out = args.output.as_ref().unwrap_or(&args.map);
     // The map may be replaced.
-    output::check(&file.iter().map(PathBuf::as_path).collect::<Vec<_>>(), &[out])?;
+    output::check(&file.iter().chain(&args.overrides).map(PathBuf::as_path).collect::<Vec<_>>(), &[out])?;
+    let wishes = args.wishes()?;
     let inputs = kept::look(run.keeping, [Some(&args.map), file.as_ref()].into_iter().flatten().map(PathBuf::as_path))?;
     let bsp = read_bsp(&args.map)?;
     let portals = portals_for(&bsp, &args.map, args.prt.as_deref())?;
@@ -130,6 +147,9 @@ pub(crate) fn compute(args: &VisArgs, run: VisRun<'_, '_>) -> Result<Outcome> {
         portals.announce();
     }
     let MapPortals { prt, path: prt_path, text, .. } = portals;
+    if is_patch(out) {
+        VisPatch::check(&name_of(&args.map), &bsp).in_file(&args.map)?;
+    }
     check_portals(&bsp, &prt).map_err(|source| do_not_fit(&prt_path, &args.map, &source))?;
     warn_of_repeats(&prt_path, &prt);
 
@@ -142,7 +162,7 @@ pub(crate) fn compute(args: &VisArgs, run: VisRun<'_, '_>) -> Result<Outcome> {
     let bar = Bar::new("visibility of clusters", run.show_progress);
     let sounds = sounds::all_but(&args.silence);
     let search = ConvexOptions { fast: args.fast, threads };
-    let options = PrtOptions { search, progress: Some(&bar), units: kept.units(), sounds };
+    let options = PrtOptions { search, progress: Some(&bar), units: kept.units(), sounds, wishes };
     let map = vis_map(&bsp, &prt, options);
     drop(bar);
     let map = match map {
@@ -162,7 +182,8 @@ pub(crate) fn compute(args: &VisArgs, run: VisRun<'_, '_>) -> Result<Outcome> {
         proven.map_err(|error| anyhow!("{}: {error}; nothing was written", prt_path.display()))
     });
     let certified = certified.transpose()?;
-    if let Err(error) = output::save(out, &map.bytes) {
+    let bytes = if is_patch(out) { patch(&args.map, &map.bytes)? } else { map.bytes.clone() };
+    if let Err(error) = output::save(out, &bytes) {
         kept.finish(false);
         return Err(error);
     }
@@ -171,7 +192,8 @@ pub(crate) fn compute(args: &VisArgs, run: VisRun<'_, '_>) -> Result<Outcome> {
     } else {
         kept.finish(true);
     }
-    let mut outcome = Outcome::new(out, &bsp, format, &map);
+    let mut outcome = Outcome::new((out, bytes.len()), &bsp, format, &map);
+    outcome.wishes = Wishes::new(args.visdist, args.overrides.is_some(), &map.wished);
     (outcome.fast, outcome.resumed) = (args.fast, resumed);
     outcome.certified = certified;
     outcome.seconds = start.elapsed().as_secs_f64();
@@ -179,11 +201,18 @@ pub(crate) fn compute(args: &VisArgs, run: VisRun<'_, '_>) -> Result<Outcome> {
 }
 
 impl VisArgs {
+    /// What the map is to say, whatever is visible.
+    fn wishes(&self) -> Result<VisWishes> {
+        let read = |path: &PathBuf| parse_overrides(&fs::read(path).in_file(path)?).in_file(path);
+        let overrides = self.overrides.as_ref().map(read).transpose()?.unwrap_or_default();
+        Ok(VisWishes { farthest: self.visdist, overrides })
+    }
+
     /// What decides the results of units. A new argument does not compile until it is decided whether it is part of that.
     fn identity(&self, portals: &[u8], inputs: &Inputs, keeping: Keeping<'_>) -> Identity {
         #[rustfmt::skip]
         let Self {
-            map: _, prt: _, fast, threads: _, memory: _, resume: _, certify: _, silence: _, output: _, json: _,
+            map: _, prt: _, fast, threads: _, memory: _, resume: _, certify: _, visdist: _, overrides: _, silence: _, output: _, json: _,
         } = self;
         // The search is of the portals alone: a map that was compiled again, or got its visibility, may have the same. A job is of its files.
         let mut identity = match keeping {
@@ -198,10 +227,29 @@ impl VisArgs {
     }
 }
 
+/// Whether the visibility is written without the map.
+fn is_patch(out: &Path) -> bool {
+    out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("vis"))
+}
+
+/// The name by which engines know a map.
+fn name_of(map: &Path) -> String {
+    map.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+/// The bytes of a VisPatch file with the visibility of a map.
+fn patch(path: &Path, map: &[u8]) -> Result<Vec<u8>> {
+    let patch = || write_vis_patches(&[VisPatch::of_map(&name_of(path), &Bsp::parse(map.to_vec())?)?]);
+    patch().in_file(path)
+}
+
 /// Puts the name of the file before what is wrong with it.
 fn explained(source: PrtBakeError, args: &VisArgs, prt: &Path) -> anyhow::Error {
     let about = |path: &Path, source| anyhow!("{}: {source}", path.display());
     match source {
+        PrtBakeError::NoLeaf { .. } | PrtBakeError::OneCluster { .. } => {
+            about(args.overrides.as_deref().unwrap_or(&args.map), source)
+        }
         PrtBakeError::Bsp(_) | PrtBakeError::Visibility(VisibilityError::Bsp(_) | VisibilityError::TooLarge { .. }) => {
             about(&args.map, source)
         }

@@ -302,6 +302,9 @@ fn maps(all: &mut Results) {
     let mut add = |heading, line: &str| all.line(&folder, heading, line);
     add("vis", "vis map.bsp -o out.bsp");
     add("vis", "vis map.bsp -o out.bsp --certify 3");
+    add("vis", "vis map.bsp -o out.bsp --visdist 20");
+    folder.write("pairs.txt", "show 1 2\n");
+    add("vis", "vis map.bsp -o out.bsp --overrides pairs.txt");
     add("info of a Quake map", "info map.bsp");
     add("info of a Quake map", "info out.bsp");
     add("info of a portal file", "info map.prt");

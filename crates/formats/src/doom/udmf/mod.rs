@@ -7,7 +7,7 @@
 mod lexer;
 mod values;
 
-use super::content::{Content, LineDef, Thing};
+use super::content::{Content, LineDef, Numbering, Thing};
 use super::{Game, ML_TWOSIDED};
 use crate::error::{Malformed, malformed};
 use lexer::{Lexer, Piece, Place};
@@ -25,10 +25,12 @@ pub(super) fn parse(text: &[u8]) -> Result<Content, Malformed> {
     let Reader { mut content, namespace, .. } = reader;
     let is = |name: &str| namespace.eq_ignore_ascii_case(name.as_bytes());
     content.game = if is("hexen") { Some(Game::Hexen) } else { is("heretic").then_some(Game::Heretic) };
-    // All other engines number what lines do as Hexen does.
-    if is("doom") || is("heretic") || is("strife") {
-        content.hexen_specials.clear();
-    }
+    content.numbering = match () {
+        () if is("doom") || is("heretic") || is("strife") => Numbering::Doom,
+        () if is("srb2") => Numbering::Srb2,
+        // All other engines number what lines do as Hexen does.
+        () => Numbering::Hexen,
+    };
     Ok(content)
 }
 
@@ -89,7 +91,7 @@ impl<'t> Reader<'t> {
                 let (right, left) = (block.optional_index(2)?, block.optional_index(3)?);
                 let line = LineDef { v1: block.index(0)?, v2: block.index(1)?, flags, right, left };
                 let special = if block.values[5].is_some() { block.integer(5)? } else { 0 };
-                self.content.hexen_specials.push(special);
+                self.content.specials.push(special);
                 self.content.lines.push(line);
                 self.lines.push(place);
             }

@@ -91,6 +91,44 @@ fn clips_that_are_off_show_all_and_others_are_where_they_were_made() {
     assert_eq!(found, (below, vec![]));
 }
 
+/// A clip that was inverted, of which these polygons are stored: in the clip, as what was inverted, and as the rest.
+fn inverted([own, hole, rest]: [&[[f64; 2]]; 3]) -> (Vec<[f64; 4]>, Vec<String>) {
+    let points = |dxf: Dxf, all: &[[f64; 2]]| all.iter().fold(dxf, |dxf, &p| dxf.at(10, p).put(30, 0));
+    let leads = Dxf::new().put(102, "{ACAD_XDICTIONARY").put(360, "90").put(102, "}").put(71, 1);
+    let dictionary = Dxf::new().put(0, "DICTIONARY").put(5, "90").put(3, "ACAD_XREC_ROUNDTRIP").put(360, "91");
+    let record = Dxf::new().put(0, "XRECORD").put(5, "91").put(280, 1).put(102, "ACAD_INVERTEDCLIP_ROUNDTRIP");
+    let record = points(points(record, hole).put(102, "ACAD_INVERTEDCLIP_ROUNDTRIP_COMPARE"), rest);
+    let objects = dictionary.add(&record).add(&filter(0x34, own, &leads, [IDENTITY; 2]));
+    let read = read(&file(&partition(), &clipped(&at_five(), 0x34), &objects));
+    (lines(&read), read.warnings)
+}
+
+/// What an inverted clip hides is inside of the polygon that was inverted, however it is stored; what contradicts itself is left out.
+#[test]
+fn inverted_clips_hide_what_is_inside() {
+    let hole = [[1.0, 3.0], [3.0, 3.0], [3.0, 5.0], [1.0, 5.0]];
+    let outer = [[0.0, 0.0], [9.0, 0.0], [9.0, 9.0], [0.0, 9.0]];
+    let rest: Vec<[f64; 2]> = hole.into_iter().chain([hole[0]]).chain(outer).chain([outer[0]]).collect();
+    let teeth = [[5.0, 0.0, 5.0, 2.0], [5.0, 4.0, 5.0, 6.0]];
+    for stored in [[&rest[..], &hole, &rest], [&hole, &hole, &rest], [&hole, &hole, &hole], [&hole, &hole, &[]]] {
+        assert_eq!(inverted(stored), (teeth.to_vec(), vec![]));
+    }
+    // A box by two of its corners; and one beside the line, which is drawn whole, bit by bit, or around it.
+    let corners = [[1.0, 3.0], [3.0, 5.0]];
+    assert_eq!(inverted([&corners, &corners, &rest]).0, teeth);
+    assert_eq!(inverted([&[[3.0, 0.0], [4.0, 9.0]]; 3]).0, [ALL]);
+    assert_eq!(inverted([&[[0.0, 0.0], [4.0, 9.0]]; 3]).0, [[0.0; 4]; 0]);
+    // Impostors: without the record the same polygon shows what is inside; with another one nothing is known.
+    assert_eq!(one(&at_five(), &hole, &Dxf::new().put(71, 1), [IDENTITY; 2]).0, [[5.0, 2.0, 5.0, 4.0]]);
+    for stored in [[&hole[..], &outer, &rest], [&outer, &hole, &rest], [&hole, &[], &[]]] {
+        let (lines, warnings) = inverted(stored);
+        assert_eq!(
+            (lines.len(), &warnings[..]),
+            (0, &["left out inserts whose clip (XCLIP) is not understood: 1 of P".to_owned()][..])
+        );
+    }
+}
+
 /// What may be clipped away hides nothing.
 #[test]
 fn inserts_whose_clip_is_not_understood_are_left_out() {

@@ -1,6 +1,7 @@
 //! Drawings as plans: every entity, curves against their formulas, inserts against another way to place points, damaged files.
 
 mod clips;
+mod compound;
 mod curves;
 mod damaged;
 mod entities;
