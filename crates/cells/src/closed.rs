@@ -4,8 +4,8 @@
 //! a front on the line, and neither sees the other; and what is inside is behind fronts. A single wall that is drawn from
 //! one side hides nothing from who stands behind it.
 //!
-//! That holds where the surface does not meet itself. Its triangles hang together by edges, so all of its fronts are then before one winding
-//! number and all backs before the next; far away it is 0, and of a positive volume inside 1. Where it crosses itself, a part may be inside out: from
+//! That holds where the surface does not cross itself. Its triangles hang together by edges, each with matter on the side of its back, so all
+//! of its fronts are then before one winding number and all backs before the next; far away it is 0, and of a positive volume inside 1. Where it crosses itself, a part may be inside out: from
 //! outside its backs are seen, which are not drawn.
 
 use crate::{Point3, SceneObject};
@@ -13,8 +13,8 @@ use sightlines_geometry::{Aabb, BoxTree, Point2, orient2d, orient3d};
 use std::collections::BTreeMap;
 
 /// Whether every piece of an object is closed, with its fronts outwards: each edge is passed as often in one direction as in
-/// the other, by two triangles, the volume inside is certainly positive, and no two triangles of the piece meet but in the corners and edges that they
-/// share. Triangles that share an edge are of one piece; two pieces may cross each other.
+/// the other, the volume inside is certainly positive, and no two triangles of the piece meet but in the corners and edges that they
+/// share. Triangles that share an edge are of one piece, if matter is between their backs there; two pieces may touch or cross each other.
 ///
 /// Corners at one place are one. Exact but for the volume; errs towards "no". O(n log n) where few of the boxes around triangles meet.
 pub fn is_closed_outwards(object: &SceneObject) -> bool {
@@ -25,19 +25,19 @@ pub fn is_closed_outwards(object: &SceneObject) -> bool {
         *places.entry(p.map(|x| (x + 0.0).to_bits())).or_insert(next)
     };
     let triangles: Vec<[usize; 3]> = object.corners().map(|t| t.map(&mut place)).collect();
-    // For each edge the triangles that pass it, and how much more often upwards.
-    let mut edges: BTreeMap<[usize; 2], (Vec<usize>, i32)> = BTreeMap::new();
-    for (k, &[a, b, c]) in triangles.iter().enumerate() {
-        for (from, to) in [(a, b), (b, c), (c, a)] {
-            let edge = edges.entry([from.min(to), from.max(to)]).or_default();
-            edge.0.push(k);
-            edge.1 += if from < to { 1 } else { -1 };
+    // For each edge the triangles that pass it, and whether upwards.
+    let mut edges: BTreeMap<[usize; 2], Vec<Passing>> = BTreeMap::new();
+    let corners: Vec<[Point3; 3]> = object.corners().collect();
+    for (triangle, (of, at)) in triangles.iter().zip(&corners).enumerate() {
+        for k in 0..3 {
+            let (from, to) = (of[k], of[(k + 1) % 3]);
+            let up = from < to;
+            let [a, b, third] = [at[k], at[(k + 1) % 3], at[(k + 2) % 3]];
+            let ends = if up { [a, b] } else { [b, a] };
+            edges.entry([from.min(to), from.max(to)]).or_default().push(Passing { triangle, up, ends, third });
         }
     }
-    if edges.values().any(|(passing, balance)| passing.len() != 2 || *balance != 0) {
-        return false;
-    }
-    // Pieces hang together by edges. Two of them may touch at a corner, with the one inside out.
+    // Pieces hang together by edges. Two of them may touch at a corner or along an edge, with the one inside out.
     let mut pieces: Vec<usize> = (0..triangles.len()).collect();
     fn root(pieces: &mut [usize], mut k: usize) -> usize {
         while pieces[k] != k {
@@ -46,12 +46,15 @@ pub fn is_closed_outwards(object: &SceneObject) -> bool {
         }
         k
     }
-    for (passing, _) in edges.values() {
-        let (x, y) = (root(&mut pieces, passing[0]), root(&mut pieces, passing[1]));
-        pieces[x] = y;
+    for passing in edges.into_values() {
+        let Some(pairs) = pairs_around(passing) else { return false };
+        for pair in pairs {
+            let [x, y] = pair.map(|k| root(&mut pieces, k));
+            pieces[x] = y;
+        }
     }
     let mut volumes: BTreeMap<usize, Volume> = BTreeMap::new();
-    for (k, [p, q, r]) in object.corners().enumerate() {
+    for (k, &[p, q, r]) in corners.iter().enumerate() {
         let volume =
             volumes.entry(root(&mut pieces, k)).or_insert(Volume { origin: p, sum: 0.0, magnitude: 0.0, n: 0 });
         volume.add([p, q, r]);
@@ -60,7 +63,61 @@ pub fn is_closed_outwards(object: &SceneObject) -> bool {
         return false;
     }
     let piece_of: Vec<usize> = (0..triangles.len()).map(|k| root(&mut pieces, k)).collect();
-    !meets_itself(&object.corners().collect::<Vec<_>>(), &triangles, &piece_of)
+    !meets_itself(&corners, &triangles, &piece_of)
+}
+
+/// A triangle that passes an edge.
+struct Passing {
+    triangle: usize,
+    /// Whether from the first end to the second.
+    up: bool,
+    ends: [Point3; 2],
+    third: Point3,
+}
+
+/// The triangles around an edge in pairs, each with matter between its backs; `None` if they are not passed as often in one direction as in the
+/// other, or two lie on each other.
+///
+/// Around the edge, counter-clockwise as seen against its direction, matter begins at a triangle that passes it downwards and ends at one that passes
+/// it upwards, like brackets. Exact.
+fn pairs_around(mut around: Vec<Passing>) -> Option<Vec<[usize; 2]>> {
+    if let [one, other] = &around[..] {
+        return (one.up != other.up).then(|| vec![[one.triangle, other.triangle]]);
+    }
+    let ([a, b], first) = (around[0].ends, around[0].third);
+    let axis = (0..3).find(|&k| orient2d(seen_along(a, k), seen_along(b, k), seen_along(first, k)) != 0.0)?;
+    let side = |p: Point3| orient2d(seen_along(a, axis), seen_along(b, axis), seen_along(p, axis));
+    // Whether it is at least half a turn away from the first.
+    let is_far = |p: Point3| match orient3d(a, b, first, p) {
+        0.0 => !are_equal_signs(side(first), side(p)),
+        turn => turn < 0.0,
+    };
+    let turn = |p: &Passing, q: &Passing| {
+        is_far(p.third).cmp(&is_far(q.third)).then(0.0f64.total_cmp(&(orient3d(a, b, p.third, q.third) + 0.0)))
+    };
+    around.sort_by(turn);
+    if around.windows(2).any(|two| turn(&two[0], &two[1]).is_eq()) {
+        return None;
+    }
+    // Brackets match from behind the place where most of them have been closed.
+    let (mut depth, mut least, mut start) = (0i32, 0, 0);
+    for (k, passing) in around.iter().enumerate() {
+        depth += if passing.up { -1 } else { 1 };
+        if depth < least {
+            (least, start) = (depth, k + 1);
+        }
+    }
+    let n = around.len().max(1);
+    around.rotate_left(start % n);
+    let (mut open, mut pairs) = (Vec::new(), Vec::new());
+    for passing in &around {
+        if passing.up {
+            pairs.push([open.pop()?, passing.triangle]);
+        } else {
+            open.push(passing.triangle);
+        }
+    }
+    open.is_empty().then_some(pairs)
 }
 
 /// Whether two triangles of one piece have a point in common that is neither a corner nor on an edge of both. Exact.
@@ -193,6 +250,54 @@ mod tests {
         let vertices = vec![[5., 0., 0.], [6., 0., 0.], [5., 1., 0.], [5., 0., 1.]];
         let triangles = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
         SceneObject { name: String::new(), vertices, triangles }
+    }
+
+    /// A box, outwards or not.
+    fn block(o: &mut SceneObject, min: Point3, max: Point3, inwards: bool) {
+        let first = o.vertices.len() as u32;
+        o.vertices.extend(
+            (0..8).map(|i| -> Point3 { std::array::from_fn(|k| if i >> k & 1 == 0 { min[k] } else { max[k] }) }),
+        );
+        let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let triangles = quads.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]);
+        let turned = triangles.map(|[a, b, c]| if inwards { [a, c, b] } else { [a, b, c] });
+        o.triangles.extend(turned.map(|t: [u32; 3]| t.map(|i| i + first)));
+    }
+
+    /// Blocks that touch along an edge are as closed as blocks apart, wherever the others stand around the edge, and whichever comes first; one of
+    /// them inside out is noticed, and so is a sheet beside them. Blocks with a side in common lie on each other there.
+    #[test]
+    fn blocks_that_touch_along_an_edge_are_closed() {
+        let at = |x: f64, y: f64| ([x, y, 0.0], [x + 1.0, y + 1.0, 1.0]);
+        let around = [at(0.0, 0.0), at(-1.0, 0.0), at(-1.0, -1.0), at(0.0, -1.0)];
+        let closed = |which: &[usize], inside_out: Option<usize>, has_sheet: bool| {
+            let mut o = SceneObject { name: String::new(), vertices: Vec::new(), triangles: Vec::new() };
+            which.iter().for_each(|&k| block(&mut o, around[k].0, around[k].1, inside_out == Some(k)));
+            if has_sheet {
+                let first = o.vertices.len() as u32;
+                o.vertices.extend([[0.0; 3], [0.0, 0.0, 1.0], [0.5, -0.5, 0.0]]);
+                o.triangles.push([first, first + 1, first + 2]);
+            }
+            is_closed_outwards(&o)
+        };
+        for (a, b) in [(0, 2), (2, 0), (1, 3), (3, 1)] {
+            assert!(closed(&[a, b], None, false), "{a} {b}");
+            assert!(!closed(&[a, b], Some(a), false) && !closed(&[a, b], Some(b), false), "{a} {b}");
+            assert!(!closed(&[a, b], None, true), "{a} {b}");
+        }
+        assert!(!closed(&[0, 1], None, false), "a side in common");
+        // A spike that hangs in the corner of a block, inside it, along an edge of both: matter twice, or none there.
+        let nested = |inwards: bool| {
+            let mut o = SceneObject { name: String::new(), vertices: Vec::new(), triangles: Vec::new() };
+            block(&mut o, [0.0; 3], [4.0, 4.0, 1.0], false);
+            let spike = [[0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [2.0, 1.0, 0.5], [1.0, 2.0, 0.5]];
+            let first = o.vertices.len() as u32;
+            o.vertices.extend(spike);
+            let sides = [[0, 1, 3], [0, 2, 1], [0, 3, 2], [1, 2, 3]];
+            o.triangles.extend(sides.map(|[a, b, c]| if inwards { [a, c, b] } else { [a, b, c] }.map(|i| i + first)));
+            is_closed_outwards(&o)
+        };
+        assert_eq!([nested(false), nested(true)], [true; 2], "the second one is a notch that touches the edge");
     }
 
     #[test]
