@@ -86,7 +86,8 @@ pub fn floor_cut(scene: &Scene, up: Axis, height: f64) -> Result<FloorCut, Floor
         if is_moving || scene.doors().binary_search(&object).is_ok() {
             continue;
         }
-        let is_opaque = scene.is_opaque(object);
+        // A plan shows walls, not from which side they hide.
+        let is_opaque = scene.is_opaque(object) || scene.hides_from_front(object);
         let is_mirror = is_opaque && scene.mirrors().binary_search(&object).is_ok();
         for corners in o.corners() {
             cut.add(corners.map(|p| upright(p, up)), height, Sight { is_opaque, is_mirror });

@@ -215,6 +215,14 @@ impl Survey {
             out.n_small_regions += n_small;
             out.fronts.extend(united(&rects).iter().map(|r| (on_plane(r, axis, at), up)));
         }
+        // Where two of them stand back to back, nothing passes.
+        let plane = |front: &(AxialFace<3>, bool)| (front.0.axis, total_order(front.0.at));
+        for group in out.fronts.chunk_by(|a, b| plane(a) == plane(b)) {
+            let (up, down): (Vec<_>, Vec<_>) = group.iter().map(|front| (flat(&front.0), front.1)).partition(|f| f.1);
+            let both = up.iter().flat_map(|(a, _)| down.iter().filter_map(|(b, _)| common(a, b)));
+            let both = both.map(|r| on_plane(&r, group[0].0.axis, group[0].0.at)).collect::<Vec<_>>();
+            out.faces.extend(both);
+        }
     }
 
     /// The axis-parallel triangles that may hide, and whether they are of a closed piece.
@@ -245,6 +253,19 @@ impl Survey {
         rects.extend(of(true));
         (rects, n_small)
     }
+}
+
+/// The extent of a face on its plane: the reverse of [`on_plane`].
+fn flat(face: &AxialFace<3>) -> FlatRect {
+    let [u, v] = others(face.axis).map(|k| [face.min[k], face.max[k]]);
+    FlatRect { u, v }
+}
+
+/// What two rectangles of a plane have in common, if that has an area.
+fn common(a: &FlatRect, b: &FlatRect) -> Option<FlatRect> {
+    let span = |a: [f64; 2], b: [f64; 2]| [a[0].max(b[0]), a[1].min(b[1])];
+    let (u, v) = (span(a.u, b.u), span(a.v, b.v));
+    (u[0] < u[1] && v[0] < v[1]).then_some(FlatRect { u, v })
 }
 
 fn on_plane(rect: &FlatRect, axis: usize, at: f64) -> AxialFace<3> {

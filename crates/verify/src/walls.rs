@@ -46,16 +46,24 @@ impl WallFindings {
     }
 }
 
-/// Checks that every wall of the cells of a table is covered by axis-parallel triangles of a scene that hide. Exact. Cost: for each wall what is on
+/// Checks that every wall of the cells of a table is covered by axis-parallel triangles of a scene that hide, from both sides together. Exact. Cost: for each wall what is on
 /// its plane.
 pub fn check_walls_in_space(table: &Table, scene: &Scene) -> WallFindings {
-    let mut on_plane: BTreeMap<(usize, u64), Vec<[Point2; 3]>> = BTreeMap::new();
-    for triangle in scene.occluding_triangles() {
+    // On each plane those that stop lines towards smaller coordinates, and those that stop lines towards larger ones.
+    let mut on_plane: BTreeMap<(usize, u64), [Vec<[Point2; 3]>; 2]> = BTreeMap::new();
+    let fronts = scene.front_occluding_triangles().map(|triangle| (triangle, true));
+    for (triangle, is_one_sided) in scene.occluding_triangles().map(|triangle| (triangle, false)).chain(fronts) {
         for axis in 0..3 {
             let at = triangle[0][axis];
             let flat = triangle.map(|p| Point2::new(p[(axis + 1) % 3], p[(axis + 2) % 3]));
-            if triangle.iter().all(|p| p[axis] == at) && orient2d(flat[0], flat[1], flat[2]) != 0.0 {
-                on_plane.entry((axis, (at + 0.0).to_bits())).or_default().push(flat);
+            let turn = orient2d(flat[0], flat[1], flat[2]);
+            if triangle.iter().all(|p| p[axis] == at) && turn != 0.0 {
+                let stopping = on_plane.entry((axis, (at + 0.0).to_bits())).or_default();
+                for (way, list) in stopping.iter_mut().enumerate() {
+                    if !is_one_sided || (turn > 0.0) == (way == 0) {
+                        list.push(flat);
+                    }
+                }
             }
         }
     }
@@ -80,14 +88,17 @@ pub fn check_walls_in_space(table: &Table, scene: &Scene) -> WallFindings {
                     let hole = [low[u], low[v], high[u], high[v]];
                     walls = walls.into_iter().flat_map(|wall| without(wall, hole)).collect();
                 }
-                let none = Vec::new();
-                let triangles = on_plane.get(&(axis, (at + 0.0).to_bits())).unwrap_or(&none);
+                let none = [Vec::new(), Vec::new()];
+                let stopping = on_plane.get(&(axis, (at + 0.0).to_bits())).unwrap_or(&none);
+                // Mostly nothing has one side.
+                let n_ways = if stopping[0] == stopping[1] { 1 } else { 2 };
                 for wall in walls {
-                    let bare = uncovered(wall, triangles).map(|[x, y]| {
-                        let mut point = [at; 3];
-                        (point[u], point[v]) = (x, y);
-                        point
-                    });
+                    let bare =
+                        stopping[..n_ways].iter().find_map(|triangles| uncovered(wall, triangles)).map(|[x, y]| {
+                            let mut point = [at; 3];
+                            (point[u], point[v]) = (x, y);
+                            point
+                        });
                     findings.add(cell, bare);
                 }
             }

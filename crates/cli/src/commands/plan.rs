@@ -49,7 +49,7 @@ pub(crate) fn run(args: &PlanCommandArgs, _: Verbosity) -> Result<Done> {
         refuse(path, &[("--height", args.height.is_some())], "scenes in space", "none")?;
         refuse(path, &args.surfaces.given(), "scenes in space", "none")?;
     }
-    let mut read = input::read(path, map, &args.surfaces.options_of_walls(), &args.plans.options(path)?)?;
+    let mut read = input::read(path, map, &args.surfaces.options(), &args.plans.options(path)?)?;
     args.up.put_into(path, &mut read)?;
     let (text, outcome) = match read {
         Input::Scene(file) => {

@@ -200,7 +200,9 @@ fn lines_of_pages_of_real_scenes_are_those_of_explain() {
     let folder = Folder::new();
     for name in ["doom/freedoom1_E1M1.wad", "quake/e1m7.bsp", "scenes/whale_tall/whale_tall.glb"] {
         let scene = data.join(name).display().to_string();
-        folder.run(&["build", &scene, "-o", "r.pvs"]).expect(0);
+        // A table does not tell which way walls of one side hide, so of pairs that these hide no reason is found.
+        let drawn: &[&str] = if scene.ends_with(".glb") { &["--backs", "drawn"] } else { &[] };
+        folder.run(&[&["build", &scene, "-o", "r.pvs"], drawn].concat()).expect(0);
         let [n_seen, n_hidden] = compare_lines(&folder, &browser, &["--lines", "400"], "r.pvs");
         assert!(n_seen >= 15 && n_hidden > 0, "{name}: {n_seen} and {n_hidden}");
     }

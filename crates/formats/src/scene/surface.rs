@@ -355,7 +355,10 @@ mod tests {
         let wall = |names: &[&'static str]| Evidence { names: names.to_vec(), ..Evidence::default() };
         let both = options(&["front*"], &["*glass"]);
         assert_eq!(role(&both, glass(&["front", "paint"])), Some((Role::Occluder, false)));
-        assert_eq!(role(&both, wall(&["front", "paint"])), None);
+        // Of a wall that hides from both sides anyway there is nothing to say.
+        let drawn = SceneReadOptions { backs: BackFaces::Drawn, ..both.clone() };
+        assert_eq!(role(&both, wall(&["front", "paint"])), Some((Role::Occluder, false)));
+        assert_eq!(role(&drawn, wall(&["front", "paint"])), None);
         assert_eq!(role(&both, wall(&["front", "Glass"])), Some((Role::SeeThrough, false)));
         let skin = Evidence { deforms: true, moves: text("a skin"), ..wall(&["front"]) };
         assert_eq!(role(&both, skin), Some((Role::SeeThrough, true)));

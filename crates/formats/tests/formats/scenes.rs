@@ -4,7 +4,7 @@ use crate::common::glb::{Doc, SMALL_OBJ, glb, small_doc};
 use serde_json::json;
 use sightlines_cells::{Scene, SceneObject};
 use sightlines_formats::scene::{
-    Axis, LengthUnit, MAX_ELEMENTS, MAX_OBJECTS, SceneFormat, SceneReadOptions, SceneWriteError, parse_glb,
+    Axis, BackFaces, LengthUnit, MAX_ELEMENTS, MAX_OBJECTS, SceneFormat, SceneReadOptions, SceneWriteError, parse_glb,
     parse_glb_with_source, parse_gltf_with, parse_obj, read_scene, write_glb,
 };
 use sightlines_formats::{SceneFile, atomic_write};
@@ -649,7 +649,8 @@ fn instances_are_objects() {
     let (_, source) = parse_glb_with_source(doc.glb(), None).unwrap();
     let error = source.rewrite(&vec![None; 4], None).unwrap_err().to_string();
     assert!(error.contains("nodes[1]") && error.contains("EXT_mesh_gpu_instancing"), "{error}");
-    let pattern = SceneReadOptions { see_through: vec!["tree".parse().unwrap()], ..SceneReadOptions::default() };
+    let backs = BackFaces::Drawn;
+    let pattern = SceneReadOptions { see_through: vec!["tree".parse().unwrap()], backs, ..SceneReadOptions::default() };
     assert_eq!(parse_gltf_with(&doc.glb(), None, &pattern).unwrap().scene.see_through(), [0, 1, 2]);
 }
 

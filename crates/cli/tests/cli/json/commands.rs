@@ -86,6 +86,8 @@ fn plans(all: &mut Results) {
     add("vga", "vga office.geojson --spacing 2 --measure clustering -o o.svg");
     add("vga", "vga office.geojson --points p.csv -o p.geojson");
     add("verify", "verify o.pvs office.geojson --rays 100 --pairs 10");
+    add("build of a plan", "build office.geojson -o gap.pvs --gap 1e-6");
+    add("verify", "verify gap.pvs office.geojson --rays 100 --pairs 10");
     add("query of a point", "query o.pvs --eye 3,3");
     add("query of a point", "query o.pvs --eye 1e5,3");
     add("query of a view", "query o.pvs --eye 1e5,3 --dir 1,0");
@@ -217,8 +219,15 @@ fn scenes(all: &mut Results) {
     let objects = (0..least.objects().len() as u32).collect();
     let single = least.with_single_sided(objects).expect("objects of the scene");
     folder.write("single.glb", write_glb(&single).expect("single precision"));
-    add("build of a scene", "build single.glb -o single.pvs");
-    add("build of a scene by regions", "build single.glb -o single.pvs --method shafts --grid 2,1,2");
+    add("build of a scene", "build single.glb -o single.pvs --backs culled");
+    // A sky around two things.
+    let sky =
+        "v -99 -99 -99\nv 99 -99 -99\nv 99 99 -99\nv -99 99 -99\nv -99 -99 99\nv 99 -99 99\nv 99 99 99\nv -99 99 99
+f 7 8 9 10\nf 11 14 13 12\nf 7 11 12 8\nf 8 12 13 9\nf 9 13 14 10\nf 10 14 11 7\n";
+    folder.write("sky.obj", format!("{TRIANGLES}o sky\n{sky}"));
+    add("build of a scene", "build sky.obj -o sky.pvs");
+    add("build of a scene by regions", "build sky.obj -o sky.pvs --n-cells 2");
+    add("build of a scene by regions", "build single.glb -o single.pvs --method shafts --grid 2,1,2 --backs culled");
     add("info of a scene", "info tower.glb");
     add("build of a scene", "build turned.obj -o turned.pvs --gap 1e-5");
     add("info of a scene", "info extras.glb");
