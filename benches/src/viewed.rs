@@ -2,7 +2,7 @@
 
 use sightlines::cells::Scene;
 use sightlines::formats::ViewCell;
-use sightlines::formats::scene::read_scene;
+use sightlines::formats::scene::{BackFaces, SceneReadOptions, read_scene_with};
 use sightlines::formats::view_cells::read_view_cells;
 use sightlines::geometry::Aabb;
 use sightlines::scenes::{CityOptions, GenerateError, TowerOptions, city, city_crossings, tower, tower_rooms};
@@ -57,7 +57,8 @@ impl ViewedScene {
         };
         let (name, cells) = named.split_once(':').ok_or("a real scene and its cells, with a colon between")?;
         let folder = Path::new(&data).join("scenes").join(name);
-        let scene = read_scene(folder.join(format!("{name}.glb")))?.scene;
+        let scene =
+            read_scene_with(folder.join(format!("{name}.glb")), &SceneReadOptions::with_backs(BackFaces::Drawn))?.scene;
         let cells = read_view_cells(folder.join(format!("{cells}.json")))?.cells;
         Ok(Some(Self { name: name.to_owned(), scene, cells, folder: Some(folder) }))
     }

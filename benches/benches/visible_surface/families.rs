@@ -1,7 +1,7 @@
 //! Families of scenes, and where they are looked at from.
 
 use sightlines::cells::Scene;
-use sightlines::formats::scene::read_scene;
+use sightlines::formats::scene::{BackFaces, SceneReadOptions, read_scene_with};
 use sightlines::scenes::surfaces::{self, SurfaceOptions};
 use sightlines::visible_surface::Camera;
 use std::path::Path;
@@ -91,7 +91,12 @@ fn real() -> Vec<Case> {
     };
     let read = |name: &str| {
         let file = Path::new(&data).join("scenes").join(name).join(format!("{name}.glb"));
-        Case { name: Some(name.to_owned()), scene: read_scene(file).expect("the scene can be read").scene }
+        Case {
+            name: Some(name.to_owned()),
+            scene: read_scene_with(file, &SceneReadOptions::with_backs(BackFaces::Drawn))
+                .expect("the scene can be read")
+                .scene,
+        }
     };
     REAL.map(read).into()
 }

@@ -4,7 +4,7 @@ use super::panels::{Layout, by_scene};
 use super::row::Row;
 use super::{ChartError, Family, Settings};
 use sightlines::cells::Scene;
-use sightlines::formats::scene::read_scene;
+use sightlines::formats::scene::{BackFaces, SceneReadOptions, read_scene_with};
 use sightlines::scenes::GenerateError;
 use sightlines::scenes::surfaces::{self, SurfaceOptions};
 use sightlines::visible_surface::{
@@ -75,7 +75,8 @@ fn scenes(settings: &Settings) -> Result<Vec<(String, Scene, Camera)>, ChartErro
     if let Some(data) = &settings.data {
         let name = "duplex";
         let path = data.join("scenes").join(name).join(format!("{name}.glb"));
-        let scene = read_scene(path).map_err(|e| failed(name, e))?.scene;
+        let scene =
+            read_scene_with(path, &SceneReadOptions::with_backs(BackFaces::Drawn)).map_err(|e| failed(name, e))?.scene;
         let b = scene.bounds();
         let at = |part: [f64; 3]| [0, 1, 2].map(|k| b.min[k] + part[k] * (b.max[k] - b.min[k]));
         let camera = Camera::look_at(at([0.31, 0.37, 0.43]), at([0.83, 0.29, 0.71]), [0.0, 1.0, 0.0], 70.0, size);

@@ -2,7 +2,7 @@
 //! real ones.
 
 use sightlines::cells::Scene;
-use sightlines::formats::scene::read_scene;
+use sightlines::formats::scene::{BackFaces, SceneReadOptions, read_scene_with};
 use sightlines::geometry::Point3;
 use sightlines::scenes::surfaces::{self, DepthPairsOptions, SurfaceOptions};
 use sightlines::scenes::{TowerOptions, tower};
@@ -109,7 +109,7 @@ fn methods_agree_on_real_scenes() {
     let mut tally = Tally::default();
     for name in ["whale_tall", "duplex", "whale_large", "delft", "office_a", "pandora", "sponza"] {
         let file = data.join("scenes").join(name).join(format!("{name}.glb"));
-        let scene = read_scene(&file).unwrap().scene;
+        let scene = read_scene_with(&file, &SceneReadOptions::with_backs(BackFaces::Drawn)).unwrap().scene;
         let faces = Faces::of_scene(&scene).unwrap();
         let b = scene.bounds();
         let at = |part: [f64; 3]| [0, 1, 2].map(|k| b.min[k] + part[k] * (b.max[k] - b.min[k]));
@@ -132,7 +132,9 @@ fn methods_agree_on_real_scenes() {
 #[test]
 fn methods_agree_on_a_million_faces() {
     let Some(data) = data_folder("SIGHTLINES_DATA") else { return };
-    let scene = read_scene(data.join("scenes/castle/castle.glb")).unwrap().scene;
+    let scene = read_scene_with(data.join("scenes/castle/castle.glb"), &SceneReadOptions::with_backs(BackFaces::Drawn))
+        .unwrap()
+        .scene;
     let faces = Faces::of_scene(&scene).unwrap();
     let b = scene.bounds();
     let at = |part: [f64; 3]| [0, 1, 2].map(|k| b.min[k] + part[k] * (b.max[k] - b.min[k]));

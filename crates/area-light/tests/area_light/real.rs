@@ -3,6 +3,7 @@
 use crate::check::check;
 use crate::common::{triangles_of, volume};
 use sightlines_area_light::{LightOptions, Shadows, Sides, shown};
+use sightlines_formats::scene::{BackFaces, SceneReadOptions, read_scene_with};
 use sightlines_geometry::Point3;
 use sightlines_multifocal::mesh::SheetMethod;
 use sightlines_visible_surface::{Camera, DepthFormat, FaceMask, Faces, RenderInput, VisibleSurface, ZBuffer};
@@ -22,7 +23,9 @@ fn scenes(test: &str) -> Option<PathBuf> {
 #[test]
 fn an_atrium_is_right() {
     let Some(folder) = scenes("an_atrium_is_right") else { return };
-    let scene = sightlines_formats::scene::read_scene(folder.join("sponza/sponza.glb")).unwrap().scene;
+    let scene = read_scene_with(folder.join("sponza/sponza.glb"), &SceneReadOptions::with_backs(BackFaces::Drawn))
+        .unwrap()
+        .scene;
     let triangles = triangles_of(&scene);
     let faces = Faces::new(triangles.clone()).unwrap();
     let bounds = scene.bounds();

@@ -25,6 +25,13 @@ pub struct SceneReadOptions {
     pub scene: Option<String>,
 }
 
+impl SceneReadOptions {
+    /// The file decides of everything but of backs.
+    pub fn with_backs(backs: BackFaces) -> Self {
+        Self { backs, ..Self::default() }
+    }
+}
+
 /// What is known of the backs of single-sided faces.
 ///
 /// Objects that are closed, with their fronts outwards, hide from both sides in any case: whoever is outside of them sees no back.

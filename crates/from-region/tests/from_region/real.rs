@@ -1,5 +1,6 @@
 //! Real scenes against what was seen in them.
 
+use sightlines_formats::scene::{BackFaces, SceneReadOptions, read_scene_with};
 use sightlines_from_region::{Interior, ViewShafts, VoxelOptions, Voxels};
 use sightlines_geometry::Aabb;
 use sightlines_multifocal::{FromRegion, Occluder, Volume};
@@ -57,7 +58,10 @@ fn real_scenes_show_what_was_seen() {
     for (name, kind, n_longest, n, shafts, voxels) in
         [("delft", "street", 400, 12, 15, 18), ("duplex", "rooms", 100, 4, 0, 0), ("sponza", "walk", 100, 4, 2, 2)]
     {
-        let scene = sightlines_formats::scene::read_scene(folder.join(format!("{name}/{name}.glb"))).unwrap().scene;
+        let scene =
+            read_scene_with(folder.join(format!("{name}/{name}.glb")), &SceneReadOptions::with_backs(BackFaces::Drawn))
+                .unwrap()
+                .scene;
         let rows = witnesses(&folder.join(name), kind);
         let boxes: Vec<_> = scene.objects().iter().map(|o| o.bounds()).collect();
         let triangles = scene.objects().iter().flat_map(|o| o.corners());

@@ -1,7 +1,7 @@
 //! Patches and sheets of real scenes: what they gain, in figures on standard error.
 
 use sightlines_cells::Scene;
-use sightlines_formats::scene::read_scene;
+use sightlines_formats::scene::{BackFaces, SceneReadOptions, read_scene_with};
 use sightlines_geometry::{Aabb, BoxTree, Point3, orient3d};
 use sightlines_multifocal::Occluder;
 use sightlines_multifocal::mesh::{PatchOptions, Sheets, patches};
@@ -17,7 +17,11 @@ fn scenes(names: &[&str], test: &str) -> Vec<(String, Scene)> {
     };
     let folder = std::path::Path::new(&data).join("scenes");
     let read = |name: &&str| {
-        let file = read_scene(folder.join(name).join(format!("{name}.glb"))).unwrap_or_else(|e| panic!("{e}"));
+        let file = read_scene_with(
+            folder.join(name).join(format!("{name}.glb")),
+            &SceneReadOptions::with_backs(BackFaces::Drawn),
+        )
+        .unwrap_or_else(|e| panic!("{e}"));
         ((*name).to_owned(), file.scene)
     };
     names.iter().map(read).collect()

@@ -2,7 +2,7 @@
 
 use crate::culling::oracle::Chance;
 use sightlines_cells::Scene;
-use sightlines_formats::scene::read_scene;
+use sightlines_formats::scene::{BackFaces, SceneReadOptions, read_scene_with};
 use sightlines_scenes::{CityOptions, city};
 use sightlines_visible_surface::hierarchical::{self, DepthPyramid, Neighbours};
 use sightlines_visible_surface::{Camera, DepthFormat, FaceMask, Faces, RenderInput, VisibleSurface, ZBuffer, cull};
@@ -67,7 +67,9 @@ fn real_scenes_from_within() {
     };
     for name in ["sponza", "duplex", "delft"] {
         let path = data.join(format!("scenes/{name}/{name}.glb"));
-        let scene = read_scene(&path).unwrap_or_else(|e| panic!("{e}")).scene;
+        let scene = read_scene_with(&path, &SceneReadOptions::with_backs(BackFaces::Drawn))
+            .unwrap_or_else(|e| panic!("{e}"))
+            .scene;
         let [all, seen, outside, hidden, surely] = counts(&scene, 4);
         eprintln!("{name}: {all} faces, {seen} seen, {outside} outside, {hidden} and {surely} hidden");
         assert!(seen > 0 && outside > 0 && hidden > 0 && surely > 0);
