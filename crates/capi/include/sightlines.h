@@ -183,7 +183,8 @@
 #define SL_OBJECT_MIRROR 4
 
 /**
- * Its triangles are seen from the front only, counter-clockwise; they hide from both sides all the same.
+ * Engines draw the fronts of its triangles only, counter-clockwise: they are seen from there, and hide from there; those of closed objects hide
+ * from both sides.
  */
 #define SL_OBJECT_SINGLE_SIDED 8
 

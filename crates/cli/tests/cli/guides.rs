@@ -177,7 +177,8 @@ fn the_guide_for_scans_works() {
     let cells = ["--view-region", "0,0.5,0,32,3,32", "--grid", "12,1,12", "--method", "sightlines"];
     let lines = folder.run(&[&["build", "pieces.glb", "-o", "lines.pvs"][..], &cells].concat()).expect(0).out;
     assert_eq!((polygons_of_a_viewer(&lines), built("scan.glb")), (100.0, 100.0));
-    assert!((50.0..70.0).contains(&built("pieces.glb")));
+    let of_pieces = built("pieces.glb");
+    assert!((50.0..70.0).contains(&of_pieces), "{of_pieces}");
 }
 
 /// A picture of the documents is the one that the program draws.
