@@ -8,7 +8,7 @@
 //! of its fronts are then before one winding number and all backs before the next; far away it is 0, and of a positive volume inside 1. Where it crosses itself, a part may be inside out: from
 //! outside its backs are seen, which are not drawn.
 
-use crate::{Point3, SceneObject};
+use crate::{Point3, Scene, SceneError, SceneObject};
 use sightlines_geometry::{Aabb, BoxTree, Point2, orient2d, orient3d};
 use std::collections::BTreeMap;
 
@@ -77,6 +77,24 @@ pub fn is_closed_outwards(object: &SceneObject) -> bool {
     // What is no border is a piece of its own.
     let piece_of: Vec<usize> = (0..triangles.len()).map(|k| root(&mut pieces, k)).collect();
     !meets_itself(&corners, &triangles, &piece_of)
+}
+
+impl Scene {
+    /// The same scene, in which engines draw the fronts of these objects only: they are [seen from there only](Self::with_single_sided), and those
+    /// that hide and are not [closed](is_closed_outwards) [hide from there only](Self::with_front_occluders). What moves, and what is
+    /// see-through, hides nothing as before.
+    ///
+    /// # Errors
+    /// [`SceneError::SingleSided`] for an object that does not exist.
+    pub fn with_backs_culled(self, objects: Vec<u32>) -> Result<Self, SceneError> {
+        let scene = self.with_single_sided(objects)?;
+        let is_open = |object: &u32| {
+            let of = &scene.objects()[*object as usize];
+            scene.is_opaque(*object) && !of.triangles.is_empty() && !is_closed_outwards(of)
+        };
+        let fronts = scene.single_sided().iter().copied().filter(is_open).collect();
+        scene.with_front_occluders(fronts)
+    }
 }
 
 /// A triangle that passes an edge.

@@ -2,7 +2,6 @@
 
 mod checksum;
 
-use crate::closed::is_closed_outwards;
 use sightlines_geometry::coordinate::MAX_MAGNITUDE;
 use sightlines_geometry::{Aabb, CoordinateError, Point3, check_coordinate};
 use sightlines_pvs::ObjectSource;
@@ -272,22 +271,6 @@ impl Scene {
         self.front_occluders = self.ascending(front_occluders, |object| SceneError::SingleSided { object })?;
         let see_through = std::mem::take(&mut self.see_through);
         self.with_see_through(see_through)
-    }
-
-    /// The same scene, in which engines draw the fronts of these objects only: they are [seen from there only](Self::with_single_sided), and those
-    /// that hide and are not [closed](is_closed_outwards) [hide from there only](Self::with_front_occluders). What moves, and what is
-    /// see-through, hides nothing as before.
-    ///
-    /// # Errors
-    /// [`SceneError::SingleSided`] for an object that does not exist.
-    pub fn with_backs_culled(self, objects: Vec<u32>) -> Result<Self, SceneError> {
-        let scene = self.with_single_sided(objects)?;
-        let is_open = |object: &u32| {
-            let of = &scene.objects[*object as usize];
-            scene.is_opaque(*object) && !of.triangles.is_empty() && !is_closed_outwards(of)
-        };
-        let fronts = scene.single_sided.iter().copied().filter(is_open).collect();
-        scene.with_front_occluders(fronts)
     }
 
     /// The objects that hide from eyes in front of their triangles only, ascending.

@@ -14,11 +14,11 @@ use sightlines_pvs::ObjectSource;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum OpenSides {
     /// What is behind them, from both sides.
-    HideBoth,
+    Both,
     /// What is behind them for who is in front.
-    HideFront,
+    Front,
     /// Nothing.
-    HideNone,
+    Neither,
 }
 
 /// A mesh of which every corner is used.
@@ -144,11 +144,11 @@ impl Builder {
         let is_open = || !object.triangles.is_empty() && !is_closed_outwards(object);
         let n = object.triangles.len();
         match if_open {
-            OpenSides::HideFront if is_open() => {
+            OpenSides::Front if is_open() => {
                 self.n_front_occluding += n;
                 self.front_occluders.extend(self.last());
             }
-            OpenSides::HideNone if is_open() => return Some(Classification::see_through("single sides".to_owned())),
+            OpenSides::Neither if is_open() => return Some(Classification::see_through("single sides".to_owned())),
             _ => {}
         }
         self.n_single_sided += n;

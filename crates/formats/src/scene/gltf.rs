@@ -266,9 +266,9 @@ fn build(
                 // Who says by name that something hides has the last word.
                 let is_vouched_for = class.as_ref().is_some_and(|class| class.is_vouched_for);
                 let if_open = match at.world.keeps_sides() {
-                    _ if is_vouched_for || !classifier.hides_from_fronts_only() => OpenSides::HideBoth,
-                    true => OpenSides::HideFront,
-                    false => OpenSides::HideNone,
+                    _ if is_vouched_for || !classifier.hides_from_fronts_only() => OpenSides::Both,
+                    true => OpenSides::Front,
+                    false => OpenSides::Neither,
                 };
                 class = builder.count_single_sided(if_open).or(class);
             }
