@@ -53,7 +53,7 @@ impl Gap {
     /// building, a site beside it, nor its place far from the origin or from other buildings,
     /// which nodes have in double precision, makes the gap wide. Where M is less
     /// than what was rounded, as far from the origin without nodes, fewer walls become flat, and nothing is wrongly closed: then a wider gap is
-    /// tried, with the M of [`Gap::of_stored`].
+    /// tried, with the sizes of coordinates as the file stores them for M.
     pub fn of_file(scene: &Scene, file: &SceneInfo) -> f64 {
         if file.format == SceneFormat::Gltf { Self::of_single(scene) } else { 0.0 }
     }

@@ -212,7 +212,7 @@ impl<'a> Shaft<'a> {
     /// * `budget`: linear programs after which it gives up; the answer for a budget does not depend on
     ///   anything else.
     ///
-    /// Rectangles that hide [from one side](OneWayRectangle) stop only lines that come from their fronts, on the way from `from` to `to`.
+    /// Rectangles that hide [from one side](sightlines_geometry::OneWayRectangle) stop only lines that come from their fronts, on the way from `from` to `to`.
     ///
     /// Exact, except for [`Verdict::Undecided`], which errs on neither side. Rectangles inside of the boxes
     /// count only for lines that have to pass them between leaving the first and entering the second.

@@ -75,7 +75,7 @@ pub struct AxialUpdate {
 
 impl LiveAxial {
     /// Finds which cells of a graph see each other and which objects they see, as [`axial_visibility`](super::axial_visibility)
-    /// does, and keeps what an update needs. Arguments, exactness and cost as there.
+    /// does, and keeps what an update needs. Arguments, exactness and cost as there, but for walls that hide from one side: here they hide nothing.
     ///
     /// # Errors
     /// [`Cancelled`] by the observer.
