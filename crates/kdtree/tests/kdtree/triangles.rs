@@ -149,8 +149,7 @@ proptest! {
         rects in prop::collection::vec((rectangle(SIDE), any::<bool>(), any::<bool>()), 1..8)
     ) {
         let objects = rects.iter().map(|(r, up, _)| object("wall", &quad(r.0, r.1, r.2, *up))).collect();
-        let one_sided = |one: &(u32, &((usize, Point3, Point3), bool, bool))| one.1.2;
-        let fronts: Vec<u32> = (0u32..).zip(&rects).filter(one_sided).map(|(k, _)| k).collect();
+        let fronts: Vec<u32> = (0u32..).zip(&rects).filter(|(_, (.., one_sided))| *one_sided).map(|(k, _)| k).collect();
         let scene = scene(objects).with_front_occluders(fronts).expect("objects");
         let found = scene_faces(&scene, &SceneOptions { detail_below: Some(0.0), ..SceneOptions::default() });
         let of = |up: Option<bool>| -> Vec<_> {
