@@ -44,8 +44,7 @@ impl SceneFacts {
         let total: f64 = all.iter().map(area).sum();
         let share = |part: f64| if total > 0.0 { (part / total).min(1.0) } else { 0.0 };
         let longest = |b: &Aabb<3>| (0..3).map(|k| b.max[k] - b.min[k]).fold(0.0, f64::max);
-        let mut sizes: Vec<f64> =
-            { scene.occluders().chain(scene.fronts()).map(|(_, o)| longest(&o.bounds())).collect() };
+        let mut sizes: Vec<f64> = scene.occluders().chain(scene.fronts()).map(|(_, o)| longest(&o.bounds())).collect();
         sizes.sort_by(f64::total_cmp);
         let (whole, middle) = (longest(&scene.bounds()), sizes.get(sizes.len() / 2).copied().unwrap_or(0.0));
         Self {

@@ -86,7 +86,8 @@ pub struct Certified {
 /// Finds proofs for the pairs of cells of a table, and in space for the objects that cells do not see.
 ///
 /// A pair without one is left open, so nothing here has to be trusted: the checker decides
-/// which pairs are proven.
+/// which pairs are proven. Proofs know no sides of walls: a table of a scene some walls of which hide from one side only has to be
+/// [baked for proofs](crate::BakeRequest::for_proofs), or the lines past the backs of these contradict it.
 ///
 /// * `graph`: the one that the table was made from: [`Baked::graph`], or
 ///   [`from_table::graph`](fn@crate::from_table::graph) of a table from a file

@@ -50,7 +50,8 @@ pub struct BakeRequest {
     /// Quake maps and portal files: only the first, coarse bound; quick, and shows much that is hidden.
     pub fast: bool,
     /// Whether proofs or stab trees are to be made, which are of sightlines through portals. Cells that are not named are then those of a k-d
-    /// tree, and a method that is not named is sightlines alone, unless the cells that are named have no portals.
+    /// tree, and a method that is not named is sightlines alone, unless the cells that are named have no portals. Where there are portals, walls
+    /// that hide from one side only hide nothing from sightlines, but where two stand back to back: portals have no sides.
     pub for_proofs: bool,
 }
 
@@ -135,7 +136,12 @@ const SCENES: &str = "scenes in space";
 impl BakeRequest {
     /// Whether sightlines alone decide because proofs or stab trees are to be made, which are of cells with portals.
     pub(crate) fn is_for_proofs_alone(&self) -> bool {
-        self.method.is_none() && self.for_proofs && self.cells.as_ref().is_none_or(CellsFrom::have_portals)
+        self.method.is_none() && self.for_proofs && self.has_portals()
+    }
+
+    /// Whether cells of a scene are joined by portals if [proofs or stab trees](Self::for_proofs) are to be made.
+    fn has_portals(&self) -> bool {
+        self.cells.as_ref().is_none_or(CellsFrom::have_portals)
     }
 
     /// What is known without the input.
@@ -149,6 +155,7 @@ impl BakeRequest {
                 detail_below: self.detail_below,
                 max_cells: self.max_cells.unwrap_or(standard.max_cells),
                 keep_solid: self.keep_solid,
+                only_both_sides: self.for_proofs && self.has_portals(),
             },
             frame: None,
             digest: None,

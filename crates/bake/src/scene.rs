@@ -7,7 +7,7 @@ use crate::limit::{LimitReport, state_limit};
 use crate::mirrors;
 use crate::objects::object_lists;
 use crate::reports::SceneReport;
-use crate::stated::DETAIL_BELOW;
+use crate::stated::{DETAIL_BELOW, ONE_SIDED};
 use crate::table::{axial_portal_record, box_record, object_record, state_file};
 use crate::threads;
 use sightlines_cells::{Axial, AxialDoor, CellGraph, Portal, Scene, SceneObject};
@@ -130,6 +130,10 @@ pub(crate) fn see_scene(
     };
     let mut parts = scene_parts(&graph, seen, scene, &boxes, info(options, &report.cut), found.parts);
     parts.doors = doors::records(scene, &report.doors);
+    if !cut.fronts.is_empty() {
+        parts.info.push((ONE_SIDED.to_owned(), cut.fronts.len().to_string()));
+        parts.info.sort();
+    }
     state_file(&mut parts, options.file);
     Ok((graph, parts, report, left))
 }

@@ -10,6 +10,9 @@ pub(crate) const TIME_LIMIT: &str = "time-limit";
 /// The key under which a table states the size below which objects were detail.
 pub(crate) const DETAIL_BELOW: &str = "detail-below";
 
+/// The key under which a table states how many rectangles hid from one side only from its sightlines, if there were any. Portals do not tell of them.
+pub(crate) const ONE_SIDED: &str = "one-sided-walls";
+
 /// The key under which the table of a plan states its gap.
 pub(crate) const GAP: &str = "gap";
 
@@ -31,12 +34,14 @@ pub struct StatedMethods {
     pub detail_below: Option<f64>,
     /// Whether sightlines give the same again: they were finished in time, and that size can be read.
     pub is_repeatable: bool,
+    /// Whether walls that hide from one side only took part in the sightlines through portals, which lie in these walls too.
+    pub has_one_sided_walls: bool,
 }
 
 /// What a table of a scene in space states of its methods; `None` for other tables.
 ///
-/// Whether a method took part is part of the table's [kind](TableKind). Its name, the limit of time and the size of detail are only in the
-/// [free texts](Table::info) of a table, and this is where they are read: an unknown text changes a name and no decision about a pair.
+/// Whether a method took part is part of the table's [kind](TableKind). Its name, the limit of time, the size of detail and walls of one side are only
+/// in the [free texts](Table::info) of a table, and this is where they are read: an unknown text changes a name and no decision about a pair.
 pub fn stated_methods(table: &Table) -> Option<StatedMethods> {
     let (TableKind::SceneGivenCells { hidden_by } | TableKind::SceneKdTree { hidden_by }) = table.kind() else {
         return None;
@@ -49,7 +54,14 @@ pub fn stated_methods(table: &Table) -> Option<StatedMethods> {
     let detail_below = table.info_value(DETAIL_BELOW).map(str::parse).transpose();
     let is_repeatable = detail_below.is_ok() && table.info_value(TIME_LIMIT).is_none();
     let detail_below = detail_below.unwrap_or_default();
-    Some(StatedMethods { sightlines: hidden_by.sightlines, from_region, detail_below, is_repeatable })
+    let has_one_sided_walls = table.info_value(ONE_SIDED).is_some();
+    Some(StatedMethods {
+        sightlines: hidden_by.sightlines,
+        from_region,
+        detail_below,
+        is_repeatable,
+        has_one_sided_walls,
+    })
 }
 
 /// How the file of a table's scene was read, by the [free texts](Table::info) of the table: whoever looks at the scene again reads it likewise.

@@ -31,9 +31,10 @@ pub(crate) struct SurfaceArgs {
     #[arg(long, help_heading = "Input", value_name = "PATTERN")]
     still: Vec<NamePattern>,
     /// glTF: what your engine does with the backs of single-sided faces (materials that are not doubleSided). either: such
-    /// faces hide from their front only, and are seen from both sides, which is right for every engine; culled: they are
-    /// seen from the front only; drawn: they hide from both sides. Closed objects hide from both sides in any case
-    /// [default: either]
+    /// faces hide from their front only, and are seen from both sides, which is right for every engine, for viewers who are not
+    /// inside of closed things; culled: they are seen from the front only; drawn: they hide from both sides. Closed objects hide
+    /// from both sides in any case. To `render`, `light` and `multifocal`, which show walls and no views, such faces have two
+    /// sides unless this says otherwise, and to `plan` always [default: either]
     #[arg(long, help_heading = "Input", value_name = "WHAT", conflicts_with_all = ["single_sided", "both_sides"])]
     backs: Option<BackFaces>,
     /// The old name of --backs culled; with --both-sides that of --backs either

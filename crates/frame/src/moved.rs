@@ -3,7 +3,7 @@
 use crate::snap::Snaps;
 use sightlines_cells::{MovingObject, Scene, SceneError, SceneObject};
 use sightlines_geometry::vector::{dot, normal};
-use sightlines_geometry::{Aabb, Point3};
+use sightlines_geometry::{Aabb, Point2, Point3, orient2d};
 use sightlines_pvs::Frame;
 
 /// A scene along the axes of a frame, with coordinates that differ by less than the gap made equal.
@@ -88,10 +88,12 @@ impl Moved {
             }
             objects.push(SceneObject { name: o.name.clone(), vertices, triangles: o.triangles.clone() });
         }
-        let keeps =
-            |object: &&u32| keeps_fronts(frame, &scene.objects()[**object as usize], &objects[**object as usize]);
-        let single_sided = scene.single_sided().iter().filter(keeps).copied().collect();
-        let front_occluders = scene.front_occluders().iter().filter(keeps).copied().collect();
+        let keeps = |object: u32, and_lines: bool| {
+            keeps_fronts(frame, &scene.objects()[object as usize], &objects[object as usize], and_lines)
+        };
+        let single_sided = scene.single_sided().iter().copied().filter(|&object| keeps(object, false)).collect();
+        // What became a line hides nothing.
+        let front_occluders = scene.front_occluders().iter().copied().filter(|&object| keeps(object, true)).collect();
         let n_corners = objects.iter().map(|o| o.vertices.len()).sum();
         let moving = |moving: &MovingObject| {
             let within = moving.within.map(|b| if b.is_empty() { b } else { around(frame, &b) });
@@ -134,9 +136,20 @@ fn distance(at: f64, to: f64, rounding: f64) -> f64 {
     ((to - at).abs() + rounding) * (1.0 + 4.0 * f64::EPSILON)
 }
 
-/// Whether every triangle of an object looks the same way after its corners were moved; one that became flat or turned over has no
-/// front any more.
-fn keeps_fronts(frame: &Frame, object: &SceneObject, moved: &SceneObject) -> bool {
-    let fronts = |(t, m): ([Point3; 3], [Point3; 3])| dot(normal(t.map(|p| frame.to_frame(p))), normal(m)) > 0.0;
+/// Whether every triangle of an object looks the same way after its corners were moved, or `and_lines` it became a line; one that became flat or
+/// turned over has no front any more.
+fn keeps_fronts(frame: &Frame, object: &SceneObject, moved: &SceneObject, and_lines: bool) -> bool {
+    let fronts = |(t, m): ([Point3; 3], [Point3; 3])| {
+        dot(normal(t.map(|p| frame.to_frame(p))), normal(m)) > 0.0 || and_lines && are_collinear(m)
+    };
     object.corners().zip(moved.corners()).all(fronts)
+}
+
+/// Whether a triangle has no area. Exact.
+fn are_collinear([a, b, c]: [Point3; 3]) -> bool {
+    let seen_along = |axis: usize| {
+        let [a, b, c] = [a, b, c].map(|p| Point2::new(p[(axis + 1) % 3], p[(axis + 2) % 3]));
+        orient2d(a, b, c) == 0.0
+    };
+    (0..3).all(seen_along)
 }

@@ -1,7 +1,7 @@
 //! Unions of rectangles of a plane, in scene units.
 
 use crate::coplanar::FlatRect;
-use crate::region::{Rect, covers, unite};
+use crate::region::{Rect, covers, uncovered, unite};
 use crate::union_find::UnionFind;
 
 /// The coordinates of some rectangles of a plane, ascending and different.
@@ -36,6 +36,24 @@ pub(crate) fn united(rects: &[FlatRect]) -> Vec<FlatRect> {
     let ranks = FlatRanks::of(rects);
     let in_ranks: Vec<Rect> = rects.iter().map(|r| ranks.rect(r)).collect();
     unite(&in_ranks).iter().map(|r| ranks.flat(r)).collect()
+}
+
+/// What two unions have in common, as [`united`] would give it.
+pub(crate) fn common(a: &[FlatRect], b: &[FlatRect]) -> Vec<FlatRect> {
+    if a.is_empty() || b.is_empty() { Vec::new() } else { without(a, &without(a, b)) }
+}
+
+/// What one union has beyond the other, as [`united`] would give it.
+pub(crate) fn without(a: &[FlatRect], b: &[FlatRect]) -> Vec<FlatRect> {
+    if a.is_empty() || b.is_empty() {
+        return united(a);
+    }
+    let ranks = FlatRanks::of(&[a, b].concat());
+    let all = |ranks: &[f64]| [0, ranks.len() as u32 - 1];
+    let within = Rect { u: all(&ranks.u), v: all(&ranks.v) };
+    let in_ranks = |rects: &[FlatRect]| rects.iter().map(|r| ranks.rect(r)).collect::<Vec<_>>();
+    let covered = [uncovered(within, &in_ranks(a)), in_ranks(b)].concat();
+    uncovered(within, &covered).iter().map(|r| ranks.flat(r)).collect()
 }
 
 /// Whether the union of `rects` contains `section`. Exact.
@@ -116,6 +134,18 @@ mod tests {
         assert_eq!((kept, n_small), (vec![rect([0., 1.], [0., 1.]), rect([1., 2.], [0., 2.])], 2));
         assert_eq!(large_regions(all.clone(), 1.0), (all.clone(), 0));
         assert_eq!(large_regions(all, 3.0), (vec![], 3));
+    }
+
+    #[test]
+    fn sets_are_cut_from_each_other() {
+        // A cross of two bars, and the same in pieces.
+        let (wide, high) = (rect([0., 3.], [1., 2.]), rect([1., 2.], [0., 3.]));
+        let middle = rect([1., 2.], [1., 2.]);
+        assert_eq!(common(&[wide], &[high]), [middle]);
+        assert_eq!(without(&[wide], &[high]), [rect([0., 1.], [1., 2.]), rect([2., 3.], [1., 2.])]);
+        let pieces = [rect([0., 1.5], [1., 2.]), rect([1., 3.], [1., 2.])];
+        assert_eq!((common(&pieces, &[high]), without(&[middle], &pieces)), (vec![middle], vec![]));
+        assert_eq!((common(&[wide], &[]), without(&pieces, &[])), (vec![], vec![wide]));
     }
 
     #[test]

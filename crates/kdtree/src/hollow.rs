@@ -5,7 +5,7 @@ use crate::face::AxialFace;
 use crate::flat::covered_by;
 use crate::mesh::{TriangleKind, kind_of, others};
 use crate::rooms::Rooms;
-use crate::scene_faces::Survey;
+use crate::scene_faces::{Survey, flat};
 use crate::touch::{Meets, visit_cells};
 use crate::tree::AxialTree;
 use sightlines_cells::{Point3, Scene};
@@ -125,11 +125,7 @@ struct Ends {
 
 impl Ends {
     fn of(bounds: Aabb<3>, faces: &[AxialFace<3>]) -> Self {
-        let on = |axis: usize, at: f64| {
-            let [u, v] = others(axis);
-            let rect = |f: &AxialFace<3>| FlatRect { u: [f.min[u], f.max[u]], v: [f.min[v], f.max[v]] };
-            faces.iter().filter(|f| f.axis == axis && f.at == at).map(rect).collect()
-        };
+        let on = |axis: usize, at: f64| faces.iter().filter(|f| f.axis == axis && f.at == at).map(flat).collect();
         Self { bounds, faces: std::array::from_fn(|k| [on(k, bounds.min[k]), on(k, bounds.max[k])]) }
     }
 

@@ -56,6 +56,7 @@ pub struct SceneSubdivision {
     /// For each object whether it was detail, or see-through.
     pub detail: Vec<bool>,
     /// Rectangles in what hides from its front. They divide cells as walls do, and lie in portals: the graph does not tell which way they hide.
+    /// None with [`SceneOptions::only_both_sides`].
     pub fronts: Vec<OneWayRectangle>,
     cells: Vec<Option<CellId>>,
 }
@@ -122,7 +123,11 @@ impl SceneCutter {
             true => vec![None; tree.cells().len()],
             false => left_out(scene, &survey, &found, &tree, options.view_region),
         };
-        Ok(SceneSubdivision::assemble(tree, &out, found))
+        let mut cut = SceneSubdivision::assemble(tree, &out, found);
+        if options.only_both_sides {
+            cut.fronts.clear();
+        }
+        Ok(cut)
     }
 }
 

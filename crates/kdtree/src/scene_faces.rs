@@ -3,7 +3,7 @@
 use crate::cache::{FaceCache, PlaneFaces, Shape, total_order};
 use crate::coplanar::{FlatRect, inner_rectangles};
 use crate::face::AxialFace;
-use crate::flat::{large_regions, united};
+use crate::flat::{common, large_regions, united, without};
 use crate::mesh::{FlatTriangle, Mesh, others};
 use crate::scene_options::SceneOptions;
 use sightlines_cells::{Scene, SceneObject};
@@ -15,8 +15,8 @@ use std::sync::Arc;
 pub struct SceneFaces {
     /// Disjoint rectangles inside the triangles that hide, plane by plane.
     pub faces: Vec<AxialFace<3>>,
-    /// Rectangles inside the triangles that hide from their front only, disjoint among those that face the same way, and whether that is
-    /// towards larger coordinates.
+    /// Rectangles inside the triangles that hide from their front only, and whether that is towards larger coordinates: disjoint, and where two would be back to
+    /// back in [`Self::faces`] instead.
     pub fronts: Vec<(AxialFace<3>, bool)>,
     /// Triangles of all objects with an area that are perpendicular to an axis.
     pub n_axial_triangles: usize,
@@ -203,25 +203,34 @@ impl Survey {
         out
     }
 
-    /// Adds the faces of what hides from its front: of each plane and direction the large regions.
+    /// Adds the faces of what hides from its front: of each plane and direction the large regions, and where two of them stand back to back walls
+    /// with two sides, as nothing passes.
     fn add_fronts(&self, out: &mut SceneFaces) {
         let of = |&object: &u32| self.shapes[object as usize].flat.iter().map(|(_, flat)| flat);
         let mut all: Vec<&FlatTriangle> = self.fronts.iter().flat_map(of).collect();
-        all.sort_by_key(|flat| (flat.axis, total_order(flat.at), flat.up));
-        for group in all.chunk_by(|a, b| (a.axis, a.at, a.up) == (b.axis, b.at, b.up)) {
-            let FlatTriangle { axis, at, up, .. } = *group[0];
-            let corners: Vec<[Point2; 3]> = group.iter().map(|flat| flat.corners).collect();
-            let (rects, n_small) = large_regions(inner_rectangles(&corners), self.detail_below);
-            out.n_small_regions += n_small;
-            out.fronts.extend(united(&rects).iter().map(|r| (on_plane(r, axis, at), up)));
+        all.sort_by_key(|flat| (flat.axis, total_order(flat.at)));
+        let n_walls = out.faces.len();
+        for plane in all.chunk_by(|a, b| (a.axis, a.at) == (b.axis, b.at)) {
+            let FlatTriangle { axis, at, .. } = *plane[0];
+            let [up, down] = [true, false].map(|up| {
+                let corners: Vec<[Point2; 3]> = plane.iter().filter(|f| f.up == up).map(|f| f.corners).collect();
+                let (rects, n_small) = large_regions(inner_rectangles(&corners), self.detail_below);
+                out.n_small_regions += n_small;
+                united(&rects)
+            });
+            for (rects, others, is_up) in [(&up, &down, true), (&down, &up, false)] {
+                out.fronts.extend(without(rects, others).iter().map(|r| (on_plane(r, axis, at), is_up)));
+            }
+            out.faces.extend(common(&up, &down).iter().map(|r| on_plane(r, axis, at)));
         }
-        // Where two of them stand back to back, nothing passes.
-        let plane = |front: &(AxialFace<3>, bool)| (front.0.axis, total_order(front.0.at));
-        for group in out.fronts.chunk_by(|a, b| plane(a) == plane(b)) {
-            let (up, down): (Vec<_>, Vec<_>) = group.iter().map(|front| (flat(&front.0), front.1)).partition(|f| f.1);
-            let both = up.iter().flat_map(|(a, _)| down.iter().filter_map(|(b, _)| common(a, b)));
-            let both = both.map(|r| on_plane(&r, group[0].0.axis, group[0].0.at)).collect::<Vec<_>>();
-            out.faces.extend(both);
+        if out.faces.len() > n_walls {
+            out.faces.sort_by_key(|face| (face.axis, total_order(face.at)));
+            let planes = out.faces.chunk_by(|a, b| (a.axis, a.at) == (b.axis, b.at));
+            let walls = planes.flat_map(|plane| {
+                let rects: Vec<FlatRect> = plane.iter().map(flat).collect();
+                united(&rects).into_iter().map(|r| on_plane(&r, plane[0].axis, plane[0].at))
+            });
+            out.faces = walls.collect();
         }
     }
 
@@ -256,16 +265,9 @@ impl Survey {
 }
 
 /// The extent of a face on its plane: the reverse of [`on_plane`].
-fn flat(face: &AxialFace<3>) -> FlatRect {
+pub(crate) fn flat(face: &AxialFace<3>) -> FlatRect {
     let [u, v] = others(face.axis).map(|k| [face.min[k], face.max[k]]);
     FlatRect { u, v }
-}
-
-/// What two rectangles of a plane have in common, if that has an area.
-fn common(a: &FlatRect, b: &FlatRect) -> Option<FlatRect> {
-    let span = |a: [f64; 2], b: [f64; 2]| [a[0].max(b[0]), a[1].min(b[1])];
-    let (u, v) = (span(a.u, b.u), span(a.v, b.v));
-    (u[0] < u[1] && v[0] < v[1]).then_some(FlatRect { u, v })
 }
 
 fn on_plane(rect: &FlatRect, axis: usize, at: f64) -> AxialFace<3> {

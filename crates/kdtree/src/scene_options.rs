@@ -19,6 +19,8 @@ pub struct SceneOptions {
     pub max_cells: u32,
     /// Whether the insides of walls and other solid things stay cells.
     pub keep_solid: bool,
+    /// Whether what hides from its front only divides cells and hides nothing, but where two such walls stand back to back.
+    pub only_both_sides: bool,
 }
 
 /// Number of cells beyond which a visibility table takes gigabytes: 2^32 bits are half of one.
@@ -27,6 +29,6 @@ const MAX_CELLS: u32 = 1 << 16;
 impl Default for SceneOptions {
     fn default() -> Self {
         let (tau, max_cells) = (KdOptions::default().tau, MAX_CELLS);
-        Self { view_region: None, tau, detail_below: None, max_cells, keep_solid: false }
+        Self { view_region: None, tau, detail_below: None, max_cells, keep_solid: false, only_both_sides: false }
     }
 }

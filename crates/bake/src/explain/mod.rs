@@ -79,8 +79,8 @@ pub enum ExplainError {
 ///
 /// A line is exact. So is a reason, but for [`Blocking::Behind`](sightlines_stabtree::Blocking::Behind) between clusters, which allows for corners
 /// off their planes. What is neither is [`Answer::GivenUp`], [`Answer::Undecided`] or [`Answer::Unknown`]. A line through portals passes walls that
-/// are borders of cells; it may meet others, by which a from-region method hides the pair: then the table is right too. The same arguments give
-/// the same answer.
+/// are borders of cells; it may meet others, by which a from-region method hides the pair, and walls that hide from one side only: then the table is
+/// right too ([`stated_methods`](crate::stated_methods) says what took part). The same arguments give the same answer.
 ///
 /// Cost: the graph is made anew, O(size of the table), and the search ends within the options. With a scene, O(n log n) of triangles and the rays;
 /// for a pair that both kinds of methods may have hidden, a bake of the two cells by sightlines too.

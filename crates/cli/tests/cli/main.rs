@@ -25,6 +25,7 @@ mod materials;
 mod memory;
 mod multifocal;
 mod node_builder;
+mod one_sided;
 mod outputs;
 mod own;
 mod pack;

@@ -10,15 +10,17 @@ use sightlines_cells::{MovingObject, Point3, Scene, SceneObject};
 use sightlines_geometry::Aabb;
 use sightlines_pvs::ObjectSource;
 
-/// What single-sided triangles hide that are not of a closed object.
+/// What an object hides of whose triangles engines draw only the fronts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum OpenSides {
-    /// What is behind them, from both sides.
-    Both,
-    /// What is behind them for who is in front.
-    Front,
+pub(super) enum SingleSides {
+    /// What is behind it, from all sides.
+    Hide,
+    /// The same if it is closed, else what is behind its fronts.
+    HideFromFronts,
+    /// The same if it is closed, else nothing.
+    HideIfClosed,
     /// Nothing.
-    Neither,
+    Show,
 }
 
 /// A mesh of which every corner is used.
@@ -137,29 +139,35 @@ impl Builder {
         self.fronts_only.extend(self.last());
     }
 
-    /// Counts the triangles of the object that was added last as single-sided. Returns what it is instead if it hides nothing: it is not closed,
-    /// and it is not known which sides are its fronts.
-    pub(super) fn count_single_sided(&mut self, if_open: OpenSides) -> Option<Classification> {
+    /// Counts the triangles of the object that was added last as single-sided. Returns what it is instead if it hides nothing.
+    pub(super) fn count_single_sided(&mut self, sides: SingleSides) -> Option<Classification> {
         let object = self.objects.last()?;
-        let is_open = || !object.triangles.is_empty() && !is_closed_outwards(object);
         let n = object.triangles.len();
-        match if_open {
-            OpenSides::Front if is_open() => {
+        let is_open = || !is_closed_outwards(object);
+        match sides {
+            _ if n == 0 => {}
+            SingleSides::HideFromFronts if is_open() => {
                 self.n_front_occluding += n;
                 self.front_occluders.extend(self.last());
             }
-            OpenSides::Neither if is_open() => return Some(Classification::see_through("single sides".to_owned())),
-            _ => {}
+            SingleSides::HideIfClosed if !is_open() => {}
+            SingleSides::HideIfClosed | SingleSides::Show => {
+                return Some(Classification::see_through("single sides".to_owned()));
+            }
+            SingleSides::Hide | SingleSides::HideFromFronts => {}
         }
         self.n_single_sided += n;
         None
     }
 
-    /// Marks the object that was added last as a door that hides what is behind it while it is shut; if `only_closed`, only if it is closed,
-    /// with its fronts outwards.
-    pub(super) fn mark_door(&mut self, only_closed: bool) {
-        let shuts = |o: &SceneObject| !o.triangles.is_empty() && (!only_closed || is_closed_outwards(o));
-        if self.objects.last().is_some_and(shuts) {
+    /// Marks the object that was added last as a door that hides what is behind it while it is shut, if it does so from all sides.
+    pub(super) fn mark_door(&mut self, sides: SingleSides) {
+        let shuts = |object: &SceneObject| match sides {
+            SingleSides::Hide => true,
+            SingleSides::HideFromFronts | SingleSides::HideIfClosed => is_closed_outwards(object),
+            SingleSides::Show => false,
+        };
+        if self.objects.last().is_some_and(|object| !object.triangles.is_empty() && shuts(object)) {
             self.doors.extend(self.last());
         }
     }

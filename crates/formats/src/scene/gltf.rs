@@ -1,7 +1,7 @@
 //! glTF 2.0: from a document to objects in world coordinates.
 
 use super::buffers::{Buffers, split_glb, upgrade};
-use super::build::{Builder, OpenSides};
+use super::build::{Builder, SingleSides};
 use super::extras::{Stated, StatedMoves, StatedRole};
 use super::json::Document;
 use super::material::{self, shows_fronts_only};
@@ -252,25 +252,25 @@ fn build(
             if at.is_mirror(document, primitive) {
                 builder.mark_mirror();
             }
+            let is_single_sided = materials.iter().any(|&m| is_single_sided(document, m));
+            let sides = match is_single_sided && classifier.hides_from_fronts_only() {
+                false => SingleSides::Hide,
+                true if at.world.keeps_sides() => SingleSides::HideFromFronts,
+                true if at.world.has_fronts() => SingleSides::HideIfClosed,
+                true => SingleSides::Show,
+            };
             if class.as_ref().is_some_and(|class| class.shuts) {
-                let is_single_sided = materials.iter().any(|&m| is_single_sided(document, m));
-                builder.mark_door(classifier.hides_from_fronts_only() && is_single_sided);
+                builder.mark_door(sides);
             }
             let fronts_only = |&m: &Option<usize>| m.is_none_or(|m| shows_fronts_only(document, m));
             if !classifier.shows_both_sides() && at.world.keeps_sides() && materials.iter().all(fronts_only) {
                 builder.mark_fronts_only();
             }
-            if class.as_ref().is_none_or(Classification::hides)
-                && materials.iter().any(|&m| is_single_sided(document, m))
-            {
+            if is_single_sided && class.as_ref().is_none_or(Classification::hides) {
                 // Who says by name that something hides has the last word.
                 let is_vouched_for = class.as_ref().is_some_and(|class| class.is_vouched_for);
-                let if_open = match at.world.keeps_sides() {
-                    _ if is_vouched_for || !classifier.hides_from_fronts_only() => OpenSides::Both,
-                    true => OpenSides::Front,
-                    false => OpenSides::Neither,
-                };
-                class = builder.count_single_sided(if_open).or(class);
+                let sides = if is_vouched_for { SingleSides::Hide } else { sides };
+                class = builder.count_single_sided(sides).or(class);
             }
             if let Some(class) = class {
                 builder.classify(class, moved.and_then(|moved| moved.within));

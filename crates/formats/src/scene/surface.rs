@@ -38,7 +38,7 @@ impl SceneReadOptions {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub enum BackFaces {
     /// Nothing: such faces [hide from the front](sightlines_cells::Scene::front_occluders) alone, and are seen from both sides. Right for every
-    /// engine.
+    /// engine, for viewers who are not inside of closed things.
     #[default]
     Either,
     /// They are not drawn: such faces hide from the front alone, and are seen from there alone.

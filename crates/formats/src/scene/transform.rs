@@ -15,7 +15,7 @@ pub(super) struct Transform {
     rows: [[f64; 4]; 3],
     /// The sign of its determinant: -1 if it makes right hands of left hands, 0 if it flattens space.
     hand: i8,
-    /// Whether engines agree on the sides of what is placed.
+    /// Whether engines agree on the fronts of what is placed, as far as its determinant is not 0.
     is_certain: bool,
 }
 
@@ -65,16 +65,21 @@ impl Transform {
         Ok(Self { rows: [row(0), row(1), row(2)], hand, is_certain: true })
     }
 
-    /// Whether it is certain which sides of triangles are their fronts: not if it mirrors, which engines treat differently for instances,
-    /// or flattens.
+    /// Whether it is certain which sides of triangles are their fronts, and it does not mirror.
+    pub(super) fn keeps_sides(&self) -> bool {
+        self.hand > 0 && self.has_fronts()
+    }
+
+    /// Whether it is certain which sides of triangles are their fronts: not if it places an instance that is itself mirrored, or flattens. glTF
+    /// says which they are where a node mirrors.
     ///
     /// Entries that a program rounded to single precision are wrong by 2^-24 of themselves, so each product of three by 3 × 2^-24 and a
     /// bit; the six products of the determinant have magnitudes of at most the product of the rows' sums together, and a row's sum is
     /// at most √3 of its length. So the determinant is wrong by less than 16 × 2^-24 of the product of the lengths.
-    pub(super) fn keeps_sides(&self) -> bool {
+    pub(super) fn has_fronts(&self) -> bool {
         let det = determinant(&self.rows);
         let size: f64 = self.rows.iter().map(|r| r[..3].iter().map(|x| x * x).sum::<f64>().sqrt()).product();
-        self.is_certain && self.hand > 0 && det > size * 8.0 * f64::from(f32::EPSILON)
+        self.is_certain && det * f64::from(self.hand) > size * 8.0 * f64::from(f32::EPSILON)
     }
 
     /// Whether fronts become backs.
@@ -82,12 +87,11 @@ impl Transform {
         self.hand < 0
     }
 
-    /// First the transform of an instance, then this. Which sides are fronts is certain only if neither mirrors: engines treat two mirrors of an
-    /// instance differently.
+    /// First the transform of an instance, then this. Engines turn the fronts of all instances of a node the same way, or look at each: which sides
+    /// are fronts is certain only where an instance itself does not mirror.
     pub(super) fn of_instance(&self, own: &Self) -> Self {
         let both = self.after(own);
-        let is_twice = self.hand < 0 && own.hand < 0;
-        Self { is_certain: both.is_certain && !is_twice, ..both }
+        Self { is_certain: both.is_certain && own.hand > 0, ..both }
     }
 
     /// First `inner`, then this.

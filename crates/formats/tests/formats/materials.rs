@@ -315,6 +315,47 @@ fn closed_things_that_cross_themselves_hide_from_their_fronts() {
     assert_eq!(fronts_of([[0., 0.], [8., 0.], [8., 3.], [2., 3.]]), (true, vec![]));
 }
 
+/// A closed thing hides what is in it only if it is certain that its fronts are outwards: engines draw a mirrored instance inside out or do not.
+/// The twins are a mirrored node, whose fronts glTF states, and instances that do not mirror; the impostor is that closed things always hide.
+#[test]
+fn closed_things_hide_only_if_their_fronts_are_certain() {
+    const FLAT: f32 = 1.0 + 1e-6;
+    let [plain, mirror, skew] = [
+        json!({}),
+        json!({"scale": [-1, 1, 1]}),
+        json!({"matrix": [1, 1, 0, 0, 1, FLAT, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}),
+    ];
+    let tetrahedron = |node: &Value, instance: Option<[f32; 3]>, backs: BackFaces| {
+        let mut doc = Doc::new(json!([node]));
+        doc.json["nodes"][0]["mesh"] = json!(0);
+        let corners = doc.positions(&[[0., 0., 0.], [1., 0., 0.], [0., 1., 0.], [0., 0., 1.]]);
+        let sides = doc.indices(&[0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3], 1);
+        doc.mesh(json!([{"attributes": {"POSITION": corners}, "indices": sides}]));
+        if let Some(scale) = instance {
+            let scales = doc.positions(&[scale]);
+            doc.json["nodes"][0]["extensions"] = json!({"EXT_mesh_gpu_instancing": {"attributes": {"SCALE": scales}}});
+        }
+        let file = read_with(&doc, &SceneReadOptions { backs, ..SceneReadOptions::default() });
+        assert!(file.scene.front_occluders().is_empty());
+        file.scene.is_opaque(0)
+    };
+    for (node, instance, hides) in [
+        (&plain, None, true),
+        (&mirror, None, true),
+        (&plain, Some([2., 1., 1.]), true),
+        (&plain, Some([-1., -1., 1.]), true),
+        (&mirror, Some([2., 1., 1.]), true),
+        (&plain, Some([-1., 1., 1.]), false),
+        (&mirror, Some([-1., 1., 1.]), false),
+        (&skew, None, false),
+    ] {
+        for backs in BackFaces::ALL {
+            let expected = hides || backs == BackFaces::Drawn;
+            assert_eq!(tetrahedron(node, instance, backs), expected, "{node} {instance:?} {backs:?}");
+        }
+    }
+}
+
 #[test]
 fn sides_are_left_out_only_where_that_is_certain() {
     let flat = json!({"scale": [-1.0, 1.0, 0.0]});

@@ -159,6 +159,23 @@ fn what_becomes_flat_is_seen_from_both_sides() {
     assert_eq!(moved.single_sided(), [0]);
 }
 
+/// A wall one triangle of which becomes a line still hides from its front, as that triangle hides nothing; but it is seen from both sides, unlike the twin.
+#[test]
+fn walls_hide_from_their_fronts_but_for_lines() {
+    let wall = |third: Point3| {
+        let vertices = vec![[0.0; 3], [4.0, 0.0, 0.0], [4.0, 4.0, 0.0], third];
+        SceneObject { name: "wall".into(), vertices, triangles: vec![[0, 1, 2], [1, 2, 3]] }
+    };
+    // Beside the edge of the other one: by less than the gap, and by more.
+    let walls = vec![wall([4.0 + 4e-4, 2.0, 0.0]), wall([5.0, 2.0, 0.0])];
+    let scene = Scene::new(walls).and_then(|scene| scene.with_single_sided(vec![0, 1])).expect("a scene");
+    let scene = scene.with_front_occluders(vec![0, 1]).expect("objects");
+    let frame = Frame::new([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], 1e-3).expect("a frame");
+    let moved = Moved::new(&scene, &frame).expect("moved").scene;
+    assert_eq!(moved.objects()[0].vertices[3], [4.0, 2.0, 0.0]);
+    assert_eq!((moved.front_occluders(), moved.single_sided()), (&[0, 1][..], &[1][..]));
+}
+
 /// As users write axes: in any order and with any signs, left-handed too, rounded to single precision.
 fn written() -> impl Strategy<Value = [Point3; 3]> {
     let orders = [[0usize, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];

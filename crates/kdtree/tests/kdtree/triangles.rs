@@ -140,3 +140,38 @@ fn single_precision_keeps_planes() {
     let found = scene_faces(&scene(vec![object("wall", &quads)]), &SceneOptions::default());
     assert_eq!(found.faces, [AxialFace::new(0, [x, 0.0, 0.0], [x, f64::from(1.7f32), 3.0])]);
 }
+
+proptest! {
+    /// Of walls of one side and others, each place of a plane is in one face: a wall with two sides where there is one, or where two stand back
+    /// to back; else a front where there is one. Nothing is counted twice.
+    #[test]
+    fn walls_back_to_back_are_walls(
+        rects in prop::collection::vec((rectangle(SIDE), any::<bool>(), any::<bool>()), 1..8)
+    ) {
+        let objects = rects.iter().map(|(r, up, _)| object("wall", &quad(r.0, r.1, r.2, *up))).collect();
+        let fronts: Vec<u32> = (0u32..).zip(&rects).filter(|(_, (.., one_sided))| *one_sided).map(|(k, _)| k).collect();
+        let scene = scene(objects).with_front_occluders(fronts).expect("objects");
+        let found = scene_faces(&scene, &SceneOptions { detail_below: Some(0.0), ..SceneOptions::default() });
+        let of = |up: Option<bool>| -> Vec<_> {
+            let faces = match up {
+                None => found.faces.clone(),
+                Some(up) => found.fronts.iter().filter(|front| front.1 == up).map(|front| front.0).collect(),
+            };
+            faces.iter().map(|f| (f.axis, f.min, f.max)).collect()
+        };
+        let given = |pick: &dyn Fn(bool, bool) -> bool| -> Vec<_> {
+            rects.iter().filter(|(_, up, one)| pick(*up, *one)).map(|(r, ..)| *r).collect()
+        };
+        for axis in 0..3 {
+            let n = |rects: &[(usize, Point3, Point3)]| squares(axis, rects);
+            let [walls, up, down] = [n(&of(None)), n(&of(Some(true))), n(&of(Some(false)))];
+            let [both, ups, downs] = [given(&|_, one| !one), given(&|up, one| one && up), given(&|up, one| one && !up)].map(|r| n(&r));
+            for k in 0..walls.len() {
+                let is = |n: &[usize]| n[k] > 0;
+                prop_assert_eq!(walls[k], usize::from(is(&both) || is(&ups) && is(&downs)));
+                prop_assert_eq!(up[k], usize::from(is(&ups) && !is(&downs)));
+                prop_assert_eq!(down[k], usize::from(is(&downs) && !is(&ups)));
+            }
+        }
+    }
+}

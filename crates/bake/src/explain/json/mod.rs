@@ -110,8 +110,8 @@ struct End {
     point: [f64; 2],
 }
 
-/// Exit code 1 for a hidden pair. The line leads through portals. If a from-region method took part in the table and `listed` is false, it
-/// hides the pair by walls that are no borders of cells, which the line may meet; then the exit code is 1 all the same.
+/// Exit code 1 for a hidden pair. The line leads through portals. If a from-region method took part in the table, or walls that hide from one side
+/// only, and `listed` is false, the line may meet walls that are no borders of cells or hide from one side; then the exit code is 1 all the same.
 #[derive(Debug, Serialize)]
 #[cfg_attr(feature = "schemars", derive(JsonSchema))]
 pub struct InScene {

@@ -5,7 +5,7 @@ use crate::kept::Kept;
 use crate::output::{self, JsonSchema, Serialize, bytes, count, seconds_of};
 use crate::progress::Bar;
 use sightlines::bake::auto::own_cells;
-use sightlines::bake::{BakeInput, BakeRequest, Baked, CellsFrom};
+use sightlines::bake::{BakeInput, BakeRequest, Baked, CellsFrom, Recipe};
 use sightlines::stabtree::CertifyOptions;
 use sightlines::verify::report::Unproven;
 use sightlines::verify::{ProofError, ProofFindings, ProofViolation, can_be_proven, check_proofs};
@@ -18,8 +18,8 @@ pub(super) struct CertifyArgs {
     /// Also write proofs about pairs of cells, and in space about objects that cells do not see, for `verify` to check with independent
     /// code: a line for each visible pair, a reason for each hidden one. They go to FILE, or without it beside the table with the extension .cert. May take ten times as long as the table, and much longer for
     /// large Quake maps. What has no proof is counted as unproven: pairs that take too long, what only a from-region method
-    /// hides, and all pairs of cells without portals. Scenes have the cells of a k-d tree then, unless others are named
-    /// [default: no proofs]
+    /// hides, and all pairs of cells without portals. Scenes have the cells of a k-d tree then, unless others are named, and walls that hide
+    /// from their front only hide nothing from sightlines, but where two stand back to back [default: no proofs]
     #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true)]
     certify: Option<Option<PathBuf>>,
 }
@@ -96,6 +96,20 @@ pub(super) fn warn_of_large_cells(path: &Path, request: &BakeRequest, input: Bak
         tracing::warn!(
             "{}: few walls are axis-aligned, and only along these are cells cut that have portals, which --certify and --stab-trees need: the cells \
              are large, and little is hidden. Without these options `build` cuts smaller cells, and any surface may hide",
+            path.display()
+        );
+    }
+}
+
+/// Warns of walls of the input that hide nothing because proofs or stab trees are to be made.
+pub(super) fn warn_of_one_sided_walls(path: &Path, recipe: &Recipe, input: BakeInput<'_>) {
+    if let BakeInput::Scene(scene, _) = input
+        && recipe.cut.only_both_sides
+        && !scene.front_occluders().is_empty()
+    {
+        tracing::warn!(
+            "{}: with --certify and --stab-trees, walls that hide from their front only hide nothing from sightlines, but where two stand back to \
+             back: portals have no sides",
             path.display()
         );
     }

@@ -160,6 +160,7 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
     let prepared = prepared.map_err(|error| source.failed(path, error))?;
     certify::warn_of_large_cells(path, &request, prepared.input());
     let (recipe, decisions) = (prepared.recipe(), prepared.decisions());
+    certify::warn_of_one_sided_walls(path, recipe, prepared.input());
     let auto = decisions.choice.clone().map(auto::Chosen::new);
     let is_chosen = request.method.is_none_or(|method| method == SceneMethod::Auto) && !request.for_proofs;
     let viewers = decisions.viewers.map(viewers::Viewers::from);

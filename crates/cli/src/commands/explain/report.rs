@@ -5,6 +5,7 @@ use crate::output::{JsonSchema, Serialize};
 use crate::place::Place;
 use sightlines::bake::explain::Explanation;
 use sightlines::bake::explain::json::Explained;
+use sightlines::bake::stated_methods;
 use sightlines::pvs::{CellId, Table, TableKind};
 use std::fmt;
 
@@ -14,8 +15,8 @@ pub(super) struct Report<'a> {
     pub(super) pair: [CellId; 2],
     /// What the table lists for the pair; null without a table.
     pub(super) listed: Option<bool>,
-    /// Whether a from-region method took part: it may hide what portals let through.
-    pub(super) has_regions: bool,
+    /// What may hide pairs of the table that portals let through, if anything.
+    pub(super) past_portals: Option<&'static str>,
     pub(super) explanation: &'a Explanation,
     /// How many proofs are shown to people.
     pub(super) n_shown: usize,
@@ -24,19 +25,30 @@ pub(super) struct Report<'a> {
 impl<'a> Report<'a> {
     pub(super) fn new(table: Option<&Table>, pair: [CellId; 2], explanation: &'a Explanation, n_shown: usize) -> Self {
         let listed = table.map(|table| table.sees(pair[0], pair[1]));
-        let kind = table.map(Table::kind);
-        let has_regions = matches!(kind, Some(TableKind::SceneKdTree { hidden_by }) if hidden_by.from_region);
-        Self { pair, listed, has_regions, explanation, n_shown }
+        let past_portals = table.and_then(past_portals);
+        Self { pair, listed, past_portals, explanation, n_shown }
     }
 
     /// The end of the command with this report. The answer is that of the engine, else that of the table, and yes without one.
     pub(super) fn done(&self, json: JsonArg) -> Done {
         let verdict = self.explanation.answer.verdict();
-        // A table may hide what portals let through, past walls that are no borders of cells.
-        let is_hidden_by_region = self.has_regions && verdict == Some(true) && self.listed == Some(false);
-        let is_visible = verdict.filter(|_| !is_hidden_by_region).or(self.listed).unwrap_or(true);
+        let is_hidden_past = self.past_portals.is_some() && verdict == Some(true) && self.listed == Some(false);
+        let is_visible = verdict.filter(|_| !is_hidden_past).or(self.listed).unwrap_or(true);
         Done::in_two_forms(json, || Explained::new(self.explanation, self.pair, self.listed), || self.to_string())
             .answering_whether(is_visible)
+    }
+}
+
+/// What may hide pairs of a table that portals let through.
+fn past_portals(table: &Table) -> Option<&'static str> {
+    let stated = stated_methods(table).filter(|_| matches!(table.kind(), TableKind::SceneKdTree { .. }))?;
+    match (stated.from_region.is_some(), stated.has_one_sided_walls) {
+        (true, false) => Some("a from-region method found walls that are no borders of cells in the way"),
+        (false, true) => Some("only walls that hide from one side can be in the way, which portals do not tell of"),
+        (true, true) => Some(
+            "only walls that are no borders of cells, which a from-region method found, or walls that hide from one side can be in the way",
+        ),
+        (false, false) => None,
     }
 }
 

@@ -89,13 +89,10 @@ impl Report<'_> {
             (None, Some(true)) => writeln!(f, "{undecided}")?,
             (None, Some(false)) => writeln!(f, "the table says that they do not see each other")?,
             (Some(false), Some(true)) => writeln!(f, "the table lists them as visible all the same")?,
-            (Some(true), Some(false)) if self.has_regions => {
-                writeln!(
-                    f,
-                    "the table hides them: a from-region method found walls that are no borders of cells in the way"
-                )?;
-            }
-            (Some(true), Some(false)) => writeln!(f, "the table says that they do not: it is wrong")?,
+            (Some(true), Some(false)) => match self.past_portals {
+                Some(what) => writeln!(f, "the table hides them: {what}")?,
+                None => writeln!(f, "the table says that they do not: it is wrong")?,
+            },
             _ => {}
         }
         match self.explanation.checked.filter(|_| verdict.is_some()) {

@@ -41,7 +41,8 @@ pub struct ObjectRows<'a> {
 
 /// Proves the visibility in `rows` for the cells of `graph` (symmetric, with the diagonal set), and that the objects that a cell does not
 /// see are hidden from it. Pairs without a proof, because they are wrong, only assumed visible, or joined only by
-/// lines that doubles do not hold, are left open.
+/// lines that doubles do not hold, are left open. What hides from one side only is no wall of a graph: rows that rest on it are
+/// contradicted by lines.
 ///
 /// Cost: several times that of the search for the rows: each contradiction is converted to integers, and each visible
 /// pair needs a line, its own or a shared one.
