@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use sightlines_geometry::{Aabb, Point3};
 use sightlines_progress::{Cancelled, Counter, Observer, Work};
 use std::ops::Range;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 /// Lengths, in scene units.
 #[derive(Debug, Clone, Copy)]
@@ -42,10 +43,6 @@ pub(super) struct Found {
 }
 
 impl Found {
-    pub(super) fn n_cells(&self) -> usize {
-        self.columns.iter().map(Vec::len).sum()
-    }
-
     /// The lowest and the highest end of a cell.
     pub(super) fn heights(&self) -> Option<[f64; 2]> {
         let all = self.columns.iter().flatten();
@@ -64,13 +61,14 @@ struct Piece {
     corners: Vec<Point3>,
 }
 
-/// The cells of all columns.
+/// The cells of all columns; none if there are more than `max_cells`.
 pub(super) fn find(
     surfaces: &Surfaces<'_>,
     grid: &Grid,
     lengths: &Lengths,
+    max_cells: usize,
     progress: Option<&dyn Observer>,
-) -> Result<Found, Cancelled> {
+) -> Result<Option<Found>, Cancelled> {
     let n_rows = grid.n(1);
     let mut rows: Vec<Vec<u32>> = vec![Vec::new(); n_rows];
     for &floor in &surfaces.floors {
@@ -78,8 +76,13 @@ pub(super) fn find(
         grid.meeting(1, b.min[grid.axes[1]], b.max[grid.axes[1]]).for_each(|row| rows[row].push(floor));
     }
     let counter = Counter::new(progress, "floors", n_rows).of(Work::Cutting);
+    let n_cells = AtomicUsize::new(0);
     let row = |(row, floors): (usize, &Vec<u32>)| {
         counter.check()?;
+        // What is too many does not become fewer.
+        if n_cells.load(Relaxed) > max_cells {
+            return Ok((Vec::new(), LeftOut::default()));
+        }
         let mut columns: Vec<Vec<u32>> = vec![Vec::new(); grid.n(0)];
         for &floor in floors {
             let b = Aabb::around(surfaces.triangles()[floor as usize]);
@@ -90,19 +93,22 @@ pub(super) fn find(
             Column { surfaces, grid, lengths, place: [column, row] }.cells(&floors, &mut left_out)
         };
         let columns: Vec<Vec<[f64; 2]>> = columns.into_iter().enumerate().map(column).collect();
+        n_cells.fetch_add(columns.iter().map(Vec::len).sum(), Relaxed);
         counter.step()?;
         Ok((columns, left_out))
     };
     let rows = rows.par_iter().enumerate().map(row).collect::<Result<Vec<_>, Cancelled>>()?;
+    if n_cells.into_inner() > max_cells {
+        return Ok(None);
+    }
     let mut found = Found { columns: Vec::with_capacity(grid.n(0) * n_rows), left_out: LeftOut::default() };
-    for (columns, LeftOut { no_room, solid, behind, slivers }) in rows {
+    for (columns, LeftOut { no_room, behind, slivers }) in rows {
         found.columns.extend(columns);
         found.left_out.no_room += no_room;
-        found.left_out.solid += solid;
         found.left_out.behind += behind;
         found.left_out.slivers += slivers;
     }
-    Ok(found)
+    Ok(Some(found))
 }
 
 struct Column<'a> {
@@ -162,9 +168,10 @@ impl Column<'_> {
         // Rounded outwards. A new corner's height comes from a few operations for each of four cuts, each wrong by at most 2^-53 of the largest number.
         let whole = Aabb::around(corners);
         let error = whole.min[up].abs().max(whole.max[up].abs()) / (1u64 << 46) as f64;
-        let heights = clipped.iter().map(|p| p[up]).fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
-            [low.min(x), high.max(x)]
-        });
+        let heights = clipped
+            .iter()
+            .map(|p| p[up])
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
         let (low, high) = ((heights[0] - error).max(whole.min[up]), (heights[1] + error).min(whole.max[up]));
         Some(Piece { low, high, area, triangle, corners: clipped })
     }
@@ -182,7 +189,6 @@ impl Column<'_> {
             }
         }
         match why_not {
-            Standing::Solid => left_out.solid += 1,
             Standing::Behind => left_out.behind += 1,
             _ => left_out.no_room += 1,
         }

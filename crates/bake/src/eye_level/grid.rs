@@ -54,7 +54,8 @@ impl Grid {
             (lines.iter().map(|x| x + 0.0).collect::<Vec<f64>>(), inner)
         });
         let (within, inner) = ([region.min[up], region.max[up]], [inner_first, inner_second]);
-        let end = |region: f64, all: f64, of: fn(f64, f64) -> f64| if region.is_finite() { of(region, all) } else { all };
+        let end =
+            |region: f64, all: f64, of: fn(f64, f64) -> f64| if region.is_finite() { of(region, all) } else { all };
         let heights = [end(within[0], all.min[up], f64::min), end(within[1], all.max[up], f64::max)];
         let grid = Self { up, axes, lines: [first, second], inner, within, heights };
         let ascends = grid.lines.iter().all(|lines| lines.windows(2).all(|pair| pair[0] < pair[1]));

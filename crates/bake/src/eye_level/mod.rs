@@ -58,7 +58,9 @@ pub enum EyeLevelError {
     #[error("no floor to stand on was found in the region")]
     NoFloor,
     /// There are more cells than the limit.
-    #[error("cells {cell_size} units wide are more than {limit}, which is the limit: raise the limit, or take wider cells")]
+    #[error(
+        "cells {cell_size} units wide are more than {limit}, which is the limit: raise the limit, or take wider cells"
+    )]
     TooMany {
         /// Their width.
         cell_size: f64,
@@ -78,9 +80,9 @@ pub enum UnitsFrom {
     Options,
     /// A unit is a metre, as glTF states; what was measured does not contradict that.
     Metres,
-    /// Half of the ceilings above floors are this much above them or less, in scene units: too little or too much for metres.
+    /// Ceilings are mostly so far above floors or farther, in scene units: too little or too much for metres.
     Clearances(f64),
-    /// There are few ceilings, and half of the objects are this long or less, in scene units: too little or too much for metres.
+    /// There are few ceilings, and half of the objects are this long or longer, in scene units: too little or too much for metres.
     Objects(f64),
 }
 
@@ -89,9 +91,7 @@ pub enum UnitsFrom {
 pub struct LeftOut {
     /// Something is too closely above them.
     pub no_room: usize,
-    /// They are inside of solid things.
-    pub solid: usize,
-    /// Who stands there would see backs only, or mostly those of single-sided faces.
+    /// Who stands there would see backs only, as inside of what is solid, or mostly those of single-sided faces, as below the ground.
     pub behind: usize,
     /// They are too small to stand on.
     pub slivers: usize,
@@ -193,8 +193,7 @@ pub fn eye_level_cells(
         let grid = Grid::new(&region, &all, up, cell_size);
         let found = match grid {
             Some(grid) if surfaces.n_pieces(&grid) <= MOST_PIECES => {
-                let found = floors::find(&surfaces, &grid, &lengths, progress)?;
-                (found.n_cells() <= max_cells as usize).then_some((grid, found))
+                floors::find(&surfaces, &grid, &lengths, max_cells as usize, progress)?.map(|found| (grid, found))
             }
             _ => None,
         };
@@ -233,10 +232,11 @@ pub fn eye_level_cells(
 }
 
 /// More parts of triangles in columns than this take too long: the columns are too narrow for the scene.
-const MOST_PIECES: usize = 1 << 26;
+const MOST_PIECES: usize = 1 << 24;
 
 fn check(options: &EyeLevelOptions) -> Result<(), EyeLevelError> {
-    let positive = [("the width of cells", options.cell_size), ("the number of units in a metre", options.units_per_metre)];
+    let positive =
+        [("the width of cells", options.cell_size), ("the number of units in a metre", options.units_per_metre)];
     for (what, value) in positive {
         if let Some(value) = value.filter(|x| !(x.is_finite() && *x > 0.0)) {
             return Err(EyeLevelError::NotPositive { what, value });

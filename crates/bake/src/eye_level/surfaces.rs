@@ -17,18 +17,30 @@ const N_RAYS: u32 = 1024;
 /// Rays from somebody who may be inside of something.
 const RAYS_OF_A_VIEWER: usize = 64;
 
-/// So many of them have to hit something before they can show that it is the inside of something that is seen from both sides.
+/// So many of them have to hit backs, and so many times as many as fronts, before they show that it is the inside of something that is seen from both
+/// sides.
 const ENOUGH: usize = 48;
+const FEW: usize = 16;
 
 /// Whether somebody can stand at a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Standing {
     Free,
     NoRoom,
-    Solid,
     Behind,
 }
 
+/// Numbers of rays by what they hit first.
+#[derive(Debug, Clone, Copy, Default)]
+struct Seen {
+    fronts: usize,
+    backs: usize,
+    /// Of rays upwards: all, and those to backs that nobody is meant to see.
+    above: usize,
+    forbidden_above: usize,
+}
+
+/// The triangles that hide.
 pub(super) struct Surfaces<'a> {
     scene: &'a Scene,
     pub(super) up: usize,
@@ -37,7 +49,7 @@ pub(super) struct Surfaces<'a> {
     single_sided: Vec<bool>,
     /// Triangles on which somebody may stand.
     pub(super) floors: Vec<u32>,
-    /// What is solid; found when it is first asked.
+    /// What is solid; found when it is first asked, which takes a while.
     matter: OnceLock<Matter>,
 }
 
@@ -89,20 +101,14 @@ impl<'a> Surfaces<'a> {
             return false;
         }
         let mut random = Random::new(0);
-        let rays = (0..N_RAYS).map(|_| (random.point(&b), random.direction()));
-        let [fronts, backs] = self.sides(rays, |_| true);
-        4 * fronts < fronts + backs
+        let hits: Vec<_> = (0..N_RAYS).filter_map(|_| self.hit(random.point(&b), random.direction())).collect();
+        4 * hits.iter().filter(|(_, is_back)| !is_back).count() < hits.len()
     }
 
-    /// How many rays hit fronts, and how many backs, of those triangles.
-    fn sides(&self, rays: impl Iterator<Item = (Point3, Point3)>, counts: impl Fn(u32) -> bool) -> [usize; 2] {
-        let mut sides = [0, 0];
-        for (origin, way) in rays {
-            if let Some(i) = self.rays.first_triangle(origin, way).filter(|&i| counts(i)) {
-                sides[usize::from(dot(normal(self.triangles()[i as usize]), way) >= 0.0)] += 1;
-            }
-        }
-        sides
+    /// What a ray hits first, and whether it shows its back.
+    fn hit(&self, origin: Point3, way: Point3) -> Option<(u32, bool)> {
+        let i = self.rays.first_triangle(origin, way)?;
+        Some((i, dot(normal(self.triangles()[i as usize]), way) >= 0.0))
     }
 
     /// What is first above a point, and how far.
@@ -113,7 +119,8 @@ impl<'a> Surfaces<'a> {
         Some((hit, ray_triangle(&self.triangles()[hit as usize], p, way)[2]))
     }
 
-    /// Whether somebody can stand at a point of a floor.
+    /// Whether somebody can stand at a point of a floor. Nobody stands where they see hardly anything but backs, as inside of what is solid, or mostly
+    /// backs of single-sided faces above them, as below the ground.
     ///
     /// * `step`: what lies on the floor to that height is a part of it
     /// * `room`: how far above the floor nothing else may be
@@ -129,28 +136,38 @@ impl<'a> Surfaces<'a> {
             return Standing::Free;
         }
         eye[self.up] += 0.5 * distance.min(room);
-        let near = Aabb { min: eye.map(|x| x - step / 64.0), max: eye.map(|x| x + step / 64.0) };
-        if self.matter.get_or_init(|| Matter::of(self.scene)).holds(&near) {
-            return Standing::Solid;
-        }
-        let mut random = Random::new(eye.iter().fold(0, |seed: u64, x| seed.rotate_left(11) ^ x.to_bits()));
-        let ways = [0; RAYS_OF_A_VIEWER].map(|_| random.direction());
-        let rays = || ways.iter().map(|&way| (eye, way));
-        let [fronts, backs] = self.sides(rays(), |_| true);
-        if fronts == 0 && backs >= ENOUGH {
+        let seen = self.seen(eye);
+        let only_backs = FEW * seen.fronts <= seen.backs && seen.backs >= ENOUGH;
+        if only_backs || 2 * seen.forbidden_above > seen.above {
             return Standing::Behind;
         }
-        let single = |i: u32| self.single_sided[i as usize];
-        let backs = self.sides(rays(), single)[1];
-        if backs > fronts { Standing::Behind } else { Standing::Free }
+        // A solid thing that stands on ground: rays downwards end at its lower side or at the ground, and others at its backs or at a
+        // neighbour's front in the same place.
+        let near = Aabb { min: eye.map(|x| x - step / 64.0), max: eye.map(|x| x + step / 64.0) };
+        let may_be_solid = !self.single_sided[above as usize];
+        let is_solid = may_be_solid && self.matter.get_or_init(|| Matter::of(self.scene)).holds(&near);
+        if is_solid { Standing::Behind } else { Standing::Free }
+    }
+
+    /// What somebody sees, by rays in all directions.
+    fn seen(&self, eye: Point3) -> Seen {
+        let mut random = Random::new(eye.iter().fold(0, |seed: u64, x| seed.rotate_left(11) ^ x.to_bits()));
+        let mut seen = Seen::default();
+        for way in [0; RAYS_OF_A_VIEWER].map(|_| random.direction()) {
+            let is_above = way[self.up] > 0.0;
+            seen.above += usize::from(is_above);
+            let Some((i, is_back)) = self.hit(eye, way) else { continue };
+            *if is_back { &mut seen.backs } else { &mut seen.fronts } += 1;
+            seen.forbidden_above += usize::from(is_above && is_back && self.single_sided[i as usize]);
+        }
+        seen
     }
 
     /// At most so many parts of floors are in columns.
     pub(super) fn n_pieces(&self, grid: &Grid) -> usize {
         let floors = self.floors.iter().map(|&i| Aabb::around(self.triangles()[i as usize]));
-        floors.map(|b| [0, 1].map(|k| grid.meeting(k, b.min[grid.axes[k]], b.max[grid.axes[k]]).len())).fold(
-            0,
-            |sum: usize, [m, n]| sum.saturating_add(m * n),
-        )
+        floors
+            .map(|b| [0, 1].map(|k| grid.meeting(k, b.min[grid.axes[k]], b.max[grid.axes[k]]).len()))
+            .fold(0, |sum: usize, [m, n]| sum.saturating_add(m * n))
     }
 }
