@@ -32,7 +32,7 @@ const LEAST_SHARE: f64 = 1.0 / 16.0;
 /// Most points at which it is tried whether somebody can stand on a part of a floor; as many as its area has square metres, and one.
 const MOST_TRIES: u32 = 16;
 
-/// A cell is at most so many times as high as eyes are.
+/// A layer is at most so many times as high as eyes are, before its ends move to floors.
 const HIGHEST: f64 = 1.5;
 
 /// What was found.

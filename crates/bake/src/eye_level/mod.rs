@@ -152,7 +152,8 @@ impl EyeLevelCells {
 /// The region is divided into columns of equal width. In each of them cells begin at the floors, and end as far above them as eyes are.
 /// Floors are upward-facing triangles of all that hides, of at most some 50 degrees; faces that are seen from both sides may face either way. A floor on
 /// which nobody can stand is left out ([`LeftOut`]). Where floors above each other are closer than eyes are high, as on slopes and stairs, their
-/// cells are joined, and cut into layers of at most one and a half times the height of eyes.
+/// cells are joined, and cut into layers of about one and a half times the height of eyes at most: cuts
+/// move to floors by up to a quarter of a layer.
 ///
 /// The same scene and options give the same boxes, with any number of threads.
 ///

@@ -92,7 +92,7 @@ proptest! {
         prop_assert_eq!(faults(&found.boxes, &found.bounds), 0, "{:?}", found);
         prop_assert!((0..3).all(|k| found.bounds.min[k] <= all.min[k] && all.max[k] <= found.bounds.max[k]));
         for cell in found.cells() {
-            prop_assert!(cell.max[up.idx()] - cell.min[up.idx()] <= 1.5 * tall * 1.25 * (1.0 + 1e-9), "{:?}", cell);
+            prop_assert!(cell.max[up.idx()] - cell.min[up.idx()] <= 1.5 * tall * 1.5 * (1.0 + 1e-9), "{:?}", cell);
             prop_assert!((0..3).all(|k| k == up.idx() || cell.max[k] - cell.min[k] <= width * (1.0 + 1e-9)), "{:?}", cell);
             if let Some(region) = region {
                 prop_assert!((0..3).all(|k| region.min[k] <= cell.min[k] && cell.max[k] <= region.max[k]), "{:?}", cell);
@@ -172,7 +172,7 @@ fn eyes_above_floors_are_in_cells() {
         eprintln!("{name}: {n} eyes, {lost} lost; {:?}", found.summary);
         assert!(n > 300 && lost == 0, "{name}: {n} eyes, {lost} of them in no cell");
         // The twin: cells are no higher than they have to be, and few places that are no eye's are in them.
-        assert!(found.cells().iter().all(|b| b.max[up.idx()] - b.min[up.idx()] < 1.5 * 2.2 * 1.25), "{name}");
+        assert!(found.cells().iter().all(|b| b.max[up.idx()] - b.min[up.idx()] < 1.5 * 2.2 * 1.5), "{name}");
         let volume = |b: &Aabb<3>| (0..3).map(|k| b.max[k] - b.min[k]).product::<f64>();
         let share = found.cells().iter().map(volume).sum::<f64>() / volume(&found.bounds);
         assert!(share < 0.9, "{name}: {share}");
