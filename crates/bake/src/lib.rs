@@ -25,6 +25,7 @@ mod certify;
 mod doors;
 mod error;
 pub mod explain;
+pub mod eye_level;
 mod floor;
 mod framed;
 pub mod from_table;

@@ -5,6 +5,7 @@ mod backends;
 mod bakeable;
 mod doubled;
 mod explain;
+mod eye_level;
 mod far;
 mod floor;
 mod fronts;

@@ -1,0 +1,276 @@
+//! Cells at the height of eyes: for scenes without walls along axes.
+//!
+//! What a cell sees depends on its height more than on its width. A cell that is as high as people are sees little more than a point in it, even if
+//! it is some metres wide; from a cube of a house's height most of a village is seen. So here floors are found, and above them cells of the
+//! height of eyes. *Fillers* tile the rest of the scene's box, in few and large boxes: nobody is there as a rule, but whoever follows lines from
+//! box to box needs all of them.
+//!
+//! Floors are found by rounded numbers and by rays, which decide only where cells are. Whoever is in no cell sees everything.
+
+mod fill;
+mod floors;
+mod grid;
+mod surfaces;
+mod units;
+
+use floors::Lengths;
+use grid::Grid;
+use sightlines_cells::Scene;
+use sightlines_geometry::{Aabb, CoordinateError, check_coordinate};
+use sightlines_kdtree::KdError;
+use sightlines_progress::{Cancelled, Observer, Progress, Work};
+use sightlines_pvs::Axis;
+use surfaces::Surfaces;
+
+/// How cells at the height of eyes are cut. Lengths are in scene units.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct EyeLevelOptions {
+    /// Width of cells, at most. None for 4 m, or twice that as often as the limit of cells needs.
+    pub cell_size: Option<f64>,
+    /// From how far to how far above a floor eyes are. None for 0 to 2.2 m.
+    pub eye_height: Option<[f64; 2]>,
+    /// Scene units in a metre. None for what the scene shows ([`UnitsFrom`]).
+    pub units_per_metre: Option<f64>,
+}
+
+/// Why there are no cells at the height of eyes.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum EyeLevelError {
+    /// The region or the scene has no room.
+    #[error(transparent)]
+    Region(#[from] KdError),
+    /// A width or a number of units is no number above 0.
+    #[error("{what} is {value}: this is not a number above 0")]
+    NotPositive {
+        /// What was given.
+        what: &'static str,
+        /// As which number.
+        value: f64,
+    },
+    /// Eyes are nowhere.
+    #[error("eyes from {} to {} units above floors: the second number has to be larger, and both finite", .0[0], .0[1])]
+    EyeHeight([f64; 2]),
+    /// The cells would reach to where coordinates cannot be used.
+    #[error("the tops of cells: {0}")]
+    Bounds(#[source] CoordinateError),
+    /// Nobody can stand anywhere in the region.
+    #[error("no floor to stand on was found in the region")]
+    NoFloor,
+    /// There are more cells than the limit.
+    #[error(
+        "cells {cell_size} units wide are more than {limit}, which is the limit: raise the limit, or take wider cells"
+    )]
+    TooMany {
+        /// Their width.
+        cell_size: f64,
+        /// The limit.
+        limit: u32,
+    },
+    /// The observer cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// How the number of scene units in a metre was found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum UnitsFrom {
+    /// It was given.
+    Options,
+    /// A unit is a metre, as glTF states; what was measured does not contradict that.
+    Metres,
+    /// Ceilings are mostly so far above floors or farther, in scene units: too little or too much for metres.
+    Clearances(f64),
+    /// There are few ceilings, and half of the objects are this long or longer, in scene units: too little or too much for metres.
+    Objects(f64),
+}
+
+/// What was left out: so many parts of floors in columns, by reason.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct LeftOut {
+    /// Something is too closely above them.
+    pub no_room: usize,
+    /// Who stands there would see backs only, as inside of what is solid, or mostly those of single-sided faces, as below the ground.
+    pub behind: usize,
+    /// They are too small to stand on.
+    pub slivers: usize,
+}
+
+/// What was cut.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EyeLevelSummary {
+    /// Cells.
+    pub n_cells: usize,
+    /// Boxes that tile the rest.
+    pub n_fillers: usize,
+    /// The most cells above each other.
+    pub n_layers: usize,
+    /// Columns with a cell.
+    pub n_columns: usize,
+    /// Scene units in a metre.
+    pub units_per_metre: f64,
+    /// How that number was found.
+    pub units_from: UnitsFrom,
+    /// Width of cells, at most, in scene units.
+    pub cell_size: f64,
+    /// How often the width was doubled for the limit of cells.
+    pub n_doublings: u32,
+    /// From how far to how far above floors eyes are, in scene units.
+    pub eye_height: [f64; 2],
+    /// What was left out.
+    pub left_out: LeftOut,
+}
+
+/// Boxes that tile a box: closed, with disjoint insides, and those that share a part of a face have equal coordinates there, bit by bit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EyeLevelCells {
+    /// What they tile: around the region, all that is drawn (but for what moves anywhere), and eyes above the highest floor.
+    pub bounds: Aabb<3>,
+    /// The cells, in an order in which those near to each other are near as a rule; then the fillers.
+    pub boxes: Vec<Aabb<3>>,
+    /// How many of the boxes are cells.
+    pub n_cells: usize,
+    /// What was cut.
+    pub summary: EyeLevelSummary,
+}
+
+impl EyeLevelCells {
+    /// The cells.
+    pub fn cells(&self) -> &[Aabb<3>] {
+        &self.boxes[..self.n_cells]
+    }
+
+    /// The fillers.
+    pub fn fillers(&self) -> &[Aabb<3>] {
+        &self.boxes[self.n_cells..]
+    }
+}
+
+/// Cuts a region of a scene, or all of it, into cells above floors and fillers.
+///
+/// The region is divided into columns of equal width. In each of them cells begin at the floors, and end as far above them as eyes are.
+/// Floors are upward-facing triangles of all that hides, of at most some 50 degrees; faces that are seen from both sides may face either way. A floor on
+/// which nobody can stand is left out ([`LeftOut`]). Where floors above each other are closer than eyes are high, as on slopes and stairs, their
+/// cells are joined, and cut into layers of about one and a half times the height of eyes at most: cuts
+/// move to floors by up to a quarter of a layer.
+///
+/// The same scene and options give the same boxes, with any number of threads.
+///
+/// * `up`: the axis that points upwards
+/// * `region`: cells are only there; None for everywhere
+/// * `max_cells`: the limit of cells, without fillers
+///
+/// Cost: a ray or some for each triangle of a floor in each column.
+///
+/// # Errors
+/// [`EyeLevelError`]; a width that was given and makes too many cells is refused, the default is doubled.
+pub fn eye_level_cells(
+    scene: &Scene,
+    up: Axis,
+    region: Option<&Aabb<3>>,
+    options: &EyeLevelOptions,
+    max_cells: u32,
+    progress: Option<&dyn Observer>,
+) -> Result<EyeLevelCells, EyeLevelError> {
+    check(options)?;
+    let up = up.idx();
+    let all = scene.bounds();
+    let region = checked_region(&all, region, up)?;
+    let now = Progress::new("surfaces", 0, 1).of(Work::Cutting);
+    if progress.is_some_and(|observer| observer.report(now).is_break()) {
+        return Err(Cancelled.into());
+    }
+    let surfaces = Surfaces::of(scene, up, &region);
+    let (metre, units_from) = match options.units_per_metre {
+        Some(units) => (units, UnitsFrom::Options),
+        None => units::find(scene, &surfaces),
+    };
+    let eye_height = options.eye_height.unwrap_or([0.0, 2.2 * metre]);
+    let lengths = Lengths { metre, eye_height };
+    let mut cell_size = options.cell_size.unwrap_or(4.0 * metre);
+    let mut n_doublings = 0;
+    let (grid, found) = loop {
+        let grid = Grid::new(&region, &all, up, cell_size);
+        let found = match grid {
+            Some(grid) if surfaces.n_pieces(&grid) <= MOST_PIECES => {
+                floors::find(&surfaces, &grid, &lengths, max_cells as usize, progress)?.map(|found| (grid, found))
+            }
+            _ => None,
+        };
+        match found {
+            Some(found) => break found,
+            // A width beyond all that is there is one column.
+            None if options.cell_size.is_some() || grid::is_one_column(&region, up, cell_size) => {
+                return Err(EyeLevelError::TooMany { cell_size, limit: max_cells });
+            }
+            None => (cell_size, n_doublings) = (cell_size * 2.0, n_doublings + 1),
+        }
+    };
+    let heights = found.heights().ok_or(EyeLevelError::NoFloor)?;
+    let bounds = grid.bounds(heights);
+    bounds.min.into_iter().chain(bounds.max).try_for_each(|x| match check_coordinate(x) {
+        Ok(_) => Ok(()),
+        Err(error) => Err(EyeLevelError::Bounds(error)),
+    })?;
+    let mut boxes = fill::cells(&grid, &found.columns);
+    let n_cells = boxes.len();
+    let tall = eye_height[1] - eye_height[0];
+    boxes.extend(fill::fillers(&grid, &found.columns, [bounds.min[up], bounds.max[up]], tall));
+    let summary = EyeLevelSummary {
+        n_cells,
+        n_fillers: boxes.len() - n_cells,
+        n_layers: found.columns.iter().map(Vec::len).max().unwrap_or(0),
+        n_columns: found.columns.iter().filter(|column| !column.is_empty()).count(),
+        units_per_metre: metre,
+        units_from,
+        cell_size,
+        n_doublings,
+        eye_height,
+        left_out: found.left_out,
+    };
+    Ok(EyeLevelCells { bounds, boxes, n_cells, summary })
+}
+
+/// More parts of triangles in columns than this take too long: the columns are too narrow for the scene.
+const MOST_PIECES: usize = 1 << 24;
+
+fn check(options: &EyeLevelOptions) -> Result<(), EyeLevelError> {
+    let positive =
+        [("the width of cells", options.cell_size), ("the number of units in a metre", options.units_per_metre)];
+    for (what, value) in positive {
+        if let Some(value) = value.filter(|x| !(x.is_finite() && *x > 0.0)) {
+            return Err(EyeLevelError::NotPositive { what, value });
+        }
+    }
+    match options.eye_height {
+        Some([low, high]) if !(low.is_finite() && high.is_finite() && low < high) => {
+            Err(EyeLevelError::EyeHeight([low, high]))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Where cells are: the given region, or the box of all, which may be flat.
+fn checked_region(all: &Aabb<3>, given: Option<&Aabb<3>>, up: usize) -> Result<Aabb<3>, KdError> {
+    let mut region = match given {
+        Some(region) if region.is_empty() => return Err(KdError::ViewRegion),
+        Some(region) => *region,
+        None => *all,
+    };
+    if region.is_empty() || all.is_empty() {
+        return Err(KdError::Empty);
+    }
+    for x in region.min.iter_mut().chain(&mut region.max) {
+        *x = check_coordinate(*x).map_err(KdError::Bounds)?;
+    }
+    let is_flat = |axis: &usize| region.min[*axis] >= region.max[*axis] && (*axis != up || given.is_some());
+    if let Some(axis) = (0..3).find(is_flat) {
+        return Err(KdError::Flat { axis });
+    }
+    if given.is_none() {
+        // Eyes above the highest floor are above all that is there.
+        (region.min[up], region.max[up]) = (f64::NEG_INFINITY, f64::INFINITY);
+    }
+    Ok(region)
+}
