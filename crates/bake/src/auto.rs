@@ -3,6 +3,7 @@
 //! Nothing here decides what is hidden; a bad choice costs time, or hides less than another one would.
 
 use crate::input::BakeInput;
+use crate::methods::OcclusionMethod;
 use crate::options::{Recipe, SceneMethod};
 use crate::places::PlaceOptions;
 use crate::region::CellsFrom;
@@ -278,6 +279,11 @@ pub struct Choice {
 /// only, of which sheets do not know. An observer receives a report of each
 /// measurement, and cannot cancel.
 pub(crate) fn choose_for(scene: &Scene, recipe: &mut Recipe, progress: Option<&dyn Observer>) -> Choice {
+    if matches!(recipe.cells, CellsFrom::EyeLevel(_)) {
+        recipe.method = SceneMethod::FromRegion(OcclusionMethod::LineSpace);
+        let reason = "cells are at the height of eyes: shadows are propagated from cell to cell".to_owned();
+        return Choice { method: recipe.method.name().to_owned(), reasons: vec![reason], facts: None };
+    }
     let (facts, mut choice) = choose_observed(scene, progress);
     let are_given = matches!(recipe.cells, CellsFrom::Grid(_) | CellsFrom::Boxes(_));
     if choice.sheets && (are_given || !scene.front_occluders().is_empty()) {

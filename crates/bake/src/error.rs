@@ -1,5 +1,6 @@
 //! Why nothing was baked.
 
+use crate::eye_level::EyeLevelError;
 use crate::methods::MethodError;
 use crate::places::PlacesError;
 use crate::quake::PrtBakeError;
@@ -37,6 +38,9 @@ pub enum BakeError {
     /// Places cannot be cut.
     #[error(transparent)]
     Places(#[from] PlacesError),
+    /// Cells at the height of eyes cannot be cut.
+    #[error(transparent)]
+    EyeLevel(#[from] EyeLevelError),
     /// A view cell is not a volume.
     #[error("view cell {cell}: {error}")]
     Cell {

@@ -44,6 +44,7 @@ mod options;
 pub mod places;
 mod plan;
 mod prepared;
+mod propagation;
 pub mod quake;
 pub mod region;
 pub mod reject;

@@ -2,7 +2,7 @@
 
 use crate::auto::{Choice, choose_for, no_choice, own_cells};
 use crate::baked::Baked;
-use crate::error::BakeError;
+use crate::error::{BakeError, Meaningless};
 use crate::framed::{Framed, growth_of_cells};
 use crate::input::BakeInput;
 use crate::options::{Recipe, SceneMethod};
@@ -15,6 +15,7 @@ use sightlines_cells::{Plan, Scene};
 use sightlines_formats::SceneInfo;
 use sightlines_geometry::Aabb;
 use sightlines_packed::PackReport;
+use sightlines_pvs::Axis;
 use std::io::Write;
 
 impl BakeRequest {
@@ -122,6 +123,10 @@ impl<'i> PreparedBake<'i> {
             recipe.surroundings = around.iter().map(|&object| Surrounding::of(whole, object)).collect();
         }
         let scene = rest.as_ref().unwrap_or(whole);
+        if let CellsFrom::EyeLevel(how) = &mut recipe.cells {
+            let up = how.up.or(file.map(|file| file.up)).unwrap_or(Axis::Z);
+            how.up = Some(upwards(up, framed.as_ref())?);
+        }
         let sightlines = request.method == Some(SceneMethod::Sightlines);
         // Mirrors reflect the cells of a k-d tree.
         if request.cells.is_none() && !sightlines && !request.for_proofs && scene.mirrors().is_empty() {
@@ -197,6 +202,16 @@ impl<'i> PreparedBake<'i> {
         let BakeInput::Scene(scene, file) = self.input() else { panic!("only scenes are written row by row") };
         run::bake_packed(scene, file, &self.recipe, runtime, out)
     }
+}
+
+/// The axis of a frame along which what is upwards in the scene is upwards, to within rounding.
+fn upwards(up: Axis, framed: Option<&Framed>) -> Result<Axis, Meaningless> {
+    let Some(framed) = framed else { return Ok(up) };
+    let axes = framed.frame.axes();
+    let is_upright = |axis: &Axis| axes[axis.idx()][up.idx()] > 1.0 - 1e-9;
+    let found = "a scene that is baked along axes that lean, or point down";
+    let refused = Meaningless { option: "eye_height", meant: "scenes that stand upright", found };
+    [Axis::X, Axis::Y, Axis::Z].into_iter().find(is_upright).ok_or(refused)
 }
 
 /// The box around the view volumes of a file, if it states any.

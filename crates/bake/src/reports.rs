@@ -1,6 +1,7 @@
 //! What a bake did, for each kind of input. Times and counts of searches vary from run to run.
 
 use crate::doors::DoorPortals;
+use crate::eye_level::EyeLevelSummary;
 use crate::limit::LimitReport;
 use crate::places::PlaceSummary;
 use crate::subdivide::Subdivide;
@@ -133,6 +134,8 @@ pub struct SceneReport {
 pub struct RegionReport {
     /// What was cut, if cells are places.
     pub places: Option<PlaceSummary>,
+    /// What was cut, if cells are at the height of eyes.
+    pub eye_level: Option<EyeLevelSummary>,
     /// Pairs that count as visible because deciding them by sightlines took too much effort.
     pub n_assumed: u64,
     /// Name of the from-region method, if there was one.

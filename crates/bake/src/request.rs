@@ -169,7 +169,7 @@ impl BakeRequest {
     }
 
     /// Options that mean something for scenes only, and whether each was named.
-    fn of_scenes(&self) -> [(&'static str, bool); 8] {
+    fn of_scenes(&self) -> [(&'static str, bool); 9] {
         let cells = |is: fn(&CellsFrom) -> bool| self.cells.as_ref().is_some_and(is);
         let places = match &self.cells {
             Some(CellsFrom::Places(how)) => Some(how),
@@ -184,6 +184,7 @@ impl BakeRequest {
             ("method", !is_auto),
             ("cells", cells(|cells| matches!(cells, CellsFrom::Boxes(_) | CellsFrom::KdTree))),
             ("grid", cells(|cells| matches!(cells, CellsFrom::Grid(_)))),
+            ("eye_height", cells(|cells| matches!(cells, CellsFrom::EyeLevel(_)))),
             (
                 places.map_or("n_cells", |how| {
                     if how.n_cells.is_none() && how.cell_size.is_some() { "cell_size" } else { "n_cells" }

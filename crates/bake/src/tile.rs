@@ -9,7 +9,7 @@ use crate::auto::own_cells;
 use crate::error::BakeError;
 use crate::graph::TableGraph;
 use crate::grid;
-use crate::places::{PlacesError, observed_places};
+use crate::places::{PlaceOptions, PlacesError, observed_places};
 use crate::prepared::recipe_of_tile;
 use crate::region::{CellsFrom, Decided, Wanted, decide, upright};
 use crate::reports::RegionReport;
@@ -103,8 +103,10 @@ fn cells_here(
             cells.filter(has_room).map(nameless).collect()
         }
         CellsFrom::Grid(n) => grid::grid(viewers, *n)?.cells.into_iter().map(|cell| nameless(cell.bounds)).collect(),
-        CellsFrom::Places(how) => {
-            let found = observed_places(scene, &cut, how, runtime.progress).map_err(|error| match error {
+        // A tile does not say which way is up.
+        CellsFrom::Places(_) | CellsFrom::EyeLevel(_) => {
+            let how = if let CellsFrom::Places(how) = &cells { *how } else { PlaceOptions::default() };
+            let found = observed_places(scene, &cut, &how, runtime.progress).map_err(|error| match error {
                 PlacesError::Cancelled(cancelled) => cancelled.into(),
                 error => BakeError::from(error),
             })?;

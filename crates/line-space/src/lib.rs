@@ -2,10 +2,11 @@
 //!
 //! # Scope
 //!
-//! - **Owns**: cells of line space, their halves and sides of edges, the chains of triangles that block them ([`LineSpace`]), and the surface they are taken
+//! - **Owns**: cells of line space, their halves and sides of edges, the chains of triangles that block them ([`LineSpace`]), the same for lines that
+//!   leave a box through a part of a side ([`FaceSearch`]), and the surface they are taken
 //!   from ([`Surface`]).
 //! - **Out of scope**: targets in trees, rays that spare questions, threads, files.
-//! - **Invariants**: data flows `end` → `cell` → `touch`, `hull`, `side` → `roots`; `sense` → `chain` → `split` → `search` → `method`; where to cut and which chain to try are
+//! - **Invariants**: data flows `end` → `cell` → `touch`, `hull`, `side` → `roots`; `sense` → `chain` → `split` → `search` → `method`, `face`; where to cut and which chain to try are
 //!   heuristics in doubles; that a chain blocks is decided by exact predicates on input coordinates, or with bounds for corners that
 //!   were rounded.
 //!
@@ -18,6 +19,7 @@ mod cell;
 mod chain;
 mod conform;
 mod end;
+mod face;
 mod hull;
 mod marks;
 mod method;
@@ -32,6 +34,7 @@ mod touch;
 #[cfg(test)]
 mod truth;
 
+pub use face::{Exit, FaceEffort, FaceSearch, FaceTarget, Unblocked};
 pub use method::{Effort, LineSpace};
 pub use search::Outcome;
 pub use surface::Surface;

@@ -103,7 +103,7 @@ impl LineSpace {
 
 /// The box, or a larger one where it has no area: a box that is flat along two axes is made thicker along these, by a 2^-40th of its
 /// coordinates or size. None for boxes without points and coordinates that predicates cannot take.
-fn with_area(b: &Aabb<3>) -> Option<Aabb<3>> {
+pub(crate) fn with_area(b: &Aabb<3>) -> Option<Aabb<3>> {
     let is_flat = |k: usize| b.min[k] == b.max[k];
     let mut larger = *b;
     if (0..3).filter(|&k| is_flat(k)).count() > 1 {

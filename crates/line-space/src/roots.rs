@@ -132,8 +132,8 @@ impl Roots {
 
 /// Two planes across an axis with nothing of two boxes between them.
 #[derive(Debug, Clone, Copy)]
-struct Planes {
-    axis: usize,
+pub(crate) struct Planes {
+    pub(crate) axis: usize,
     /// Whether the second box lies above the first along the axis.
     upward: bool,
     /// That of the first box, and that of the second.
@@ -142,7 +142,7 @@ struct Planes {
 
 impl Planes {
     /// Of the axes along which the boxes are apart, the one along which their middles are farthest from each other; none if there is none.
-    fn between(volume: &Aabb<3>, target: &Aabb<3>) -> Option<Self> {
+    pub(crate) fn between(volume: &Aabb<3>, target: &Aabb<3>) -> Option<Self> {
         let between = |axis: usize| {
             let [low, high] = [volume.min[axis] - target.max[axis], target.min[axis] - volume.max[axis]];
             if high > 0.0 {
@@ -162,7 +162,7 @@ impl Planes {
     ///
     /// Seen from one point, the projection of a convex hull onto the plane is the hull of the projected corners. So segments between corners are
     /// enough.
-    fn crossed_at(&self, from: &[Point3], to: &[Point3], plane: usize) -> Option<Aabb<3>> {
+    pub(crate) fn crossed_at(&self, from: &[Point3], to: &[Point3], plane: usize) -> Option<Aabb<3>> {
         let (k, at) = (self.axis, self.at[plane]);
         let mut crossed = Aabb::EMPTY;
         for a in from {
@@ -196,12 +196,12 @@ fn sides(b: &Aabb<3>) -> impl Iterator<Item = (usize, bool, Aabb<3>)> + '_ {
     })
 }
 
-fn start_at(volume: &Aabb<3>, axis: usize, upward: bool) -> Start {
+pub(crate) fn start_at(volume: &Aabb<3>, axis: usize, upward: bool) -> Start {
     Start { axis, upward, from_behind: volume.min[axis] < volume.max[axis] }
 }
 
 /// The part of a rectangle beyond a plane across an axis.
-fn beyond(mut side: Aabb<3>, axis: usize, at: f64, upward: bool) -> Option<Aabb<3>> {
+pub(crate) fn beyond(mut side: Aabb<3>, axis: usize, at: f64, upward: bool) -> Option<Aabb<3>> {
     if upward {
         side.min[axis] = side.min[axis].max(at);
     } else {

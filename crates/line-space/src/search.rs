@@ -23,7 +23,7 @@ pub enum Outcome {
 
 /// Hits this near to the end of a line count as its end: the target itself, or what lies on it. So `Reached` may be wrong by that part of a
 /// line, which shows more; what is hidden is never decided by it.
-const AT_END: f64 = 1e-6;
+pub(crate) const AT_END: f64 = 1e-6;
 
 /// When a search ends although cells of line space are left.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -41,7 +41,7 @@ const HOPELESS: f64 = 1.25;
 
 /// How many triangles a chain has beyond its first fold. Chains that fold once and block are short as a rule; most others go
 /// around what they began on.
-const MOST_BEYOND_FOLD: usize = 32;
+pub(crate) const MOST_BEYOND_FOLD: usize = 32;
 
 /// The search for the lines between two ends, with its memory.
 #[derive(Debug)]

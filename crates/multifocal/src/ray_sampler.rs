@@ -134,6 +134,11 @@ impl RaySampler {
         self.first_triangle(origin, direction).map(|t| self.object[t as usize])
     }
 
+    /// The object of a triangle.
+    pub fn object_of(&self, triangle: u32) -> u32 {
+        self.object[triangle as usize]
+    }
+
     /// The triangle that a ray hits first, as an index of all.
     pub fn first_triangle(&self, origin: Point3, direction: Point3) -> Option<u32> {
         self.first_triangle_before(origin, direction, f64::INFINITY)

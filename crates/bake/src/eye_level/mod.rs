@@ -29,6 +29,8 @@ pub struct EyeLevelOptions {
     pub cell_size: Option<f64>,
     /// From how far to how far above a floor eyes are. None for 0 to 2.2 m.
     pub eye_height: Option<[f64; 2]>,
+    /// The axis that points upwards, for [`BakeRequest::cells`](crate::BakeRequest::cells). None for what the file of the scene states, or else z.
+    pub up: Option<Axis>,
     /// Scene units in a metre. None for what the scene shows ([`UnitsFrom`]).
     pub units_per_metre: Option<f64>,
 }

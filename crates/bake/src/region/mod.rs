@@ -12,14 +12,17 @@ mod parts;
 mod row;
 mod see;
 mod stream;
+mod tiled;
 
 pub use crate::grid::{GridError, grid};
 
 use crate::baked::{Baked, BakedRegions};
 use crate::doors;
 use crate::error::BakeError;
+use crate::eye_level::{EyeLevelError, EyeLevelOptions, EyeLevelSummary, eye_level_cells};
 use crate::graph::TableGraph;
 use crate::limit::{LimitReport, state_limit};
+use crate::methods::OcclusionMethod;
 use crate::objects::object_lists;
 use crate::places::{PlaceOptions, PlaceSummary, PlacesError, observed_places};
 use crate::reports::RegionReport;
@@ -36,7 +39,7 @@ use sightlines_geometry::{Aabb, Point3};
 use sightlines_kdtree::{KdError, SceneOptions, subdivide_scene};
 use sightlines_multifocal::{FromRegion, Occludees, RaySampler, Split, Volume, WorkDone};
 use sightlines_progress::{Allowance, Observer, Units};
-use sightlines_pvs::{BitMatrix, SceneMethods, Table, TableKind, TableParts};
+use sightlines_pvs::{Axis, BitMatrix, SceneMethods, Table, TableKind, TableParts};
 use sightlines_stabtree::{BoxVisibility, PairMask, SearchOptions, box_visibility};
 use std::fmt;
 use std::time::Instant;
@@ -54,6 +57,8 @@ pub enum CellsFrom {
     /// Boxes for any scene, cut where views differ, in the view region or else the scene's box; without portals. See
     /// [`places`](crate::places).
     Places(PlaceOptions),
+    /// Boxes above floors, as high as eyes are; without portals. See [`eye_level`](crate::eye_level). Where there are no floors, places.
+    EyeLevel(EyeLevelOptions),
     /// These boxes, without portals; they may overlap, and leave gaps.
     Boxes(ViewCells),
 }
@@ -67,7 +72,7 @@ impl CellsFrom {
     /// How many cells there may be at most; `None` if that is not known before they are cut.
     pub fn most(&self) -> Option<u64> {
         match self {
-            Self::KdTree => None,
+            Self::KdTree | Self::EyeLevel(_) => None,
             Self::Grid(n) => Some(n.iter().map(|&n| u64::from(n)).fold(1, u64::saturating_mul)),
             Self::Places(how) => Some(u64::from(how.n_cells())),
             Self::Boxes(given) => Some(given.cells.len() as u64),
@@ -192,7 +197,8 @@ pub(crate) fn decide(
     let mut boxes = extents(scene);
     boxes.extend(regions.iter().copied().flatten());
     let mut by_sightlines = options.sightlines || options.method.is_none();
-    let (mut n_assumed, mut summary, mut left, mut cut_time) = (0, None, None, None);
+    let (mut n_assumed, mut summary, mut eye_level, mut left, mut cut_time) = (0, None, None, None, None);
+    let mut tiles = Vec::new();
     let Start { graph, mut parts, cells, rows, objects } = match options.cells {
         CellsFrom::KdTree if by_sightlines => {
             let RegionBakeOptions { cut, portals, threads, progress, units, .. } = *options;
@@ -206,7 +212,7 @@ pub(crate) fn decide(
         CellsFrom::KdTree => parts::of_cut(scene, subdivide_scene(scene, &options.cut)?, boxes.len()),
         alone => {
             let cut = cells_alone(scene, options, alone)?;
-            summary = cut.places;
+            (summary, eye_level, tiles) = (cut.places, cut.eye_level, cut.tiles);
             let n_wanted = match wanted {
                 Wanted::All => None,
                 Wanted::LastRegions => regions.last().map(|last| last.len()),
@@ -225,21 +231,25 @@ pub(crate) fn decide(
     let none = || PairMask { boxes: BitMatrix::new(n, n), objects: BitMatrix::new(n, boxes.len()) };
     let mut left = left.unwrap_or_else(none);
     let mut proven = PairMask { boxes: BitMatrix::identity(n), objects: BitMatrix::new(n, boxes.len()) };
-    let (mut rows, mut objects, effort, method) = match options.method {
-        Some(make) => {
-            let made = make();
-            let method = (made.name(), made.only_in_air());
-            let (occludees, witness) = targets_of(scene, &boxes[..n_objects]);
-            let has_one_way = !scene.front_occluders().is_empty();
-            let scene = see::Targets::new((&occludees, &witness), &volumes, has_one_way, regions);
-            let takes_turns = by_sightlines && matches!(graph, TableGraph::Boxes(_));
-            let allowance = if takes_turns { options.budget.part(1.0 - SIGHTLINES) } else { options.budget };
-            let seen = see::see(&scene, make, options, allowance, rows, objects)?;
-            proven = seen.proven;
-            boxes::add(&mut left, &seen.left);
-            (seen.rows, seen.objects, seen.effort, Some(method))
+    let (mut rows, mut objects, effort, method) = 'method: {
+        let Some(make) = options.method else { break 'method (rows, objects, WorkDone::default(), None) };
+        let made = make();
+        let method = (made.name(), made.only_in_air());
+        let (occludees, witness) = targets_of(scene, &boxes[..n_objects]);
+        // Sets of lines to faces are of line space.
+        if !tiles.is_empty() && regions.is_empty() && method.0 == OcclusionMethod::LineSpace.name() {
+            let seen = tiled::see(scene, (&tiles, n), (&occludees, &witness), &boxes, options)?;
+            left = seen.left;
+            break 'method (seen.rows, seen.objects, seen.effort, Some(method));
         }
-        None => (rows, objects, WorkDone::default(), None),
+        let has_one_way = !scene.front_occluders().is_empty();
+        let scene = see::Targets::new((&occludees, &witness), &volumes, has_one_way, regions);
+        let takes_turns = by_sightlines && matches!(graph, TableGraph::Boxes(_));
+        let allowance = if takes_turns { options.budget.part(1.0 - SIGHTLINES) } else { options.budget };
+        let seen = see::see(&scene, make, options, allowance, rows, objects)?;
+        proven = seen.proven;
+        boxes::add(&mut left, &seen.left);
+        (seen.rows, seen.objects, seen.effort, Some(method))
     };
     if by_sightlines && matches!(graph, TableGraph::Boxes(_)) {
         let doubt = boxes::in_doubt(&rows, &objects, &proven, &touching);
@@ -302,6 +312,7 @@ pub(crate) fn decide(
     parts.digest.get_or_insert_with(|| scene.digest());
     let report = RegionReport {
         places: summary,
+        eye_level,
         n_assumed,
         method,
         effort,
@@ -321,27 +332,51 @@ struct CellsAlone {
     /// The parts of the table, but for objects and what is visible.
     parts: TableParts,
     places: Option<PlaceSummary>,
+    eye_level: Option<EyeLevelSummary>,
+    /// The cells, and fillers that tile the rest of a box; none if the cells are not of that kind.
+    tiles: Vec<Aabb<3>>,
 }
 
 fn cells_alone(scene: &Scene, options: &RegionBakeOptions<'_>, how: &CellsFrom) -> Result<CellsAlone, BakeError> {
-    let (mut places, cut) = (None, &options.cut);
+    let (mut places, mut eye_level, mut tiles, cut) = (None, None, Vec::new(), &options.cut);
+    let mut cut_places = |how: &PlaceOptions| {
+        let found = observed_places(scene, cut, how, options.progress).map_err(|error| match error {
+            PlacesError::Cancelled(cancelled) => cancelled.into(),
+            error => BakeError::from(error),
+        })?;
+        places = Some(found.summary);
+        Ok::<_, BakeError>(parts::places_alone(found.cells, "places"))
+    };
     let (cells, parts) = match how {
         CellsFrom::KdTree => unreachable!("those have portals"),
         CellsFrom::Grid(n) => {
             let around = cut.view_region.unwrap_or_else(|| scene.bounds());
             parts::boxes_alone(&grid(&around, *n)?.cells)
         }
-        CellsFrom::Places(how) => {
-            let found = observed_places(scene, cut, how, options.progress).map_err(|error| match error {
-                PlacesError::Cancelled(cancelled) => cancelled.into(),
-                error => BakeError::from(error),
-            })?;
-            places = Some(found.summary);
-            parts::places_alone(found.cells)
+        CellsFrom::Places(how) => cut_places(how)?,
+        CellsFrom::EyeLevel(how) => {
+            match eye_level_cells(
+                scene,
+                how.up.unwrap_or(Axis::Z),
+                cut.view_region.as_ref(),
+                how,
+                cut.max_cells,
+                options.progress,
+            ) {
+                Ok(found) => {
+                    eye_level = Some(found.summary);
+                    let cells = found.cells().to_vec();
+                    tiles = found.boxes;
+                    parts::places_alone(cells, "eye-level")
+                }
+                Err(EyeLevelError::NoFloor) => cut_places(&PlaceOptions::default())?,
+                Err(EyeLevelError::Cancelled(cancelled)) => return Err(cancelled.into()),
+                Err(error) => return Err(error.into()),
+            }
         }
         CellsFrom::Boxes(cells) => parts::boxes_alone(&upright(cells)),
     };
-    Ok(CellsAlone { cells, parts, places })
+    Ok(CellsAlone { cells, parts, places, eye_level, tiles })
 }
 
 /// What from-region methods are asked about, and the rays that find what is visible.

@@ -63,10 +63,10 @@ pub(super) fn boxes_alone(boxes: &[ViewCell]) -> (Vec<Aabb<3>>, TableParts) {
     (cells, parts)
 }
 
-/// Places, and the parts of their table but for what is visible.
-pub(super) fn places_alone(cells: Vec<Aabb<3>>) -> (Vec<Aabb<3>>, TableParts) {
+/// Cells that were cut, and the parts of their table but for what is visible.
+pub(super) fn places_alone(cells: Vec<Aabb<3>>, how: &str) -> (Vec<Aabb<3>>, TableParts) {
     let parts = TableParts {
-        info: vec![("subdivide".to_owned(), "places".to_owned())],
+        info: vec![("subdivide".to_owned(), how.to_owned())],
         ..parts_of(&cells, TableKind::SceneGivenCells { hidden_by: SceneMethods::default() })
     };
     (cells, parts)

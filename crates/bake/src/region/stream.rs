@@ -123,6 +123,7 @@ fn pack_here<W: Write>(
     let (out, packed) = writer.finish()?;
     let report = RegionReport {
         places: cut.places,
+        eye_level: cut.eye_level,
         n_assumed: 0,
         method: Some(method),
         effort,

@@ -12,6 +12,7 @@ mod engine;
 mod errors;
 mod explain_boxes;
 mod explain_portals;
+mod eye_level;
 mod faces;
 mod far;
 mod guides;

@@ -10,12 +10,12 @@ const BUDGET: u32 = 300;
 
 /// A soup of which each triangle may hide from its front only, and may be turned round.
 #[derive(Debug, Clone)]
-struct Mixed {
-    both_sides: Soup,
-    fronts: Soup,
+pub(crate) struct Mixed {
+    pub(crate) both_sides: Soup,
+    pub(crate) fronts: Soup,
 }
 
-fn mixed() -> impl Strategy<Value = Mixed> {
+pub(crate) fn mixed() -> impl Strategy<Value = Mixed> {
     // One, some or all of them have one side; whole surfaces are turned alike, or each triangle as it comes.
     let sides = prop_oneof![Just(0u8), Just(3), any::<u8>()];
     let turns = prop_oneof![2 => Just(0u8), 2 => Just(255), 1 => any::<u8>()];
@@ -31,7 +31,7 @@ fn mixed() -> impl Strategy<Value = Mixed> {
 
 /// Squares of a lattice, of which up to four meet at an edge, each with both sides or one of two: chains close there whose triangles do not
 /// agree.
-fn lattice() -> impl Strategy<Value = Mixed> {
+pub(crate) fn lattice() -> impl Strategy<Value = Mixed> {
     let sides = || prop::collection::vec(0u8..8, 108);
     sides().prop_map(|sides| {
         let (mut both_sides, mut fronts) = (Soup::new(), Soup::new());
@@ -56,7 +56,7 @@ fn lattice() -> impl Strategy<Value = Mixed> {
 }
 
 /// The lower corner of a box in or around the lattice.
-fn corner() -> impl Strategy<Value = Point3> {
+pub(crate) fn corner() -> impl Strategy<Value = Point3> {
     [-2i32..4, -2i32..4, -2i32..4].prop_map(|p| p.map(|x| f64::from(x) + 0.1))
 }
 
@@ -80,7 +80,7 @@ impl Mixed {
     }
 
     /// A segment from one box to another that meets nothing, but for what it passes from behind, out of `n`.
-    fn free_segment(&self, v: &Aabb<3>, e: &Aabb<3>, seed: u64, n: u32) -> Option<[Point3; 2]> {
+    pub(crate) fn free_segment(&self, v: &Aabb<3>, e: &Aabb<3>, seed: u64, n: u32) -> Option<[Point3; 2]> {
         let mut random = Random::new(seed);
         (0..n).map(|_| [random.point(v), random.point(e)]).find(|&[p, q]| {
             let passes = |t: &[Point3; 3]| orient3d(t[0], t[1], t[2], p) < 0.0 || is_apart(p, q, t);

@@ -2,6 +2,7 @@
 
 mod attacks;
 mod conforms;
+mod faces;
 mod fronts;
 mod hides;
 mod known;

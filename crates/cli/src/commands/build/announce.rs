@@ -24,6 +24,7 @@ impl Plan {
         }
         let cells = match &recipe.cells {
             CellsFrom::KdTree => "cells along walls".to_owned(),
+            CellsFrom::EyeLevel(_) => "cells at the height of eyes".to_owned(),
             CellsFrom::Places(how) => format!("about {} places", how.n_cells()),
             CellsFrom::Grid(n) => format!("{} boxes of a grid", n.iter().map(|&n| u64::from(n)).product::<u64>()),
             CellsFrom::Boxes(given) => format!("{} given boxes", given.cells.len()),

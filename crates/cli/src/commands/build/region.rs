@@ -8,6 +8,7 @@ use crate::error::Result;
 use crate::facts::Stated;
 use crate::named::one_of;
 use crate::output::{JsonSchema, Serialize, bytes, count, seconds_of};
+use sightlines::bake::eye_level::{EyeLevelOptions, EyeLevelSummary, UnitsFrom};
 use sightlines::bake::places::{PlaceOptions, PlaceSummary};
 use sightlines::bake::{BakeRequest, CellsFrom, LimitReport, RegionReport, SceneMethod};
 use sightlines::formats::view_cells::read_view_cells;
@@ -43,6 +44,10 @@ pub(crate) struct RegionArgs {
     /// is more than otherwise
     #[arg(long, value_name = "SIZE", value_parser = crate::numbers::above_zero, allow_hyphen_values = true, conflicts_with_all = ["cells", "grid"])]
     cell_size: Option<f64>,
+    /// Scenes in space: cells above floors, where eyes are from LOW to HIGH units above the ground, and 4 m wide or by --cell-size. Shadows are
+    /// propagated from cell to cell, through boxes that fill the rest of the scene. For people 0,2.2
+    #[arg(long, value_name = "LOW,HIGH", value_parser = heights, conflicts_with_all = ["cells", "grid", "n_cells"])]
+    eye_height: Option<[f64; 2]>,
     #[command(flatten)]
     buffers: BufferArgs,
     /// Methods that look from whole cells: how often a cell may be halved where much is in doubt [default: 0]
@@ -58,18 +63,34 @@ fn counts(text: &str) -> Result<[u32; 3], String> {
     }
 }
 
+fn heights(text: &str) -> Result<[f64; 2], String> {
+    let parts: Vec<f64> = text.split(',').map(|n| n.trim().parse().unwrap_or(f64::NAN)).collect();
+    match <[f64; 2]>::try_from(parts) {
+        Ok([low, high]) if low < high && low.is_finite() && high.is_finite() => Ok([low, high]),
+        _ => Err("not two numbers, the lower one first, with a comma between".to_owned()),
+    }
+}
+
 impl RegionArgs {
     /// Puts these arguments into a request. Reads the file of view cells.
     ///
     /// # Errors
     /// [`ReadError`] with the file's name and the place in it.
     pub(crate) fn put_into(&self, request: &mut BakeRequest) -> Result<(), ReadError> {
-        let Self { method, cells, grid, n_cells, cell_size, buffers, split } = self;
+        let Self { method, cells, grid, n_cells, cell_size, eye_height, buffers, split } = self;
+        let eye_level = |&height: &[f64; 2]| {
+            let options =
+                EyeLevelOptions { cell_size: *cell_size, eye_height: Some(height), ..EyeLevelOptions::default() };
+            CellsFrom::EyeLevel(options)
+        };
         let places = || CellsFrom::Places(PlaceOptions { n_cells: *n_cells, cell_size: *cell_size });
         request.cells = match (cells.as_ref().map(read_view_cells).transpose()?, grid) {
             (Some(cells), _) => Some(CellsFrom::Boxes(cells)),
             (None, Some(n)) => Some(CellsFrom::Grid(*n)),
-            (None, None) => (n_cells.is_some() || cell_size.is_some()).then(places),
+            (None, None) => match eye_height {
+                Some(height) => Some(eye_level(height)),
+                None => (n_cells.is_some() || cell_size.is_some()).then(places),
+            },
         };
         (request.method, request.buffers, request.split) =
             (*method, buffers.request(), split.map(|depth| Split { depth, ..Split::default() }));
@@ -90,11 +111,14 @@ pub(super) struct Outcome {
     out: String,
     #[serde(flatten)]
     stated: Stated,
-    /// How cells were made: `kd`, `places`, or `boxes` if they were given.
+    /// How cells were made: `kd`, `places`, `eye-level`, or `boxes` if they were given.
     subdivide: &'static str,
     /// How cells were cut, if they are places.
     #[serde(skip_serializing_if = "Option::is_none")]
     places: Option<Cuts>,
+    /// How cells were cut, if they are at the height of eyes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    eye_level: Option<EyeLevel>,
     /// The methods that found what is hidden.
     method: String,
     /// Triangles.
@@ -119,6 +143,42 @@ pub(super) struct Outcome {
     cut_seconds: f64,
     /// Seconds to find what is visible.
     seconds: f64,
+}
+
+/// Cells at the height of eyes.
+#[derive(Debug, Serialize, JsonSchema)]
+struct EyeLevel {
+    /// Boxes that fill the rest of the scene, which are not stored.
+    n_fillers: usize,
+    /// The most cells above each other.
+    n_layers: usize,
+    /// Width of cells, at most, in scene units.
+    cell_size: f64,
+    /// Scene units that were taken for a metre.
+    units_per_metre: f64,
+    /// How that number was found.
+    units_from: &'static str,
+}
+
+impl EyeLevel {
+    fn new(of: EyeLevelSummary) -> Self {
+        let units_from = match of.units_from {
+            UnitsFrom::Clearances(_) => "the room below ceilings",
+            UnitsFrom::Objects(_) => "the sizes of objects",
+            UnitsFrom::Metres => "the file",
+            _ => "the options",
+        };
+        let EyeLevelSummary { n_fillers, n_layers, cell_size, units_per_metre, .. } = of;
+        Self { n_fillers, n_layers, cell_size, units_per_metre, units_from }
+    }
+}
+
+impl fmt::Display for EyeLevel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { n_fillers, n_layers, cell_size, units_per_metre, units_from } = self;
+        write!(f, "cells at eyes  at most {cell_size:.4} units wide, up to {n_layers} above each other, and ")?;
+        writeln!(f, "{n_fillers} boxes for the rest; {units_per_metre} units are a metre, by {units_from}")
+    }
 }
 
 /// Cuts of places.
@@ -164,12 +224,14 @@ impl Outcome {
         Self {
             out: out.display().to_string(),
             stated: Stated::new(&file.info),
-            subdivide: match (report.places, given_cells) {
-                (Some(_), _) => "places",
-                (None, true) => "boxes",
-                (None, false) => "kd",
+            subdivide: match (report.places, report.eye_level, given_cells) {
+                (Some(_), ..) => "places",
+                (None, Some(_), _) => "eye-level",
+                (None, None, true) => "boxes",
+                (None, None, false) => "kd",
             },
             places: report.places.map(Cuts::new),
+            eye_level: report.eye_level.map(EyeLevel::new),
             method: table.info_value("method").unwrap_or_default().to_owned(),
             n_triangles: file.info.n_triangles,
             table: Summary::of(table),
@@ -189,6 +251,7 @@ impl Outcome {
         let cells = match (self.subdivide, &self.places) {
             ("kd", _) => of_cells(n_cells, "cell", n_portals) + " along walls",
             (_, Some(cut)) => format!("{} of at most {:.4} units", of_cells(n_cells, "place", 0), cut.cell_size),
+            ("eye-level", _) => of_cells(n_cells, "cell", 0) + " at the height of eyes",
             _ => of_cells(n_cells, "given cell", 0),
         };
         let objects = count(n_objects as u64, "object");
@@ -212,10 +275,12 @@ impl fmt::Display for Outcome {
         let cells = match self.subdivide {
             "kd" => "the cells of a k-d tree",
             "places" => "places as cells",
+            "eye-level" => "cells at the height of eyes",
             _ => "boxes as cells",
         };
         writeln!(f, "method         {}, {cells}", self.method)?;
         self.places.iter().try_for_each(|cuts| write!(f, "{cuts}"))?;
+        self.eye_level.iter().try_for_each(|cells| write!(f, "{cells}"))?;
         writeln!(f, "triangles      {}", self.n_triangles)?;
         write!(f, "{}", self.table)?;
         write_viewer(f, &self.viewer)?;

@@ -1,0 +1,172 @@
+//! What cells see that tile a box together with fillers: by shadows that are propagated from cell to cell.
+
+use super::RegionBakeOptions;
+use crate::error::BakeError;
+use crate::propagation::{Propagation, Solved};
+use crate::threads;
+use rayon::prelude::*;
+use sightlines_cells::{ANYWHERE, Scene};
+use sightlines_geometry::{Aabb, BoxTree};
+use sightlines_line_space::{FaceTarget, Surface};
+use sightlines_multifocal::{Occludees, QueryCounts, RaySampler, WorkDone};
+use sightlines_progress::{Counter, Halt, Phase, Work, scattered, shares_of};
+use sightlines_pvs::BitMatrix;
+use sightlines_stabtree::PairMask;
+use std::ops::Range;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::sync::{Arc, Mutex, MutexGuard};
+
+/// The phase of units of work: one for each object, and for each group of cells.
+const PHASE: &str = "shadows";
+
+/// Cells that are asked about together, as a box around them.
+const GROUP: usize = 8;
+
+/// What is left visible.
+pub(super) struct Tiled {
+    pub(super) rows: BitMatrix,
+    pub(super) objects: BitMatrix,
+    /// What was not decided because the allowance was over.
+    pub(super) left: PairMask,
+    pub(super) effort: WorkDone,
+}
+
+/// What may be hidden from cells.
+struct Wanted {
+    /// The object, if it is one.
+    object: Option<u32>,
+    target: FaceTarget,
+    /// The columns that it stands for: an object, or cells.
+    columns: Vec<u32>,
+}
+
+/// Decides from which cells objects and other cells are hidden.
+///
+/// * `tiles`: the cells, then the fillers
+/// * `extents`: the boxes of the objects
+pub(super) fn see(
+    scene: &Scene,
+    (tiles, n): (&[Aabb<3>], usize),
+    (occludees, rays): (&Occludees, &RaySampler),
+    extents: &[Aabb<3>],
+    options: &RegionBakeOptions<'_>,
+) -> Result<Tiled, BakeError> {
+    let n_objects = occludees.len();
+    let both_sides: Vec<_> = scene.occluding_triangles().collect();
+    let fronts: Vec<_> = scene.front_occluding_triangles().collect();
+    let surface = Arc::new(Surface::with_fronts(&both_sides, &fronts));
+    let propagation = threads::on(options.threads, || Propagation::new(tiles.to_vec(), rays, surface, n_objects));
+    let wanted = wanted(&tiles[..n], occludees, extents);
+    let costs: Vec<f64> = wanted.iter().map(|of| 100.0 + of.target.triangles().len() as f64).collect();
+    let shares = shares_of(&costs);
+    let memories = Mutex::new(Vec::new());
+    let pass = || -> Result<Vec<(usize, Option<Solved>)>, BakeError> {
+        let counter = Counter::new(options.progress, PHASE, wanted.len()).of(Work::Deciding);
+        let units = options.units.in_order(PHASE, scattered(wanted.len()));
+        let next = AtomicUsize::new(0);
+        let one = || {
+            counter.check()?;
+            let unit = units[next.fetch_add(1, Relaxed)];
+            if options.budget.is_over() {
+                counter.step_by(shares[unit], false)?;
+                return Ok((unit, None));
+            }
+            let Wanted { object, target, .. } = &wanted[unit];
+            let is_culled = object.is_some_and(|object| scene.is_single_sided(object));
+            let mut solved = None;
+            let result = options.units.get(PHASE, unit, || {
+                let known = memories.lock().ok().and_then(|mut memories: MutexGuard<'_, Vec<_>>| memories.pop());
+                let mut memory = known.unwrap_or_else(|| propagation.memory());
+                let of = propagation.solve(&mut memory, *object, target, is_culled);
+                if let Ok(mut memories) = memories.lock() {
+                    memories.push(memory);
+                }
+                let bytes = if options.units.are_kept() { of.to_bytes() } else { Vec::new() };
+                solved = Some(of);
+                Ok::<_, BakeError>(bytes)
+            })?;
+            let is_kept = solved.is_none();
+            let found = match (solved, result) {
+                (Some(of), _) => Some(of),
+                (None, Some(bytes)) => Some(
+                    Solved::from_bytes(&bytes, tiles.len() as u32)
+                        .ok_or_else(|| Halt::unfit(PHASE, unit, "this bake"))?,
+                ),
+                (None, None) => None,
+            };
+            counter.step_by(shares[unit], is_kept)?;
+            Ok((unit, found))
+        };
+        threads::on(options.threads, || units.par_iter().with_max_len(1).map(|_| one()).collect())
+    };
+    let found = options.units.through(&Phase::new(PHASE, &costs), pass)?;
+    let mut tiled = Tiled {
+        rows: ones(n, n),
+        objects: ones(n, extents.len()),
+        left: PairMask { boxes: BitMatrix::new(n, n), objects: BitMatrix::new(n, extents.len()) },
+        effort: WorkDone::default(),
+    };
+    // From row to column; hidden one way only is visible both ways.
+    let mut hidden = BitMatrix::new(n, n);
+    let mut counts = QueryCounts::default();
+    for (unit, solved) in found {
+        let Wanted { object, columns, .. } = &wanted[unit];
+        let matrix = if object.is_some() { &mut tiled.left.objects } else { &mut tiled.left.boxes };
+        let Some(solved) = solved else {
+            (0..n).for_each(|row| columns.iter().for_each(|&column| matrix.set(row, column as usize, true)));
+            continue;
+        };
+        counts.boxes += solved.n_asked;
+        counts.triangles += solved.n_cells;
+        for row in within(&solved.hidden, n) {
+            for &column in columns {
+                match object {
+                    Some(_) => tiled.objects.set(row, column as usize, false),
+                    None => hidden.set(row, column as usize, true),
+                }
+            }
+        }
+    }
+    // Sight is symmetric but past what hides from one side: there a pair has to be hidden both ways.
+    let is_one_way = !fronts.is_empty();
+    for row in 0..n {
+        for column in hidden.iter_ones(row).collect::<Vec<_>>() {
+            if row != column && (!is_one_way || hidden.get(column, row)) {
+                tiled.rows.set(row, column, false);
+                tiled.rows.set(column, row, false);
+            }
+        }
+    }
+    // Nothing is drawn of an object without triangles.
+    let nothing = (0..n_objects).filter(|&object| extents[object].is_empty());
+    nothing.for_each(|object| (0..n).for_each(|row| tiled.objects.set(row, object, false)));
+    tiled.effort = WorkDone { n_volumes: tiles.len() as u64, queries: counts };
+    Ok(tiled)
+}
+
+/// The cells of runs of boxes.
+fn within(runs: &[Range<u32>], n: usize) -> impl Iterator<Item = usize> + '_ {
+    runs.iter().cloned().flatten().map(|tile| tile as usize).take_while(move |&tile| tile < n)
+}
+
+fn ones(n_rows: usize, n_columns: usize) -> BitMatrix {
+    let mut all = BitMatrix::new(n_rows, n_columns);
+    (0..n_rows).for_each(|row| (0..n_columns).for_each(|column| all.set(row, column, true)));
+    all
+}
+
+/// The objects that are somewhere and have an extent, and groups of cells.
+fn wanted(cells: &[Aabb<3>], occludees: &Occludees, extents: &[Aabb<3>]) -> Vec<Wanted> {
+    let mut wanted = Vec::new();
+    for object in 0..occludees.len() {
+        let target = FaceTarget::new(occludees.triangles(object)).filter(|_| extents[object] != ANYWHERE);
+        let of = |target| Wanted { object: Some(object as u32), target, columns: vec![object as u32] };
+        wanted.extend(target.map(of));
+    }
+    let tree = BoxTree::build(cells, GROUP);
+    for leaf in tree.nodes().iter().filter(|node| node.is_leaf() && !node.is_empty()) {
+        let columns = tree.order()[leaf.start as usize..leaf.end as usize].to_vec();
+        wanted.extend(FaceTarget::of_box(&leaf.bounds).map(|target| Wanted { object: None, target, columns }));
+    }
+    wanted
+}

@@ -1,0 +1,167 @@
+//! Questions about the sides of boxes: together they are the question about the box.
+
+use crate::fronts::{Mixed, corner, lattice, mixed};
+use proptest::prelude::*;
+use sightlines_geometry::{Aabb, Point3};
+use sightlines_line_space::{Exit, FaceEffort, FaceSearch, FaceTarget, LineSpace, Surface};
+use sightlines_multifocal::{BackendError, FromRegion, Guarantee, Umbra, Volume};
+use sightlines_testkit::conformance::from_regions::wrong;
+use sightlines_testkit::conformance::{FromRegions, RegionScene, Suite};
+use sightlines_testkit::draw;
+use sightlines_testkit::meshes::{boxes, soup};
+use std::sync::Arc;
+
+/// The sides of a box, each in parts.
+fn exits(volume: &Aabb<3>, n: usize) -> Vec<Exit> {
+    let mut exits = Vec::new();
+    for (axis, upward) in (0..3).flat_map(|axis| [(axis, false), (axis, true)]) {
+        let at = if upward { volume.max[axis] } else { volume.min[axis] };
+        let along = (axis + 1) % 3;
+        let line = |i: usize| {
+            let (low, high) = (volume.min[along], volume.max[along]);
+            if i == n { high } else { low + (high - low) * i as f64 / n as f64 }
+        };
+        for i in 0..n {
+            let mut part = *volume;
+            (part.min[axis], part.max[axis]) = (at, at);
+            (part.min[along], part.max[along]) = (line(i), line(i + 1));
+            exits.push(Exit { volume: *volume, axis, upward, part });
+        }
+    }
+    exits
+}
+
+/// Whether all lines from a box to a target are blocked, side by side.
+fn is_hidden(search: &mut FaceSearch, volume: &Aabb<3>, target: &FaceTarget, n: usize, most: usize) -> bool {
+    let meet = (0..3).all(|k| volume.min[k] <= target.bounds().max[k] && target.bounds().min[k] <= volume.max[k]);
+    let effort = FaceEffort { cells: 400, ..FaceEffort::default() };
+    let facing = exits(volume, n).into_iter().filter(|exit| exit.faces(target.bounds()));
+    !meet && facing.take(most).all(|exit| search.is_blocked(&exit, target, None, &|_| false, &effort).is_ok())
+}
+
+/// The questions as a from-region method.
+#[derive(Debug)]
+struct BySides {
+    search: FaceSearch,
+    most: usize,
+}
+
+impl BySides {
+    fn new(triangles: &[[Point3; 3]], most: usize) -> Self {
+        Self { search: FaceSearch::new(Arc::new(Surface::new(triangles)), 300), most }
+    }
+}
+
+impl FromRegion for BySides {
+    fn name(&self) -> String {
+        "sides".to_owned()
+    }
+
+    fn guarantee(&self) -> Guarantee {
+        Guarantee::Conservative
+    }
+
+    fn umbra(&mut self, volume: &Volume) -> Result<Box<dyn Umbra + '_>, BackendError> {
+        Ok(Box::new(FromSides { volume: *volume.bounds(), method: self }))
+    }
+}
+
+struct FromSides<'a> {
+    volume: Aabb<3>,
+    method: &'a mut BySides,
+}
+
+impl Umbra for FromSides<'_> {
+    fn hides(&mut self, target: &Aabb<3>) -> bool {
+        let target = FaceTarget::of_box(target);
+        target.is_some_and(|target| is_hidden(&mut self.method.search, &self.volume, &target, 1, self.method.most))
+    }
+
+    fn hides_points(&mut self, points: &[Point3]) -> bool {
+        let &[a, b, c] = points else { return self.hides(&Aabb::around(points.iter().copied())) };
+        let target = FaceTarget::new(&[[a, b, c]]);
+        target.is_some_and(|target| is_hidden(&mut self.method.search, &self.volume, &target, 1, self.method.most))
+    }
+}
+
+fn all_sides(scene: &RegionScene) -> Box<dyn FromRegion> {
+    Box::new(BySides::new(&scene.triangles(), usize::MAX))
+}
+
+#[test]
+fn questions_about_all_sides_conform() {
+    let report = FromRegions::quick().run(&mut all_sides).expect("they conform");
+    let [walled, found] = ["targets behind a wall", "hidden targets behind a wall"].map(|what| report[what]);
+    assert!(walled == 240 && found >= 200, "{found} of {walled}");
+    FromRegions::quick().refuse_all(|fault| wrong(all_sides, fault));
+}
+
+/// The impostor: lines also leave by the other sides.
+#[test]
+fn impostor_one_side_alone_is_caught() {
+    let mut one = |scene: &RegionScene| Box::new(BySides::new(&scene.triangles(), 1)) as Box<dyn FromRegion>;
+    assert!(FromRegions::quick().run(&mut one).is_err());
+}
+
+fn search(mixed: &Mixed) -> FaceSearch {
+    FaceSearch::new(Arc::new(Surface::with_fronts(&mixed.both_sides, &mixed.fronts)), 300)
+}
+
+fn has_volume(b: &Aabb<3>) -> bool {
+    (0..3).all(|k| b.min[k] < b.max[k])
+}
+
+proptest! {
+    /// Invariant: no segment is free from an eye in one box to a point of another if the lines through all sides are reported blocked; with fronts, and
+    /// sides in parts.
+    #[test]
+    fn nothing_that_is_seen_is_hidden_side_by_side(
+        mixed in mixed(), pairs in prop::collection::vec(boxes(), 8), n in 1usize..3, seed in any::<u64>(),
+    ) {
+        let mut search = search(&mixed);
+        for [v, e] in pairs.iter().filter(|[v, _]| has_volume(v)) {
+            let Some(target) = FaceTarget::of_box(e) else { continue };
+            if is_hidden(&mut search, v, &target, n, usize::MAX) {
+                let free = mixed.free_segment(v, e, seed, 200);
+                prop_assert!(free.is_none(), "{:?} to {:?}: {:?}", v, e, free);
+            }
+        }
+    }
+
+    #[test]
+    fn nothing_that_is_seen_is_hidden_side_by_side_in_a_lattice(
+        mixed in lattice(), pairs in prop::collection::vec((corner(), corner()), 8), seed in any::<u64>(),
+    ) {
+        let mut search = search(&mixed);
+        let unit = |p: Point3| Aabb { min: p, max: p.map(|x| x + 0.8) };
+        for (v, e) in pairs.iter().map(|&(p, q)| (unit(p), unit(q))) {
+            let target = FaceTarget::of_box(&e).expect("a box");
+            if is_hidden(&mut search, &v, &target, 1, usize::MAX) {
+                let free = mixed.free_segment(&v, &e, seed, 500);
+                prop_assert!(free.is_none(), "{:?} to {:?}: {:?}", v, e, free);
+            }
+        }
+    }
+}
+
+/// The tightness twin: side by side, most is found that the search for whole boxes finds.
+#[test]
+fn sides_find_what_whole_boxes_do() {
+    let [mut whole, mut both, mut sides] = [0; 3];
+    for (soup, pairs) in draw(&(soup(), prop::collection::vec(boxes(), 12)), 100) {
+        let mut lines = LineSpace::new(&soup);
+        let mut search = FaceSearch::new(Arc::new(Surface::new(&soup)), 300);
+        for [v, e] in pairs.iter().filter(|[v, _]| has_volume(v)) {
+            let Some(target) = FaceTarget::of_box(e) else { continue };
+            let by_whole = lines.see_box(v, e, 400) == sightlines_line_space::Outcome::Hidden;
+            let by_sides = is_hidden(&mut search, v, &target, 1, usize::MAX);
+            for (n, yes) in
+                [&mut whole, &mut both, &mut sides].into_iter().zip([by_whole, by_whole && by_sides, by_sides])
+            {
+                *n += usize::from(yes);
+            }
+        }
+    }
+    eprintln!("whole {whole}, both {both}, sides {sides}");
+    assert!(whole > 100 && both * 10 > whole * 8, "whole {whole}, both {both}, sides {sides}");
+}
