@@ -9,7 +9,7 @@
 //!   trees ([`with_stab_trees`]) and proofs ([`certify_table`]) from a graph, and the graph of a stored table ([`from_table`]);
 //!   from-region methods and backends by name ([`methods`]), and the choice of methods from the properties of an input
 //!   ([`auto`]); the frame of a scene that does not stand along the axes of its file ([`Framed`]); cells for scenes without
-//!   walls along axes ([`places`]); the REJECT lumps of a WAD ([`reject_wad`]) or of several ([`reject_wads`]), the visibility of Quake maps and the state of an interrupted
+//!   walls along axes ([`places`]), and cells as high as eyes are ([`eye_level`]); the REJECT lumps of a WAD ([`reject_wad`]) or of several ([`reject_wads`]), the visibility of Quake maps and the state of an interrupted
 //!   search ([`quake`]), the table of a changing scene ([`live`]), why cells of a table see each other
 //!   ([`explain`](mod@explain)), lines of sight for the pairs of a table ([`lines`]);
 //!   the floor plan of a scene at a height ([`floor_cut`]); one tile of a world that is too large for one table ([`tile`]), and all of them, from a plan to a folder ([`world`]).
