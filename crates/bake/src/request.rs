@@ -228,6 +228,9 @@ impl BakeRequest {
         let are_boxes = are_given || matches!(self.cells, Some(CellsFrom::Grid(_)));
         let found = if are_given { "given boxes" } else { "a grid" };
         refuse(&[("keep_solid", self.keep_solid && are_boxes)], "cells that are cut along walls", found)?;
+        let at_eyes = matches!(self.cells, Some(CellsFrom::EyeLevel(_)));
+        let named = [("keep_solid", self.keep_solid && at_eyes), ("split", self.split.is_some() && at_eyes)];
+        refuse(&named, "other cells", "cells at the height of eyes")?;
         let method =
             self.method.unwrap_or(if self.is_for_proofs_alone() { SceneMethod::Sightlines } else { SceneMethod::Auto });
         if !method.has_buffers() {

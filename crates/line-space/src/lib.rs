@@ -5,7 +5,7 @@
 //! - **Owns**: cells of line space, their halves and sides of edges, the chains of triangles that block them ([`LineSpace`]), the same for lines that
 //!   leave a box through a part of a side ([`FaceSearch`]), and the surface they are taken
 //!   from ([`Surface`]).
-//! - **Out of scope**: targets in trees, rays that spare questions, threads, files.
+//! - **Out of scope**: which targets are asked about, rays that spare questions, threads, files.
 //! - **Invariants**: data flows `end` → `cell` → `touch`, `hull`, `side` → `roots`; `sense` → `chain` → `split` → `search` → `method`, `face`; where to cut and which chain to try are
 //!   heuristics in doubles; that a chain blocks is decided by exact predicates on input coordinates, or with bounds for corners that
 //!   were rounded.

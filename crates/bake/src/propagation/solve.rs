@@ -4,7 +4,7 @@ use super::lines::{Sight, hit, sights};
 use super::tiling::{Tiling, end_of, side};
 use sightlines_geometry::{Aabb, Point3, Random, orient3d};
 use sightlines_line_space::{Exit, FaceEffort, FaceSearch, FaceTarget, Surface};
-use sightlines_multifocal::RaySampler;
+use sightlines_multifocal::{RaySampler, Volume};
 use sightlines_pvs::runs::{read_runs, read_varint, runs_of, write_runs, write_varint};
 use std::collections::VecDeque;
 use std::ops::Range;
@@ -137,7 +137,9 @@ impl<'a> Propagation<'a> {
         };
         one.see();
         one.ask_all();
-        debug_assert!(one.is_sound());
+        if !one.is_sound() {
+            return Solved::default();
+        }
         let marks = &one.memory.marks;
         let hidden = runs_of((0..).zip(marks).filter_map(|(k, mark)| (*mark == Mark::Hidden).then_some(k)));
         let mut solved = Solved { hidden, ..one.solved };
@@ -178,13 +180,27 @@ impl One<'_> {
                 *mark = Mark::Visible;
             }
         }
-        let Some(object) = self.object else { return };
-        let mut queue: VecDeque<Sight> = VecDeque::new();
         let of = self.of;
+        let Some(object) = self.object.filter(|&object| !of.sights[object as usize].is_empty()) else {
+            return self.see_box();
+        };
+        let mut queue: VecDeque<Sight> = VecDeque::new();
         for &sight in &of.sights[object as usize] {
             self.note(sight, &mut queue);
         }
         self.follow(queue);
+    }
+
+    /// Marks boxes from which a point of the box around the object is seen: of what rays do not find, as it stops none.
+    fn see_box(&mut self) {
+        let (of, around) = (self.of, self.target.bounds());
+        for (mark, b) in self.memory.marks.iter_mut().zip(of.tiling.boxes()) {
+            let volume = Volume::new(*b).ok().filter(|_| *mark == Mark::Hidden);
+            if volume.is_some_and(|volume| of.rays.sees(&volume, around, AIMED as u32)) {
+                *mark = Mark::Visible;
+                self.solved.n_seen += 1;
+            }
+        }
     }
 
     fn note(&mut self, sight: Sight, queue: &mut VecDeque<Sight>) {

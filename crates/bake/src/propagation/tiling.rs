@@ -23,6 +23,7 @@ pub(super) struct Neighbour {
 #[derive(Debug)]
 pub(super) struct Tiling {
     boxes: Vec<Aabb<3>>,
+    tree: BoxTree<3>,
     /// For each box the start of its neighbours, and the end of the last one's.
     first: Vec<u32>,
     neighbours: Vec<Neighbour>,
@@ -50,11 +51,13 @@ impl Tiling {
                 let parts: Vec<Aabb<3>> = parts.map(|near| part(b, &boxes[near.of as usize], side)).collect();
                 !covers(&whole(b, side), &parts, side / 2)
             };
-            open.push((0..6).filter(is_open).map(|side| 1 << side).sum());
+            // No line leaves a box without a volume in the way that is asked about.
+            let has_volume = (0..3).all(|k| b.min[k] < b.max[k]);
+            open.push((0..6).filter(|side| !has_volume || is_open(side)).map(|side| 1 << side).sum());
             neighbours.extend(of);
             first.push(neighbours.len() as u32);
         }
-        Self { boxes, first, neighbours, open }
+        Self { boxes, tree, first, neighbours, open }
     }
 
     #[cfg(test)]
@@ -119,12 +122,35 @@ impl Tiling {
                 let b = &self.boxes[near.of as usize];
                 (0..3).all(|k| k == axis || b.min[k] <= point[k] && point[k] <= b.max[k])
             };
-            let mut behind = self.neighbours(at).map(|(_, near)| near).filter(|near| usize::from(near.side) == through);
-            let Some(next) = behind.find(holds) else { return };
+            let Some(next) = self.behind(at, through, point, holds) else { return };
             at = next.of;
         }
     }
 }
+
+impl Tiling {
+    /// The first neighbour on a side, by index, of those that hold a point of it.
+    fn behind(&self, of: u32, side: usize, point: Point3, holds: impl Fn(&Neighbour) -> bool) -> Option<Neighbour> {
+        let all = &self.neighbours[self.first[of as usize] as usize..self.first[of as usize + 1] as usize];
+        let start = all.partition_point(|near| usize::from(near.side) < side);
+        let all = &all[start..start + all[start..].partition_point(|near| usize::from(near.side) == side)];
+        if all.len() <= FEW {
+            return all.iter().copied().find(holds);
+        }
+        let mut found: Option<Neighbour> = None;
+        let near = |b: &Aabb<3>| (0..3).all(|k| k == side / 2 || b.min[k] <= point[k] && point[k] <= b.max[k]);
+        let plane = end_of(&self.boxes[of as usize], side);
+        let meets = |b: &Aabb<3>| near(b) && b.min[side / 2] <= plane && plane <= b.max[side / 2];
+        self.tree.visit(meets, |other| {
+            let known = all.binary_search_by_key(&other, |near| near.of).ok().map(|k| all[k]);
+            found = found.into_iter().chain(known.filter(&holds)).min_by_key(|near| near.of);
+        });
+        found
+    }
+}
+
+/// So many neighbours on a side are gone through one by one.
+const FEW: usize = 16;
 
 fn whole(b: &Aabb<3>, side: usize) -> Aabb<3> {
     let (axis, at) = (side / 2, end_of(b, side));

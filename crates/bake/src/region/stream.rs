@@ -1,7 +1,7 @@
 //! Tables of more cells than a square of bits has room for: rows as runs, written one by one.
 
 use super::row::CellRow;
-use super::{RegionBakeOptions, cells_alone, see, state_objects, targets_of, volumes};
+use super::{CellsFrom, RegionBakeOptions, cells_alone, see, state_objects, targets_of, volumes};
 use crate::error::BakeError;
 use crate::reports::RegionReport;
 use crate::scene::extents;
@@ -29,7 +29,7 @@ pub enum PackRegionsError {
     Write(#[from] StreamError),
     /// What needs all pairs at once.
     #[error(
-        "only cells without portals, decided by a from-region method alone and without a limit, can be written row by row"
+        "only cells without portals, and not at the height of eyes, decided by a from-region method alone and without a limit, can be written row by row"
     )]
     NeedsPairs,
 }
@@ -73,7 +73,8 @@ fn pack_here<W: Write>(
 ) -> Result<(W, RegionReport, PackReport), PackRegionsError> {
     let start = Instant::now();
     let make = options.method.filter(|_| !options.sightlines && !options.budget.is_limited());
-    let make = make.filter(|_| !options.cells.have_portals()).ok_or(PackRegionsError::NeedsPairs)?;
+    let by_row = !options.cells.have_portals() && !matches!(options.cells, CellsFrom::EyeLevel(_));
+    let make = make.filter(|_| by_row).ok_or(PackRegionsError::NeedsPairs)?;
     let boxes = extents(scene);
     let cut = cells_alone(scene, options, options.cells)?;
     let (cells, mut parts) = (cut.cells, cut.parts);

@@ -28,7 +28,7 @@ fn bake(scene: &Scene, cells: &CellsFrom, by: By, split: u32, threads: usize) ->
     let all = triangles(scene);
     let ends = match cells {
         CellsFrom::Boxes(boxes) => boxes.cells.iter().map(|c| c.bounds).collect(),
-        CellsFrom::KdTree | CellsFrom::Grid(_) | CellsFrom::Places(_) => Vec::new(),
+        CellsFrom::KdTree | CellsFrom::Grid(_) | CellsFrom::Places(_) | CellsFrom::EyeLevel(_) => Vec::new(),
     };
     let around = around(scene, &ends);
     let make = || -> Box<dyn FromRegion + Send> { Box::new(shipped(&all, around)) };
