@@ -227,6 +227,7 @@ f 7 8 9 10\nf 11 14 13 12\nf 7 11 12 8\nf 8 12 13 9\nf 9 13 14 10\nf 10 14 11 7\
     folder.write("sky.obj", format!("{TRIANGLES}o sky\n{sky}"));
     add("build of a scene", "build sky.obj -o sky.pvs");
     add("build of a scene by regions", "build sky.obj -o sky.pvs --n-cells 2");
+    add("build of a scene by regions", "build tower.glb -o eyes.pvs --eye-height 0,2.2 --cell-size 8");
     add("build of a scene by regions", "build single.glb -o single.pvs --method shafts --grid 2,1,2 --backs culled");
     add("info of a scene", "info tower.glb");
     add("build of a scene", "build turned.obj -o turned.pvs --gap 1e-5");
