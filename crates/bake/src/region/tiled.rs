@@ -158,8 +158,8 @@ fn ones(n_rows: usize, n_columns: usize) -> BitMatrix {
 /// The objects that are somewhere and have an extent, and groups of cells.
 fn wanted(cells: &[Aabb<3>], occludees: &Occludees, extents: &[Aabb<3>]) -> Vec<Wanted> {
     let mut wanted = Vec::new();
-    for object in 0..occludees.len() {
-        let target = FaceTarget::new(occludees.triangles(object)).filter(|_| extents[object] != ANYWHERE);
+    for (object, extent) in extents.iter().enumerate().take(occludees.len()) {
+        let target = FaceTarget::new(occludees.triangles(object)).filter(|_| *extent != ANYWHERE);
         let of = |target| Wanted { object: Some(object as u32), target, columns: vec![object as u32] };
         wanted.extend(target.map(of));
     }
