@@ -83,7 +83,7 @@ fn sides_of(b: &Aabb<3>) -> Option<Vec<[Point3; 3]>> {
 
 /// Lines that leave a box through a part of one of its sides.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Exit {
+pub struct FaceExit {
     /// The box.
     pub volume: Aabb<3>,
     /// The axis across which the side is.
@@ -94,7 +94,7 @@ pub struct Exit {
     pub part: Aabb<3>,
 }
 
-impl Exit {
+impl FaceExit {
     /// Whether a box has points strictly beyond the plane of the side. If not, no line to it leaves through this side.
     pub fn faces(&self, target: &Aabb<3>) -> bool {
         faces(self.axis, self.upward, self.at(), target)
@@ -205,7 +205,7 @@ impl FaceSearch {
     /// [`Unblocked`] if that was not found: some may be free, or it takes more than the effort allowed.
     pub fn is_blocked(
         &mut self,
-        exit: &Exit,
+        exit: &FaceExit,
         target: &FaceTarget,
         only: Option<u32>,
         leave_out: &dyn Fn(u32) -> bool,
@@ -229,13 +229,20 @@ impl FaceSearch {
     }
 
     /// Adds a triangle of the target as far as it is beyond the side.
-    fn add_triangle(&mut self, exit: &Exit, target: &FaceTarget, of: &Question, t: u32) {
+    fn add_triangle(&mut self, exit: &FaceExit, target: &FaceTarget, of: &Question, t: u32) {
         let pieces = End::beyond(target.triangles[t as usize], exit.axis, exit.at(), exit.upward);
         self.waiting.extend(pieces.map(|piece| Question { to: Piece::Triangle(t, piece), ..*of }));
     }
 
     /// Cuts a node into its children, or its triangles.
-    fn cut_node(&mut self, exit: &Exit, target: &FaceTarget, of: &Question, n: u32, leave_out: &dyn Fn(u32) -> bool) {
+    fn cut_node(
+        &mut self,
+        exit: &FaceExit,
+        target: &FaceTarget,
+        of: &Question,
+        n: u32,
+        leave_out: &dyn Fn(u32) -> bool,
+    ) {
         let node = &target.tree.nodes()[n as usize];
         if node.is_leaf() {
             for &t in &target.tree.order()[node.start as usize..node.end as usize] {
@@ -251,7 +258,7 @@ impl FaceSearch {
 
     fn run(
         &mut self,
-        exit: &Exit,
+        exit: &FaceExit,
         target: &FaceTarget,
         leave_out: &dyn Fn(u32) -> bool,
         effort: &FaceEffort,
@@ -433,7 +440,7 @@ impl FaceSearch {
 }
 
 /// The lines of a question, and what they end at; none if the rectangle and the node are not apart along any axis.
-fn cell_of(exit: &Exit, target: &FaceTarget, question: &Question) -> Option<(Cell, Target)> {
+fn cell_of(exit: &FaceExit, target: &FaceTarget, question: &Question) -> Option<(Cell, Target)> {
     match question.to {
         Piece::Node(n) => {
             let (node, from) = (&target.tree.nodes()[n as usize].bounds, question.from.bounds());

@@ -34,7 +34,7 @@ mod touch;
 #[cfg(test)]
 mod truth;
 
-pub use face::{Exit, FaceEffort, FaceSearch, FaceTarget, Unblocked};
+pub use face::{FaceEffort, FaceExit, FaceSearch, FaceTarget, Unblocked};
 pub use method::{Effort, LineSpace};
 pub use search::Outcome;
 pub use surface::Surface;

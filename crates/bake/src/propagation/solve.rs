@@ -3,7 +3,7 @@
 use super::lines::{Sight, hit, sights};
 use super::tiling::{Tiling, end_of, side};
 use sightlines_geometry::{Aabb, Point3, Random, orient3d};
-use sightlines_line_space::{Exit, FaceEffort, FaceSearch, FaceTarget, Surface};
+use sightlines_line_space::{FaceEffort, FaceExit, FaceSearch, FaceTarget, Surface};
 use sightlines_multifocal::{RaySampler, Volume};
 use sightlines_pvs::runs::{read_runs, read_varint, runs_of, write_runs, write_varint};
 use std::collections::VecDeque;
@@ -322,7 +322,7 @@ impl One<'_> {
     }
 
     fn ask_part(&mut self, volume: &Aabb<3>, side: usize, part: Aabb<3>) -> Result<(), Option<[Point3; 2]>> {
-        let exit = Exit { volume: *volume, axis: side / 2, upward: side % 2 == 1, part };
+        let exit = FaceExit { volume: *volume, axis: side / 2, upward: side % 2 == 1, part };
         let (target, fronts, corners) = (self.target, self.fronts, part.corners());
         // Where a line leaves the cell, it is on the same side of what it ends at as its eye.
         let leave_out = |t: u32| {

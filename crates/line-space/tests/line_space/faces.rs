@@ -3,7 +3,7 @@
 use crate::fronts::{Mixed, corner, lattice, mixed};
 use proptest::prelude::*;
 use sightlines_geometry::{Aabb, Point3};
-use sightlines_line_space::{Exit, FaceEffort, FaceSearch, FaceTarget, LineSpace, Surface};
+use sightlines_line_space::{FaceEffort, FaceExit, FaceSearch, FaceTarget, LineSpace, Surface};
 use sightlines_multifocal::{BackendError, FromRegion, Guarantee, Umbra, Volume};
 use sightlines_testkit::conformance::from_regions::wrong;
 use sightlines_testkit::conformance::{FromRegions, RegionScene, Suite};
@@ -12,7 +12,7 @@ use sightlines_testkit::meshes::{boxes, soup};
 use std::sync::Arc;
 
 /// The sides of a box, each in parts.
-fn exits(volume: &Aabb<3>, n: usize) -> Vec<Exit> {
+fn exits(volume: &Aabb<3>, n: usize) -> Vec<FaceExit> {
     let mut exits = Vec::new();
     for (axis, upward) in (0..3).flat_map(|axis| [(axis, false), (axis, true)]) {
         let at = if upward { volume.max[axis] } else { volume.min[axis] };
@@ -25,7 +25,7 @@ fn exits(volume: &Aabb<3>, n: usize) -> Vec<Exit> {
             let mut part = *volume;
             (part.min[axis], part.max[axis]) = (at, at);
             (part.min[along], part.max[along]) = (line(i), line(i + 1));
-            exits.push(Exit { volume: *volume, axis, upward, part });
+            exits.push(FaceExit { volume: *volume, axis, upward, part });
         }
     }
     exits
