@@ -1,7 +1,7 @@
 //! The cells from which one object is hidden.
 
 use super::lines::{Sight, hit, sights};
-use super::tiling::{Tiling, end_of, side};
+use super::tiling::{Tiling, side};
 use sightlines_geometry::{Aabb, Point3, Random, orient3d};
 use sightlines_line_space::{FaceEffort, FaceExit, FaceSearch, FaceTarget, Surface};
 use sightlines_multifocal::{RaySampler, Volume};
@@ -163,6 +163,10 @@ struct One<'a> {
     solved: Solved,
 }
 
+fn exit(volume: &Aabb<3>, side: usize, part: Aabb<3>) -> FaceExit {
+    FaceExit { volume: *volume, axis: side / 2, upward: side % 2 == 1, part }
+}
+
 fn meet(a: &Aabb<3>, b: &Aabb<3>) -> bool {
     (0..3).all(|k| a.min[k] <= b.max[k] && b.min[k] <= a.max[k])
 }
@@ -315,14 +319,13 @@ impl One<'_> {
         Ok(())
     }
 
+    /// Whether lines to the object may leave a box by a side.
     fn faces(&self, b: &Aabb<3>, side: usize) -> bool {
-        let (axis, around) = (side / 2, self.target.bounds());
-        let at = end_of(b, side);
-        if side % 2 == 1 { around.max[axis] > at } else { around.min[axis] < at }
+        exit(b, side, *b).faces(self.target.bounds())
     }
 
     fn ask_part(&mut self, volume: &Aabb<3>, side: usize, part: Aabb<3>) -> Result<(), Option<[Point3; 2]>> {
-        let exit = FaceExit { volume: *volume, axis: side / 2, upward: side % 2 == 1, part };
+        let exit = exit(volume, side, part);
         let (target, fronts, corners) = (self.target, self.fronts, part.corners());
         // Where a line leaves the cell, it is on the same side of what it ends at as its eye.
         let leave_out = |t: u32| {

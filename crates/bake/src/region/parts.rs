@@ -23,7 +23,7 @@ pub(super) struct Start {
 }
 
 /// A matrix of ones.
-fn ones(n_rows: usize, n_cols: usize) -> BitMatrix {
+pub(super) fn ones(n_rows: usize, n_cols: usize) -> BitMatrix {
     let mut all = BitMatrix::new(n_rows, n_cols);
     (0..n_rows).for_each(|row| (0..n_cols).for_each(|col| all.set(row, col, true)));
     all

@@ -1,6 +1,7 @@
 //! What cells see that tile a box together with fillers: by shadows that are propagated from cell to cell.
 
 use super::RegionBakeOptions;
+use super::parts::ones;
 use crate::error::BakeError;
 use crate::propagation::{Propagation, Solved};
 use crate::threads;
@@ -106,7 +107,7 @@ pub(super) fn see(
         left: PairMask { boxes: BitMatrix::new(n, n), objects: BitMatrix::new(n, extents.len()) },
         effort: WorkDone::default(),
     };
-    // From row to column; hidden one way only is visible both ways.
+    // Cells by cells: those in a row are hidden from the cell of the row.
     let mut hidden = BitMatrix::new(n, n);
     let mut counts = QueryCounts::default();
     for (unit, solved) in found {
@@ -147,12 +148,6 @@ pub(super) fn see(
 /// The cells of runs of boxes.
 fn within(runs: &[Range<u32>], n: usize) -> impl Iterator<Item = usize> + '_ {
     runs.iter().cloned().flatten().map(|tile| tile as usize).take_while(move |&tile| tile < n)
-}
-
-fn ones(n_rows: usize, n_columns: usize) -> BitMatrix {
-    let mut all = BitMatrix::new(n_rows, n_columns);
-    (0..n_rows).for_each(|row| (0..n_columns).for_each(|column| all.set(row, column, true)));
-    all
 }
 
 /// The objects that are somewhere and have an extent, and groups of cells.
