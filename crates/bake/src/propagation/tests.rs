@@ -57,7 +57,7 @@ fn wrong(soup: &Soup, tiles: &[Aabb<3>], targets: &[Aabb<3>], found: &[Vec<u32>]
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(48))]
+    #![proptest_config(ProptestConfig { cases: 48, ..ProptestConfig::default() })]
 
     /// Invariant: no segment is free from a cell to a target that is found hidden from it, in tilings with and without gaps.
     #[test]
