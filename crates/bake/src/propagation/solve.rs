@@ -13,21 +13,26 @@ use std::sync::Arc;
 /// Rays from a cell to where its neighbour sees an object.
 const AIMED: usize = 4;
 
-/// Cells of line space for the triangle at which the search from a neighbour failed.
-const AGAIN: u32 = 40;
+/// Rays from a cell to the box of an object before anything is asked about the cell.
+const BEFORE: usize = 16;
 
 /// How many triangles a chain has.
 const LONGEST_CHAIN: usize = 300;
 
-/// Cells of line space for a question, apart from half a one for each triangle of the object.
-const EFFORT: FaceEffort = FaceEffort { cells: 150, triangle_cells: 80, attempts: 4, enough: 0.5 };
+/// Cells of line space for the triangle at which the search from a neighbour failed.
+const AGAIN: u32 = 20;
+
+/// Cells of line space for a question, apart from half a one for each triangle of the object. Ten times as many find hardly more.
+const EFFORT: FaceEffort = FaceEffort { cells: 60, triangle_cells: 40, attempts: 4, enough: 0.5 };
 
 /// The most of them.
-const MOST_CELLS: u32 = 800;
+const MOST_CELLS: u32 = 400;
 
 /// What is known of a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Mark {
+    /// A filler on which no cell leaned yet.
+    Unasked,
     /// Hidden from, if it stays so.
     Hidden,
     /// May see the object.
@@ -41,12 +46,14 @@ pub(crate) struct Propagation<'a> {
     rays: &'a RaySampler,
     surface: Arc<Surface>,
     sights: Vec<Vec<Sight>>,
+    /// How many of the boxes are cells; the others only have to be known where cells lean on them.
+    n_cells: usize,
 }
 
 /// What was found of one object.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Solved {
-    /// The boxes from which it is hidden.
+    /// The boxes from which it is hidden: of fillers only those on which cells lean.
     pub(crate) hidden: Vec<Range<u32>>,
     /// Boxes that rays found to see it.
     pub(crate) n_seen: u64,
@@ -90,11 +97,17 @@ pub(crate) struct Memory {
 impl<'a> Propagation<'a> {
     /// Shoots the rays of all cells. O(n log n) of triangles, and of boxes.
     ///
+    /// * `boxes`: the cells, then the fillers
     /// * `rays`: of which each object is one
-    pub(crate) fn new(boxes: Vec<Aabb<3>>, rays: &'a RaySampler, surface: Arc<Surface>, n_objects: usize) -> Self {
+    pub(crate) fn new(
+        (boxes, n_cells): (Vec<Aabb<3>>, usize),
+        rays: &'a RaySampler,
+        surface: Arc<Surface>,
+        n_objects: usize,
+    ) -> Self {
         let tiling = Tiling::new(boxes);
         let sights = sights(&tiling, rays, n_objects);
-        Self { tiling, rays, surface, sights }
+        Self { tiling, rays, surface, sights, n_cells }
     }
 
     /// The impostor: lines leave through no side without a neighbour.
@@ -120,7 +133,9 @@ impl<'a> Propagation<'a> {
     /// * `fronts`: whether only the fronts of its triangles are seen
     pub(crate) fn solve(&self, memory: &mut Memory, object: Option<u32>, target: &FaceTarget, fronts: bool) -> Solved {
         memory.search.forget();
-        memory.marks.fill(Mark::Hidden);
+        let (cells, fillers) = memory.marks.split_at_mut(self.n_cells);
+        cells.fill(Mark::Hidden);
+        fillers.fill(Mark::Unasked);
         memory.is_blocked.fill(false);
         memory.are_blocked.fill(0);
         let n_cells = memory.search.n_cells();
@@ -140,8 +155,7 @@ impl<'a> Propagation<'a> {
         if !one.is_sound() {
             return Solved::default();
         }
-        let marks = &one.memory.marks;
-        let hidden = runs_of((0..).zip(marks).filter_map(|(k, mark)| (*mark == Mark::Hidden).then_some(k)));
+        let hidden = runs_of((0..self.tiling.len() as u32).filter(|&k| one.is_hidden(k)));
         let mut solved = Solved { hidden, ..one.solved };
         solved.n_cells = memory.search.n_cells() - n_cells;
         solved
@@ -176,6 +190,10 @@ impl One<'_> {
         self.memory.marks[cell as usize] == Mark::Hidden
     }
 
+    fn is_visible(&self, cell: u32) -> bool {
+        self.memory.marks[cell as usize] == Mark::Visible
+    }
+
     /// Marks what touches the object, what rays find to see it, and from there on neighbours from which it is seen as well.
     fn see(&mut self) {
         let around = self.target.bounds();
@@ -199,7 +217,7 @@ impl One<'_> {
     fn see_box(&mut self) {
         let (of, around) = (self.of, self.target.bounds());
         for (mark, b) in self.memory.marks.iter_mut().zip(of.tiling.boxes()) {
-            let volume = Volume::new(*b).ok().filter(|_| *mark == Mark::Hidden);
+            let volume = Volume::new(*b).ok().filter(|_| *mark != Mark::Visible);
             if volume.is_some_and(|volume| of.rays.sees(&volume, around, AIMED as u32)) {
                 *mark = Mark::Visible;
                 self.solved.n_seen += 1;
@@ -209,7 +227,7 @@ impl One<'_> {
 
     fn note(&mut self, sight: Sight, queue: &mut VecDeque<Sight>) {
         let mark = &mut self.memory.marks[sight.cell as usize];
-        if *mark == Mark::Hidden {
+        if *mark != Mark::Visible {
             *mark = Mark::Visible;
             self.solved.n_seen += 1;
             self.changed.push(sight.cell);
@@ -222,7 +240,7 @@ impl One<'_> {
         let (of, Some(object)) = (self.of, self.object) else { return };
         while let Some(sight) = queue.pop_front() {
             for (_, near) in of.tiling.neighbours(sight.cell) {
-                if !self.is_hidden(near.of) {
+                if self.is_visible(near.of) {
                     continue;
                 }
                 let b = &of.tiling.boxes()[near.of as usize];
@@ -243,7 +261,7 @@ impl One<'_> {
         }
     }
 
-    /// Asks about faces until each is blocked, or has a cell behind it from which the object is hidden, or its cell may see the object.
+    /// Asks about faces until each is blocked, or has a box behind it from which the object is hidden, or its cell may see the object.
     fn ask_all(&mut self) {
         let tiling = &self.of.tiling;
         let mut queue: VecDeque<u32> = (0..tiling.len() as u32).filter(|&cell| self.is_hidden(cell)).collect();
@@ -254,8 +272,8 @@ impl One<'_> {
             if !self.is_hidden(cell) {
                 continue;
             }
-            let Err(line) = self.ask(cell) else { continue };
             self.changed.clear();
+            let Err(line) = self.ask(cell, &mut queue) else { continue };
             self.memory.marks[cell as usize] = Mark::Visible;
             self.changed.push(cell);
             if let Some(line) = line {
@@ -292,31 +310,62 @@ impl One<'_> {
         self.follow(queue);
     }
 
-    /// Whether all parts of the sides of a cell that face the object, and have no hidden cell behind them, are blocked; or else a free line, if one
+    /// A free line from a cell to the object, by rays to its box.
+    fn aim(&mut self, cell: u32) -> Option<[Point3; 2]> {
+        let (b, around) = (&self.of.tiling.boxes()[cell as usize], self.target.bounds());
+        self.object?;
+        (0..BEFORE).find_map(|_| {
+            let (from, to) = (self.random.point(b), self.random.point(around));
+            let way: Point3 = std::array::from_fn(|k| to[k] - from[k]);
+            let (found, at) = hit(self.of.rays, from, way);
+            (found == self.object).then_some([from, at])
+        })
+    }
+
+    /// Whether all parts of the sides of a cell that face the object, and have no hidden box behind them, are blocked; or else a free line, if one
     /// was found.
-    fn ask(&mut self, cell: u32) -> Result<(), Option<[Point3; 2]>> {
+    fn ask(&mut self, cell: u32, queue: &mut VecDeque<u32>) -> Result<(), Option<[Point3; 2]>> {
         let tiling = &self.of.tiling;
         let b = tiling.boxes()[cell as usize];
+        let mut is_first = true;
         for s in 0..6 {
             if !self.faces(&b, s) {
                 continue;
             }
             if tiling.is_open(cell, s) {
                 if self.memory.are_blocked[cell as usize] >> s & 1 == 0 {
+                    self.ask_first(cell, &mut is_first)?;
                     self.ask_part(&b, s, tiling.whole(cell, s))?;
                     self.memory.are_blocked[cell as usize] |= 1 << s;
                 }
                 continue;
             }
             for (pair, near) in tiling.neighbours(cell).filter(|(_, near)| usize::from(near.side) == s) {
-                if self.is_hidden(near.of) || self.memory.is_blocked[pair] {
+                if self.memory.is_blocked[pair] {
                     continue;
                 }
+                match self.memory.marks[near.of as usize] {
+                    Mark::Hidden => continue,
+                    Mark::Unasked => {
+                        self.memory.marks[near.of as usize] = Mark::Hidden;
+                        self.memory.waits[near.of as usize] = true;
+                        queue.push_back(near.of);
+                        continue;
+                    }
+                    Mark::Visible => {}
+                }
+                self.ask_first(cell, &mut is_first)?;
                 self.ask_part(&b, s, tiling.part(cell, near))?;
                 self.memory.is_blocked[pair] = true;
             }
         }
         Ok(())
+    }
+
+    /// Before the first question about a cell: a free line that rays find.
+    fn ask_first(&mut self, cell: u32, is_first: &mut bool) -> Result<(), Option<[Point3; 2]>> {
+        let free = if std::mem::take(is_first) { self.aim(cell) } else { None };
+        free.map_or(Ok(()), |line| Err(Some(line)))
     }
 
     /// Whether lines to the object may leave a box by a side.

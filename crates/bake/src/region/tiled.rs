@@ -56,7 +56,7 @@ pub(super) fn see(
     let both_sides: Vec<_> = scene.occluding_triangles().collect();
     let fronts: Vec<_> = scene.front_occluding_triangles().collect();
     let surface = Arc::new(Surface::with_fronts(&both_sides, &fronts));
-    let propagation = threads::on(options.threads, || Propagation::new(tiles.to_vec(), rays, surface, n_objects));
+    let propagation = threads::on(options.threads, || Propagation::new((tiles.to_vec(), n), rays, surface, n_objects));
     let wanted = wanted(&tiles[..n], occludees, extents);
     let costs: Vec<f64> = wanted.iter().map(|of| 100.0 + of.target.triangles().len() as f64).collect();
     let shares = shares_of(&costs);
