@@ -91,10 +91,12 @@ pub(crate) fn with_regions<T, E: From<BakeError>>(
     buffers.check().map_err(|error| BakeError::from(MethodError::from(error)))?;
     let prepare = |method| OcclusionMethodFactory::new(method, scene, &buffers);
     let factory = method.region_method().map(prepare).transpose().map_err(BakeError::from)?;
+    let surface = factory.as_ref().and_then(OcclusionMethodFactory::surface);
     let make = || factory.as_ref().expect("only called if there is one").instance();
     then(&RegionBakeOptions {
         cells,
         method: factory.is_some().then_some(&make),
+        surface: surface.as_ref(),
         sightlines: method.by_sightlines(),
         split,
         cut,

@@ -33,4 +33,8 @@ impl Prepared for Shared {
     fn instance(&self) -> Box<dyn FromRegion + Send> {
         Box::new(LineSpace::shared(Arc::clone(&self.0), Effort::default()))
     }
+
+    fn surface(&self) -> Option<Arc<Surface>> {
+        Some(Arc::clone(&self.0))
+    }
 }

@@ -14,9 +14,11 @@ pub use buffers::{BufferOptions, BuffersTooLarge};
 
 use sightlines_cells::Scene;
 use sightlines_geometry::Point3;
+use sightlines_line_space::Surface;
 use sightlines_multifocal::FromRegion;
 use std::fmt;
 use std::str::FromStr;
+use std::sync::Arc;
 
 /// A method that finds what is hidden from a whole volume of viewpoints.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -44,6 +46,11 @@ struct Entry {
 trait Prepared: Send + Sync {
     /// An instance for one thread.
     fn instance(&self) -> Box<dyn FromRegion + Send>;
+
+    /// The surface that line space alone searches.
+    fn surface(&self) -> Option<Arc<Surface>> {
+        None
+    }
 }
 
 impl OcclusionMethod {
@@ -136,6 +143,11 @@ impl OcclusionMethodFactory {
     /// An instance for one thread.
     pub fn instance(&self) -> Box<dyn FromRegion + Send> {
         self.prepared.instance()
+    }
+
+    /// What shadows are propagated by: the surface of [`OcclusionMethod::LineSpace`], and nothing of other methods.
+    pub fn surface(&self) -> Option<Arc<Surface>> {
+        self.prepared.surface()
     }
 }
 

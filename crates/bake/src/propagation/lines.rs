@@ -4,6 +4,7 @@ use super::tiling::Tiling;
 use rayon::prelude::*;
 use sightlines_geometry::{Point3, Random, ray_triangle};
 use sightlines_multifocal::RaySampler;
+use sightlines_progress::{Cancelled, Counter, Observer};
 
 /// Rays from each box in both directions of a line.
 const N_LINES: u32 = 192;
@@ -22,12 +23,25 @@ pub(super) struct Sight {
 }
 
 /// For each object the cells that lines in any direction find to see it, each once.
-pub(super) fn sights(tiling: &Tiling, rays: &RaySampler, n_objects: usize) -> Vec<Vec<Sight>> {
+///
+/// # Errors
+/// [`Cancelled`] by the observer.
+pub(super) fn sights(
+    tiling: &Tiling,
+    rays: &RaySampler,
+    n_objects: usize,
+    observer: Option<&dyn Observer>,
+) -> Result<Vec<Vec<Sight>>, Cancelled> {
+    let counter = Counter::new(observer, "rays", tiling.len());
     let mut found: Vec<Vec<Sight>> = vec![Vec::new(); n_objects];
     let mut known = vec![0u64; (tiling.len() * n_objects).div_ceil(64)];
     let cells: Vec<u32> = (0..tiling.len() as u32).collect();
     for chunk in cells.chunks(CHUNK) {
-        let lines: Vec<Vec<Line>> = chunk.par_iter().map(|&cell| lines_of(tiling, rays, cell)).collect();
+        let lines_of = |&cell: &u32| {
+            counter.step()?;
+            Ok(lines_of(tiling, rays, cell))
+        };
+        let lines = chunk.par_iter().map(lines_of).collect::<Result<Vec<_>, Cancelled>>()?;
         for line in lines.into_iter().flatten() {
             let ends = [(line.object, line.at), (line.behind.0, line.behind.1)];
             let mut note = |cell: u32| {
@@ -44,7 +58,7 @@ pub(super) fn sights(tiling: &Tiling, rays: &RaySampler, n_objects: usize) -> Ve
             tiling.walk(line.cell, line.origin, line.behind.1, &mut note);
         }
     }
-    found
+    Ok(found)
 }
 
 /// A free line through a point of a cell, with what it ends at.

@@ -5,6 +5,7 @@ use super::tiling::{Tiling, side};
 use sightlines_geometry::{Aabb, Point3, Random, orient3d};
 use sightlines_line_space::{FaceEffort, FaceExit, FaceSearch, FaceTarget, Surface};
 use sightlines_multifocal::{RaySampler, Volume};
+use sightlines_progress::{Cancelled, Observer};
 use sightlines_pvs::runs::{read_runs, read_varint, runs_of, write_runs, write_varint};
 use std::collections::VecDeque;
 use std::ops::Range;
@@ -99,15 +100,19 @@ impl<'a> Propagation<'a> {
     ///
     /// * `boxes`: the cells, then the fillers
     /// * `rays`: of which each object is one
+    ///
+    /// # Errors
+    /// [`Cancelled`] by the observer.
     pub(crate) fn new(
         (boxes, n_cells): (Vec<Aabb<3>>, usize),
         rays: &'a RaySampler,
         surface: Arc<Surface>,
         n_objects: usize,
-    ) -> Self {
+        observer: Option<&dyn Observer>,
+    ) -> Result<Self, Cancelled> {
         let tiling = Tiling::new(boxes);
-        let sights = sights(&tiling, rays, n_objects);
-        Self { tiling, rays, surface, sights, n_cells }
+        let sights = sights(&tiling, rays, n_objects, observer)?;
+        Ok(Self { tiling, rays, surface, sights, n_cells })
     }
 
     /// The impostor: lines leave through no side without a neighbour.

@@ -22,7 +22,6 @@ use crate::error::BakeError;
 use crate::eye_level::{EyeLevelError, EyeLevelOptions, EyeLevelSummary, eye_level_cells};
 use crate::graph::TableGraph;
 use crate::limit::{LimitReport, state_limit};
-use crate::methods::OcclusionMethod;
 use crate::objects::object_lists;
 use crate::places::{PlaceOptions, PlaceSummary, PlacesError, observed_places};
 use crate::reports::RegionReport;
@@ -37,11 +36,13 @@ use sightlines_cells::{ANYWHERE, Scene};
 use sightlines_formats::{SceneInfo, ViewCells};
 use sightlines_geometry::{Aabb, Point3};
 use sightlines_kdtree::{KdError, SceneOptions, subdivide_scene};
+use sightlines_line_space::Surface;
 use sightlines_multifocal::{FromRegion, Occludees, RaySampler, Split, Volume, WorkDone};
 use sightlines_progress::{Allowance, Observer, Units};
 use sightlines_pvs::{Axis, BitMatrix, SceneMethods, Table, TableKind, TableParts};
 use sightlines_stabtree::{BoxVisibility, PairMask, SearchOptions, box_visibility};
 use std::fmt;
+use std::sync::Arc;
 use std::time::Instant;
 pub(crate) use stream::pack_regions_around;
 pub use stream::{PackRegionsError, pack_regions};
@@ -94,6 +95,9 @@ pub struct RegionBakeOptions<'a> {
     /// The from-region method; none leaves all to sightlines. [`OcclusionMethodFactory`](crate::methods::OcclusionMethodFactory)
     /// has those of this workspace by name.
     pub method: Option<MakeMethod<'a>>,
+    /// What that method has prepared for propagating shadows from cell to cell; without it each cell of [`CellsFrom::EyeLevel`] is
+    /// asked about alone.
+    pub surface: Option<&'a Arc<Surface>>,
     /// Whether sightlines decide as well; without a method they always do.
     pub sightlines: bool,
     /// When cells are cut into smaller volumes.
@@ -120,6 +124,7 @@ impl<'a> RegionBakeOptions<'a> {
         Self {
             cells,
             method: None,
+            surface: None,
             sightlines: true,
             split: Split::default(),
             cut: SceneOptions::default(),
@@ -236,9 +241,8 @@ pub(crate) fn decide(
         let made = make();
         let method = (made.name(), made.only_in_air());
         let (occludees, witness) = targets_of(scene, &boxes[..n_objects]);
-        // Sets of lines to faces are of line space.
-        if !tiles.is_empty() && regions.is_empty() && method.0 == OcclusionMethod::LineSpace.name() {
-            let seen = tiled::see(scene, (&tiles, n), (&occludees, &witness), &boxes, options)?;
+        if let Some(surface) = options.surface.filter(|_| !tiles.is_empty() && regions.is_empty()) {
+            let seen = tiled::see((scene, Arc::clone(surface)), (&tiles, n), (&occludees, &witness), &boxes, options)?;
             left = seen.left;
             break 'method (seen.rows, seen.objects, seen.effort, Some(method));
         }

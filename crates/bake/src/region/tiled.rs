@@ -46,17 +46,16 @@ struct Wanted {
 /// * `tiles`: the cells, then the fillers
 /// * `extents`: the boxes of the objects
 pub(super) fn see(
-    scene: &Scene,
+    (scene, surface): (&Scene, Arc<Surface>),
     (tiles, n): (&[Aabb<3>], usize),
     (occludees, rays): (&Occludees, &RaySampler),
     extents: &[Aabb<3>],
     options: &RegionBakeOptions<'_>,
 ) -> Result<Tiled, BakeError> {
     let n_objects = occludees.len();
-    let both_sides: Vec<_> = scene.occluding_triangles().collect();
-    let fronts: Vec<_> = scene.front_occluding_triangles().collect();
-    let surface = Arc::new(Surface::with_fronts(&both_sides, &fronts));
-    let propagation = threads::on(options.threads, || Propagation::new((tiles.to_vec(), n), rays, surface, n_objects));
+    let propagation = threads::on(options.threads, || {
+        Propagation::new((tiles.to_vec(), n), rays, surface, n_objects, options.progress)
+    })?;
     let wanted = wanted(&tiles[..n], occludees, extents);
     let costs: Vec<f64> = wanted.iter().map(|of| 100.0 + of.target.triangles().len() as f64).collect();
     let shares = shares_of(&costs);
@@ -129,7 +128,7 @@ pub(super) fn see(
         }
     }
     // Sight is symmetric but past what hides from one side: there a pair has to be hidden both ways.
-    let is_one_way = !fronts.is_empty();
+    let is_one_way = !scene.front_occluders().is_empty();
     for row in 0..n {
         for column in hidden.iter_ones(row).collect::<Vec<_>>() {
             if row != column && (!is_one_way || hidden.get(column, row)) {
