@@ -9,6 +9,7 @@
 mod boxes;
 mod limited;
 mod parts;
+mod phase;
 mod row;
 mod see;
 mod stream;

@@ -2,17 +2,16 @@
 
 use super::limited::{Limit, Limited};
 use super::row::{CellRow, gaps};
-use super::{MakeMethod, RegionBakeOptions};
+use super::{MakeMethod, RegionBakeOptions, phase};
 use crate::error::BakeError;
 use crate::threads;
 use rayon::prelude::*;
 use sightlines_geometry::{Aabb, BoxNode, BoxTree};
 use sightlines_multifocal::{BackendError, FromRegion, Occludees, RaySampler, Umbra, Volume, WorkDone, adaptive};
-use sightlines_progress::{Allowance, Counter, Halt, Phase, Shares, Work, scattered, shares_of};
+use sightlines_progress::{Allowance, Counter, Shares, Work, scattered};
 use sightlines_pvs::BitMatrix;
 use sightlines_stabtree::PairMask;
 use std::ops::Range;
-use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 /// Rays to a cell before its query: most pairs of cells that see each other do so along many lines.
 const RAYS_TO_A_CELL: u32 = 24;
@@ -140,49 +139,13 @@ pub(super) fn see_all(
     let n = scene.volumes.len();
     let sizes = [scene.n_boxes() as u32, scene.occludees.len() as u32];
     let costs = threads::on(options.threads, || costs_of(scene, options.units.need_costs()));
-    let shares_of_time = shares_of(&costs);
-    let pass = || -> Result<Vec<(usize, Option<CellRow>)>, BakeError> {
-        let counter = Counter::new(options.progress, "cells", n).of(Work::Deciding);
-        let cells = options.units.in_order(PHASE, scattered(n));
-        let next = AtomicUsize::new(0);
-        let one = |method: &mut Option<Box<dyn FromRegion + Send>>| {
-            counter.check()?;
-            // Whichever thread is free takes the next one, so that those that come first are done first.
-            let cell = cells[next.fetch_add(1, Relaxed)];
-            let mut computed = None;
-            let result = options.units.get(PHASE, cell, || {
-                let method = method.get_or_insert_with(make);
-                let row = see_from(scene, &mut **method, options, cell, known, Allowance::default())?;
-                let bytes = if options.units.are_kept() { row.to_bytes() } else { Vec::new() };
-                computed = Some(row);
-                Ok::<_, BakeError>(bytes)
-            })?;
-            let is_kept = computed.is_none();
-            let row = match (computed, result) {
-                (Some(row), _) => Some(row),
-                (None, Some(bytes)) => Some(CellRow::from_bytes(&bytes, sizes).ok_or_else(|| unfit(cell))?),
-                (None, None) => None,
-            };
-            counter.step_by(shares_of_time[cell], is_kept)?;
-            Ok((cell, row))
-        };
-        threads::on(options.threads, || {
-            cells
-                .par_iter()
-                .with_max_len(1)
-                .map_init(|| None, |method, _| one(method))
-                .collect::<Result<_, BakeError>>()
-        })
-    };
-    // If others have cells to do, this may end the bake.
-    let found = options.units.through(&Phase::new(PHASE, &costs), pass)?;
+    let from_bytes = |bytes: &[u8]| CellRow::from_bytes(bytes, sizes);
+    let found = phase::decide(PHASE, &costs, options, (CellRow::to_bytes, from_bytes), |cell| {
+        Ok(see_from(scene, &mut *make(), options, cell, known, Allowance::default())?)
+    })?;
     let mut rows: Vec<CellRow> = vec![CellRow::default(); n];
     found.into_iter().for_each(|(cell, row)| rows[cell] = row.expect("a phase that ends has all its results"));
     Ok(rows)
-}
-
-fn unfit(cell: usize) -> Halt {
-    Halt::Store(format!("the kept result of unit {cell} of the phase '{PHASE}' does not fit this bake"))
 }
 
 /// The predicted cost of each cell: in proportion to what some rays from it reach; the same for all if that is not needed.

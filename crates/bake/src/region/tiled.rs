@@ -1,20 +1,17 @@
 //! What cells see that tile a box together with fillers: by shadows that are propagated from cell to cell.
 
-use super::RegionBakeOptions;
 use super::parts::ones;
+use super::{RegionBakeOptions, phase};
 use crate::error::BakeError;
 use crate::propagation::{Propagation, Solved};
 use crate::threads;
-use rayon::prelude::*;
 use sightlines_cells::{ANYWHERE, Scene};
 use sightlines_geometry::{Aabb, BoxTree};
 use sightlines_line_space::{FaceTarget, Surface};
 use sightlines_multifocal::{Occludees, QueryCounts, RaySampler, WorkDone};
-use sightlines_progress::{Counter, Halt, Phase, Work, scattered, shares_of};
 use sightlines_pvs::BitMatrix;
 use sightlines_stabtree::PairMask;
 use std::ops::Range;
-use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard};
 
 /// The phase of units of work: one for each object, and for each group of cells.
@@ -58,48 +55,19 @@ pub(super) fn see(
     })?;
     let wanted = wanted(&tiles[..n], occludees, extents);
     let costs: Vec<f64> = wanted.iter().map(|of| 100.0 + of.target.triangles().len() as f64).collect();
-    let shares = shares_of(&costs);
     let memories = Mutex::new(Vec::new());
-    let pass = || -> Result<Vec<(usize, Option<Solved>)>, BakeError> {
-        let counter = Counter::new(options.progress, PHASE, wanted.len()).of(Work::Deciding);
-        let units = options.units.in_order(PHASE, scattered(wanted.len()));
-        let next = AtomicUsize::new(0);
-        let one = || {
-            counter.check()?;
-            let unit = units[next.fetch_add(1, Relaxed)];
-            if options.budget.is_over() {
-                counter.step_by(shares[unit], false)?;
-                return Ok((unit, None));
-            }
-            let Wanted { object, target, .. } = &wanted[unit];
-            let is_culled = object.is_some_and(|object| scene.is_single_sided(object));
-            let mut solved = None;
-            let result = options.units.get(PHASE, unit, || {
-                let known = memories.lock().ok().and_then(|mut memories: MutexGuard<'_, Vec<_>>| memories.pop());
-                let mut memory = known.unwrap_or_else(|| propagation.memory());
-                let of = propagation.solve(&mut memory, *object, target, is_culled);
-                if let Ok(mut memories) = memories.lock() {
-                    memories.push(memory);
-                }
-                let bytes = if options.units.are_kept() { of.to_bytes() } else { Vec::new() };
-                solved = Some(of);
-                Ok::<_, BakeError>(bytes)
-            })?;
-            let is_kept = solved.is_none();
-            let found = match (solved, result) {
-                (Some(of), _) => Some(of),
-                (None, Some(bytes)) => Some(
-                    Solved::from_bytes(&bytes, tiles.len() as u32)
-                        .ok_or_else(|| Halt::unfit(PHASE, unit, "this bake"))?,
-                ),
-                (None, None) => None,
-            };
-            counter.step_by(shares[unit], is_kept)?;
-            Ok((unit, found))
-        };
-        threads::on(options.threads, || units.par_iter().with_max_len(1).map(|_| one()).collect())
-    };
-    let found = options.units.through(&Phase::new(PHASE, &costs), pass)?;
+    let from_bytes = |bytes: &[u8]| Solved::from_bytes(bytes, tiles.len() as u32);
+    let found = phase::decide(PHASE, &costs, options, (Solved::to_bytes, from_bytes), |unit| {
+        let Wanted { object, target, .. } = &wanted[unit];
+        let is_culled = object.is_some_and(|object| scene.is_single_sided(object));
+        let known = memories.lock().ok().and_then(|mut memories: MutexGuard<'_, Vec<_>>| memories.pop());
+        let mut memory = known.unwrap_or_else(|| propagation.memory());
+        let solved = propagation.solve(&mut memory, *object, target, is_culled);
+        if let Ok(mut memories) = memories.lock() {
+            memories.push(memory);
+        }
+        Ok(solved)
+    })?;
     let mut tiled = Tiled {
         rows: ones(n, n),
         objects: ones(n, extents.len()),
