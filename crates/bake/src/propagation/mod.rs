@@ -11,7 +11,8 @@
 //! `c` to `b`. No plane is crossed twice, so this ends, and not in a cell that has `b`. It needs no order of the cells: they may lean on each other in
 //! circles, and any `H` of which this is true is right. `is_sound` repeats that check without the solver.
 //!
-//! Rays come first: what they reach is visible, and need not be asked about. They only choose.
+//! Rays come first: what they reach is visible, and need not be asked about. They only choose. A filler is asked about once a cell needs it in `H`, and
+//! not before.
 
 mod lines;
 mod solve;

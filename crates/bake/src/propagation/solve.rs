@@ -15,7 +15,7 @@ use std::sync::Arc;
 const AIMED: usize = 4;
 
 /// Rays from a cell to the box of an object before anything is asked about the cell.
-const BEFORE: usize = 16;
+const FIRST_RAYS: usize = 16;
 
 /// How many triangles a chain has.
 const LONGEST_CHAIN: usize = 300;
@@ -319,7 +319,7 @@ impl One<'_> {
     fn aim(&mut self, cell: u32) -> Option<[Point3; 2]> {
         let (b, around) = (&self.of.tiling.boxes()[cell as usize], self.target.bounds());
         self.object?;
-        (0..BEFORE).find_map(|_| {
+        (0..FIRST_RAYS).find_map(|_| {
             let (from, to) = (self.random.point(b), self.random.point(around));
             let way: Point3 = std::array::from_fn(|k| to[k] - from[k]);
             let (found, at) = hit(self.of.rays, from, way);
@@ -339,7 +339,7 @@ impl One<'_> {
             }
             if tiling.is_open(cell, s) {
                 if self.memory.are_blocked[cell as usize] >> s & 1 == 0 {
-                    self.ask_first(cell, &mut is_first)?;
+                    self.aim_first(cell, &mut is_first)?;
                     self.ask_part(&b, s, tiling.whole(cell, s))?;
                     self.memory.are_blocked[cell as usize] |= 1 << s;
                 }
@@ -359,7 +359,7 @@ impl One<'_> {
                     }
                     Mark::Visible => {}
                 }
-                self.ask_first(cell, &mut is_first)?;
+                self.aim_first(cell, &mut is_first)?;
                 self.ask_part(&b, s, tiling.part(cell, near))?;
                 self.memory.is_blocked[pair] = true;
             }
@@ -368,7 +368,7 @@ impl One<'_> {
     }
 
     /// Before the first question about a cell: a free line that rays find.
-    fn ask_first(&mut self, cell: u32, is_first: &mut bool) -> Result<(), Option<[Point3; 2]>> {
+    fn aim_first(&mut self, cell: u32, is_first: &mut bool) -> Result<(), Option<[Point3; 2]>> {
         let free = if std::mem::take(is_first) { self.aim(cell) } else { None };
         free.map_or(Ok(()), |line| Err(Some(line)))
     }
