@@ -118,7 +118,18 @@ impl RaySampler {
     fn mark(&self, origin: Point3, direction: Point3, seen: &mut [bool]) {
         let Some(triangle) = self.first_triangle(origin, direction) else { return };
         let object = self.object[triangle as usize] as usize;
-        seen[object] |= !(self.is_single_sided[object] && self.shows_back(triangle, direction));
+        seen[object] |= self.shows(triangle, direction);
+    }
+
+    /// Whether somebody who looks in a direction sees a triangle, and not only the back of one that is seen from its front.
+    pub fn shows(&self, triangle: u32, direction: Point3) -> bool {
+        let object = self.object[triangle as usize] as usize;
+        !(self.is_single_sided[object] && self.shows_back(triangle, direction))
+    }
+
+    /// Whether rays pass some triangles from behind: then a ray may be free in one direction only.
+    pub fn is_one_way(&self) -> bool {
+        self.is_passed_from_behind.contains(&true)
     }
 
     fn shows_back(&self, triangle: u32, direction: Point3) -> bool {

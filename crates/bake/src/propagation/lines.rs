@@ -12,6 +12,9 @@ const N_LINES: u32 = 192;
 /// So many times its direction a ray goes that meets nothing.
 const FAR: f64 = 1e6;
 
+/// So much of its way before its end a ray back begins, apart from what is there.
+const BEFORE: f64 = 1.0 / (1u64 << 20) as f64;
+
 /// Boxes whose rays are in memory at once.
 const CHUNK: usize = 1024;
 
@@ -43,56 +46,69 @@ pub(super) fn sights(
         };
         let lines = chunk.par_iter().map(lines_of).collect::<Result<Vec<_>, Cancelled>>()?;
         for line in lines.into_iter().flatten() {
-            let ends = [(line.object, line.at), (line.behind.0, line.behind.1)];
-            let mut note = |cell: u32| {
-                for (object, at) in ends {
-                    let Some(object) = object else { continue };
-                    let bit = cell as usize * n_objects + object as usize;
-                    if known[bit / 64] >> (bit % 64) & 1 == 0 {
-                        known[bit / 64] |= 1 << (bit % 64);
-                        found[object as usize].push(Sight { cell, at });
-                    }
+            let mut note = |cell: u32, (object, at): (Option<u32>, Point3)| {
+                let Some(object) = object else { return };
+                let bit = cell as usize * n_objects + object as usize;
+                if known[bit / 64] >> (bit % 64) & 1 == 0 {
+                    known[bit / 64] |= 1 << (bit % 64);
+                    found[object as usize].push(Sight { cell, at });
                 }
             };
-            tiling.walk(line.cell, line.origin, line.at, &mut note);
-            tiling.walk(line.cell, line.origin, line.behind.1, &mut note);
+            for k in 0..2 {
+                let (here, beyond) = (line.ends[k], line.ends[1 - k]);
+                tiling.walk(line.cell, line.origin, here.1, |cell| {
+                    note(cell, here);
+                    if line.is_free_back[k] {
+                        note(cell, beyond);
+                    }
+                });
+            }
         }
     }
     Ok(found)
 }
 
-/// A free line through a point of a cell, with what it ends at.
+/// A free line through a point of a cell.
 struct Line {
     cell: u32,
     origin: Point3,
-    object: Option<u32>,
-    at: Point3,
-    behind: (Option<u32>, Point3),
+    /// What is seen in both directions, and where.
+    ends: [(Option<u32>, Point3); 2],
+    /// Whether the line is also free from these ends back to the origin.
+    is_free_back: [bool; 2],
 }
 
 fn lines_of(tiling: &Tiling, rays: &RaySampler, cell: u32) -> Vec<Line> {
     let b = &tiling.boxes()[cell as usize];
     let mut random = Random::new(u64::from(cell));
+    let is_one_way = rays.is_one_way();
     let lines = (0..N_LINES).filter_map(|_| {
         let (origin, way) = (random.point(b), random.direction());
-        let ahead = hit(rays, origin, way);
-        let behind = hit(rays, origin, way.map(|x| -x));
-        if ahead.0.is_none() && behind.0.is_none() {
+        let ends = [way, way.map(|x| -x)].map(|way| hit(rays, origin, way));
+        if ends.iter().all(|end| end.0.is_none()) {
             return None;
         }
-        Some(Line { cell, origin, object: ahead.0, at: ahead.1, behind })
+        let is_free_back = ends.map(|(_, end)| !is_one_way || is_free_back(rays, origin, end));
+        Some(Line { cell, origin, ends, is_free_back })
     });
     lines.collect()
 }
 
-/// What a ray hits first, and where; far away if it is nothing.
+/// Whether the way back is free as well from where a ray from `origin` ended: what it passed from behind may hide from its front.
+pub(super) fn is_free_back(rays: &RaySampler, origin: Point3, end: Point3) -> bool {
+    let near: Point3 = std::array::from_fn(|k| end[k] + BEFORE * (origin[k] - end[k]));
+    let way: Point3 = std::array::from_fn(|k| origin[k] - near[k]);
+    rays.first_triangle(near, way).is_none_or(|t| ray_triangle(&rays.triangles()[t as usize], near, way)[2] >= 1.0)
+}
+
+/// What somebody sees first, and where; far away if it is nothing.
 pub(super) fn hit(rays: &RaySampler, origin: Point3, way: Point3) -> (Option<u32>, Point3) {
     let along = |t: f64| std::array::from_fn(|k| origin[k] + t * way[k]);
     match rays.first_triangle(origin, way) {
         None => (None, along(FAR)),
         Some(triangle) => {
             let [_, _, t] = ray_triangle(&rays.triangles()[triangle as usize], origin, way);
-            (Some(rays.object_of(triangle)), along(t))
+            (rays.shows(triangle, way).then(|| rays.object_of(triangle)), along(t))
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The cells from which one object is hidden.
 
-use super::lines::{Sight, hit, sights};
+use super::lines::{Sight, hit, is_free_back, sights};
 use super::tiling::{Tiling, side};
 use sightlines_geometry::{Aabb, Point3, Random, orient3d};
 use sightlines_line_space::{FaceEffort, FaceExit, FaceSearch, FaceTarget, Surface};
@@ -22,6 +22,11 @@ const LONGEST_CHAIN: usize = 300;
 
 /// Cells of line space for the triangle at which the search from a neighbour failed.
 const AGAIN: u32 = 20;
+
+/// So many pairs of a box and an object get all of the effort. Where there are more, each gets less, but a tenth at least: a quarter of it found 98 % of
+/// what all of it finds in a castle of 20 million pairs, in half of the time.
+const ALL_OF_IT: f64 = 5e6;
+const LEAST: f64 = 0.1;
 
 /// Cells of line space for a question, apart from half a one for each triangle of the object. Ten times as many find hardly more.
 const EFFORT: FaceEffort = FaceEffort { cells: 60, triangle_cells: 40, attempts: 4, enough: 0.5 };
@@ -49,6 +54,8 @@ pub(crate) struct Propagation<'a> {
     sights: Vec<Vec<Sight>>,
     /// How many of the boxes are cells; the others only have to be known where cells lean on them.
     n_cells: usize,
+    /// The share of the effort.
+    share: f64,
 }
 
 /// What was found of one object.
@@ -112,7 +119,8 @@ impl<'a> Propagation<'a> {
     ) -> Result<Self, Cancelled> {
         let tiling = Tiling::new(boxes);
         let sights = sights(&tiling, rays, n_objects, observer)?;
-        Ok(Self { tiling, rays, surface, sights, n_cells })
+        let n_pairs = tiling.len() as f64 * n_objects as f64;
+        Ok(Self { tiling, rays, surface, sights, n_cells, share: (ALL_OF_IT / n_pairs).clamp(LEAST, 1.0) })
     }
 
     /// The impostor: lines leave through no side without a neighbour.
@@ -307,7 +315,9 @@ impl One<'_> {
         let (_, behind) = hit(self.of.rays, from, way.map(|x| -x));
         let mut passed = Vec::new();
         self.of.tiling.walk(cell, from, at, |cell| passed.push(cell));
-        self.of.tiling.walk(cell, from, behind, |cell| passed.push(cell));
+        if !self.of.rays.is_one_way() || is_free_back(self.of.rays, from, behind) {
+            self.of.tiling.walk(cell, from, behind, |cell| passed.push(cell));
+        }
         let mut queue = VecDeque::from([Sight { cell, at }]);
         for cell in passed {
             self.note(Sight { cell, at }, &mut queue);
@@ -386,13 +396,15 @@ impl One<'_> {
             let [a, b, c] = target.triangles()[t as usize];
             fronts && corners.iter().all(|&corner| orient3d(a, b, c, corner) <= 0.0)
         };
+        let share_of = |n: u32| (f64::from(n) * self.of.share).ceil() as u32;
         let more = u32::try_from(target.triangles().len() / 2).unwrap_or(u32::MAX);
-        let effort = FaceEffort { cells: EFFORT.cells.saturating_add(more).min(MOST_CELLS), ..EFFORT };
+        let cells = share_of(EFFORT.cells.saturating_add(more).min(MOST_CELLS));
+        let effort = FaceEffort { cells, triangle_cells: share_of(EFFORT.triangle_cells), ..EFFORT };
         self.solved.n_asked += 1;
         let search = &mut self.memory.search;
         let mut found = Ok(());
         if let Some(culprit) = self.culprit.filter(|&t| !leave_out(t)) {
-            let effort = FaceEffort { cells: AGAIN, ..effort };
+            let effort = FaceEffort { cells: share_of(AGAIN), ..effort };
             found = search.is_blocked(&exit, target, Some(culprit), &leave_out, &effort);
         }
         if found.is_ok() {

@@ -1,6 +1,8 @@
 //! Shadows over faces against segments that are traced, and against the question about whole cells.
 
+use super::lines::sights;
 use super::solve::Propagation;
+use super::tiling::Tiling;
 use proptest::prelude::*;
 use sightlines_geometry::{Aabb, Random};
 use sightlines_line_space::{FaceTarget, LineSpace, Outcome, Surface};
@@ -98,4 +100,23 @@ fn faces_find_what_whole_cells_do_and_gaps_let_lines_pass() {
     eprintln!("whole {whole}, both {both}, faces {faces}; {n_wrong} of {n_faulty} impostors caught");
     assert!(whole > 500 && both * 10 > whole * 8, "whole {whole}, both {both}, faces {faces}");
     assert!(n_wrong * 2 > n_faulty, "{n_wrong} of {n_faulty}");
+}
+
+/// A wall that hides from its front only stands between two screens: lines through it are free in one direction, and count in that one alone. The twin:
+/// that direction is found, also by lines that begin behind the wall's other side.
+#[test]
+fn lines_past_backs_are_free_in_one_direction() {
+    let across = |x: f64| {
+        let [a, b, c, d] = [[x, -9.0, -9.0], [x, 20.0, -9.0], [x, 20.0, 20.0], [x, -9.0, 20.0]];
+        vec![[a, b, c], [a, c, d]]
+    };
+    let (behind, before, wall) = (across(-4.5), across(13.5), across(4.0));
+    let rays = RaySampler::new([&behind[..], &before, &wall]).with_front_occluders(|object| object == 2);
+    let tiles = tiles(200, 1);
+    let seen = sights(&Tiling::new(tiles.clone()), &rays, 3, None).expect("nobody cancels");
+    let of = |object: usize| seen[object].iter().map(|sight| &tiles[sight.cell as usize]);
+    assert_eq!(of(0).find(|b| b.min[0] >= 4.0), None, "sees through the front of the wall");
+    let past_back = of(1).filter(|b| b.max[0] <= 4.0).count();
+    let all = tiles.iter().filter(|b| b.max[0] <= 4.0 && b.max[0] > -4.5).count();
+    assert!(past_back == all && all > 50, "{past_back} of {all}");
 }
