@@ -43,10 +43,6 @@ pub(super) struct Found {
 }
 
 impl Found {
-    pub(super) fn n_cells(&self) -> usize {
-        self.columns.iter().map(Vec::len).sum()
-    }
-
     /// The lowest and the highest end of a cell.
     pub(super) fn heights(&self) -> Option<[f64; 2]> {
         let all = self.columns.iter().flatten();

@@ -25,8 +25,7 @@ use surfaces::Surfaces;
 /// How cells at the height of eyes are cut. Lengths are in scene units.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct EyeLevelOptions {
-    /// Width of cells, at most. None for 4 m, for a half or a quarter of that where this makes few cells, or for twice that as often as the limit of
-    /// cells needs.
+    /// Width of cells, at most. None for 4 m, or twice that as often as the limit of cells needs.
     pub cell_size: Option<f64>,
     /// From how far to how far above a floor eyes are. None for 0 to 2.5 m.
     pub eye_height: Option<[f64; 2]>,
@@ -200,7 +199,7 @@ pub fn eye_level_cells(
     };
     let mut cell_size = options.cell_size.unwrap_or(WIDTH * metre);
     let mut n_doublings = 0;
-    let (mut grid, mut found) = loop {
+    let (grid, found) = loop {
         match cut(cell_size)? {
             Some(found) => break found,
             // A width beyond all that is there is one column.
@@ -210,11 +209,6 @@ pub fn eye_level_cells(
             None => (cell_size, n_doublings) = (cell_size * 2.0, n_doublings + 1),
         }
     };
-    let mut n_halvings = if options.cell_size.is_none() && n_doublings == 0 { MOST_HALVINGS } else { 0 };
-    while n_halvings > 0 && (1..FEW).contains(&found.n_cells()) {
-        let Some(narrower) = cut(cell_size / 2.0)? else { break };
-        ((grid, found), cell_size, n_halvings) = (narrower, cell_size / 2.0, n_halvings - 1);
-    }
     let heights = found.heights().ok_or(EyeLevelError::NoFloor)?;
     let bounds = grid.bounds(heights);
     bounds.min.into_iter().chain(bounds.max).try_for_each(|x| match check_coordinate(x) {
@@ -242,10 +236,6 @@ pub fn eye_level_cells(
 
 /// The width of cells where nothing else is said, in metres.
 const WIDTH: f64 = 4.0;
-
-/// Fewer cells than this are narrow rooms, of which narrower cells see less: then the width is halved, so often at most.
-const FEW: usize = 1000;
-const MOST_HALVINGS: u32 = 2;
 
 /// More parts of triangles in columns than this take too long: the columns are too narrow for the scene.
 const MOST_PIECES: usize = 1 << 24;

@@ -147,7 +147,7 @@ fn eyes(scene: &Scene, up: usize, floors: &[&str], boxes: &[Aabb<3>], n: usize) 
             if s >= 0.0 && t >= 0.0 && s + t <= 1.0 && at > 1e-6 { least.min(at) } else { least }
         });
         let mut eye = p;
-        eye[up] += random.unit() * clearance.min(2.2);
+        eye[up] += random.unit() * clearance.min(2.5);
         // Not in a house, which is solid.
         let house = |o: &SceneObject| o.name.contains("house") && o.bounds().contains(eye);
         if clearance >= 1.3 && !scene.objects().iter().any(house) {
@@ -172,10 +172,10 @@ fn eyes_above_floors_are_in_cells() {
         eprintln!("{name}: {n} eyes, {lost} lost; {:?}", found.summary);
         assert!(n > 300 && lost == 0, "{name}: {n} eyes, {lost} of them in no cell");
         // The twin: cells are no higher than they have to be, and few places that are no eye's are in them.
-        assert!(found.cells().iter().all(|b| b.max[up.idx()] - b.min[up.idx()] < 1.5 * 2.2 * 1.5), "{name}");
+        assert!(found.cells().iter().all(|b| b.max[up.idx()] - b.min[up.idx()] < 1.5 * 2.5 * 1.5), "{name}");
         let volume = |b: &Aabb<3>| (0..3).map(|k| b.max[k] - b.min[k]).product::<f64>();
         let share = found.cells().iter().map(volume).sum::<f64>() / volume(&found.bounds);
-        assert!(share < 0.9, "{name}: {share}");
+        assert!(share < 0.95, "{name}: {share}");
         // The impostor: without every third cell.
         let some: Vec<Aabb<3>> = (0..).zip(found.cells()).filter(|(i, _)| i % 3 > 0).map(|(_, b)| *b).collect();
         assert!(eyes(&scene, up.idx(), &floors, &some, 2000)[1] > 20, "{name}");
@@ -251,7 +251,7 @@ fn floors_without_room_and_slivers_are_left_out() {
 
 #[test]
 fn close_floors_share_layers() {
-    // Plates 1.5 m apart: a run of 7.5 + 2.2 m; cut at plates.
+    // Plates 1.5 m apart: a run of 7.5 + 2.5 m; cut at plates.
     let plate = |i: u32| block(&boxed([0.0, 0.0, 1.5 * f64::from(i)], [4.0, 4.0, 1.5 * f64::from(i) + 0.125]), false);
     let found = cut(&scene((0..6).map(plate).collect()), Axis::Z, &metres());
     let heights: Vec<f64> = found.cells().iter().map(|b| b.min[2]).collect();
@@ -306,7 +306,7 @@ fn units_are_recognised() {
     assert_eq!(mistaken(&tower, Axis::Y, Some(1.0), &[0.001, 1.0, 32.0]).len(), 2);
     let told = EyeLevelOptions { units_per_metre: Some(2.0), ..EyeLevelOptions::default() };
     let summary = cut(&tower, Axis::Y, &told).summary;
-    assert_eq!((summary.units_from, summary.cell_size, summary.eye_height), (UnitsFrom::Options, 8.0, [0.0, 4.4]));
+    assert_eq!((summary.units_from, summary.cell_size, summary.eye_height), (UnitsFrom::Options, 8.0, [0.0, 5.0]));
 }
 
 #[test]
@@ -389,10 +389,9 @@ fn real_scenes_have_cells_where_people_walk() {
         return;
     };
     let folder = std::path::Path::new(&data).join("scenes");
-    // The least share of the places, in percent. Many of the castle's are higher above the ground than eyes, and many of the streets of Delft are over gaps
-    // between its meshes.
+    // The least share of the places, in percent. Many of the streets of Delft are over gaps between its meshes.
     let scenes = [
-        ("castle", "walk", 60),
+        ("castle", "walk", 98),
         ("sponza", "walk", 98),
         ("pandora", "walk", 98),
         ("duplex", "walk", 98),

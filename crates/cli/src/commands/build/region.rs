@@ -45,7 +45,7 @@ pub(crate) struct RegionArgs {
     #[arg(long, value_name = "SIZE", value_parser = crate::numbers::above_zero, allow_hyphen_values = true, conflicts_with_all = ["cells", "grid"])]
     cell_size: Option<f64>,
     /// Scenes in space: cells above floors, where eyes are from LOW to HIGH units above the ground, and 4 m wide or by --cell-size. Shadows are
-    /// propagated from cell to cell, through boxes that fill the rest of the scene. For people 0,2.2
+    /// propagated from cell to cell, through boxes that fill the rest of the scene. For people 0,2.5
     #[arg(long, value_name = "LOW,HIGH", value_parser = heights, conflicts_with_all = ["cells", "grid", "n_cells"])]
     eye_height: Option<[f64; 2]>,
     #[command(flatten)]
