@@ -407,11 +407,19 @@ impl One<'_> {
             let effort = FaceEffort { cells: share_of(AGAIN), ..effort };
             found = search.is_blocked(&exit, target, Some(culprit), &leave_out, &effort);
         }
-        if found.is_ok() {
-            found = search.is_blocked(&exit, target, None, &leave_out, &effort);
-            if let Err(failed) = &found {
-                self.culprit = failed.triangle.or(self.culprit);
+        match found {
+            Ok(()) => {
+                found = search.is_blocked(&exit, target, None, &leave_out, &effort);
+                if let Err(failed) = &found {
+                    self.culprit = failed.triangle.or(self.culprit);
+                }
             }
+            // What touches a triangle may still block all lines to the box around it.
+            Err(failed) if failed.line.is_none() => {
+                let effort = FaceEffort { cells: share_of(AGAIN), ..effort };
+                found = search.is_blocked(&exit, target, None, &leave_out, &effort);
+            }
+            Err(_) => {}
         }
         self.solved.n_failed += u64::from(found.is_err());
         found.map_err(|failed| failed.line)
