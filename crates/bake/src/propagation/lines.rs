@@ -12,7 +12,7 @@ const N_LINES: u32 = 192;
 /// So many times its direction a ray goes that meets nothing.
 const FAR: f64 = 1e6;
 
-/// So much of its way before its end a ray back begins, apart from what is there.
+/// A ray back starts this share of the way before the end, so that it does not hit the surface there. Rays only choose; nothing is hidden by them.
 const BEFORE: f64 = 1.0 / (1u64 << 20) as f64;
 
 /// Boxes whose rays are in memory at once.
@@ -94,7 +94,8 @@ fn lines_of(tiling: &Tiling, rays: &RaySampler, cell: u32) -> Vec<Line> {
     lines.collect()
 }
 
-/// Whether the way back is free as well from where a ray from `origin` ended: what it passed from behind may hide from its front.
+/// Whether a segment that is free from `origin` to `end` is also free from `end` to `origin`: a wall that the ray passed from behind may hide from its
+/// front.
 pub(super) fn is_free_back(rays: &RaySampler, origin: Point3, end: Point3) -> bool {
     let near: Point3 = std::array::from_fn(|k| end[k] + BEFORE * (origin[k] - end[k]));
     let way: Point3 = std::array::from_fn(|k| origin[k] - near[k]);
