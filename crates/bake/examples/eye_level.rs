@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("  {:?}", found.summary);
     let up = file.info.up.idx();
     let mut tall: Vec<f64> =
-        found.cells().iter().map(|b| (b.max[up] - b.min[up]) / found.summary.units_per_metre).collect();
+        found.cells.iter().map(|b| (b.max[up] - b.min[up]) / found.summary.units_per_metre).collect();
     tall.sort_by(f64::total_cmp);
     println!("  heights of cells: {:?}", [0, 1, 5, 9, 10].map(|i| tall[(tall.len() - 1) * i / 10]));
     if let Some(cells) = rest.first().filter(|p| !p.is_empty()) {
@@ -40,7 +40,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             .into_iter()
             .map(|cell| [0, 1, 2].map(|k| (cell.bounds.min[k] + cell.bounds.max[k]) / 2.0 * by));
         let eyes: Vec<_> = eyes.collect();
-        let inside = eyes.iter().filter(|&&eye| found.cells().iter().any(|b| b.contains(eye))).count();
+        let inside = eyes.iter().filter(|&&eye| found.cells.iter().any(|b| b.contains(eye))).count();
         println!("  {inside} of {} eyes in cells", eyes.len());
     }
     Ok(())

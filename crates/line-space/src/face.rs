@@ -152,6 +152,8 @@ struct Question {
     limit: Option<Limit>,
     /// Where the chain began that did best for the question of which this is a part.
     hint: Option<u32>,
+    /// The edge at which it was cut out of that.
+    cut_at: Option<u32>,
 }
 
 /// What a chain, or none, made of a question.
@@ -220,7 +222,7 @@ impl FaceSearch {
         let from = End::rectangle(&exit.part, exit.axis).ok_or(undecided)?;
         self.finder.look_from(volume);
         self.waiting.clear();
-        let first = Question { from, to: Piece::Node(0), limit: None, hint: self.last };
+        let first = Question { from, to: Piece::Node(0), limit: None, hint: self.last, cut_at: None };
         match only {
             None => self.waiting.push(first),
             Some(t) => self.add_triangle(exit, target, &first, t),
@@ -316,7 +318,7 @@ impl FaceSearch {
             let mut question = Question { limit: side.map(|side| side.limit), ..question };
             let is_ready = side.is_none_or(|side| shaft.limit(side, &mut random));
             let answer = if is_ready {
-                self.block(surface, &shaft, &end, &mut question.hint, effort)
+                self.block(surface, &shaft, &end, &mut question, effort)
             } else {
                 Answer::Open(Gap::Other)
             };
@@ -331,6 +333,7 @@ impl FaceSearch {
                 Answer::Open(gap) => gap,
             };
             let halves = split(surface, &shaft, &gap);
+            question.cut_at = if let Gap::Edge { edge, .. } = gap { Some(edge) } else { None };
             match (question.to, halves) {
                 (Piece::Node(k), halves) => match halves.filter(|halves| halves[0].from != cell.from) {
                     Some(halves) => {
@@ -355,12 +358,13 @@ impl FaceSearch {
         surface: &Surface,
         shaft: &Shaft,
         target: &Target,
-        hint: &mut Option<u32>,
+        question: &mut Question,
         effort: &FaceEffort,
     ) -> Answer {
         self.finder.next_cell();
         self.folding.clear();
         let (mut best, mut most) = ((f64::NEG_INFINITY, Gap::Other), None::<(f64, Blocked, u32)>);
+        let Question { hint, cut_at, .. } = question;
         let first = hint.filter(|&t| self.finder.blocks(surface, shaft, t));
         let mut is_free = false;
         for is_hinted in [true, false] {
@@ -398,7 +402,9 @@ impl FaceSearch {
                         if failure.can_fold {
                             self.folding.push(start);
                         }
-                        let promise = promise(surface, shaft, &failure.gap);
+                        // To cut at the same edge again and again converges to lines that touch it.
+                        let is_again = matches!(failure.gap, Gap::Edge { edge, .. } if Some(edge) == *cut_at);
+                        let promise = promise(surface, shaft, &failure.gap) - f64::from(u8::from(is_again));
                         if promise > best.0 {
                             best = (promise, failure.gap);
                             *hint = Some(start);

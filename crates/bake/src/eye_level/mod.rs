@@ -2,12 +2,10 @@
 //!
 //! What a cell sees depends on its height more than on its width. A cell that is as high as people are sees little more than a point in it, even if
 //! it is some metres wide; from a cube of a house's height most of a village is seen. So here floors are found, and above them cells of the
-//! height of eyes. *Fillers* tile the rest of the scene's box, in few and large boxes: nobody is there as a rule, but whoever follows lines from
-//! box to box needs all of them.
+//! height of eyes.
 //!
 //! Floors are found by rounded numbers and by rays, which decide only where cells are. Whoever is in no cell sees everything.
 
-mod fill;
 mod floors;
 mod grid;
 mod surfaces;
@@ -104,8 +102,6 @@ pub struct LeftOut {
 pub struct EyeLevelSummary {
     /// Cells.
     pub n_cells: usize,
-    /// Boxes that tile the rest.
-    pub n_fillers: usize,
     /// The most cells above each other.
     pub n_layers: usize,
     /// Columns with a cell.
@@ -124,32 +120,16 @@ pub struct EyeLevelSummary {
     pub left_out: LeftOut,
 }
 
-/// Boxes that tile a box: closed, with disjoint insides, and those that share a part of a face have equal coordinates there, bit by bit.
+/// Cells above floors: closed boxes with disjoint insides. Those that share a part of a face have equal coordinates there, bit by bit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EyeLevelCells {
-    /// What they tile: around the region, all that is drawn (but for what moves anywhere), and eyes above the highest floor.
-    pub bounds: Aabb<3>,
-    /// The cells, in an order in which those near to each other are near as a rule; then the fillers.
-    pub boxes: Vec<Aabb<3>>,
-    /// How many of the boxes are cells.
-    pub n_cells: usize,
+    /// The cells, in an order in which those near to each other are near as a rule.
+    pub cells: Vec<Aabb<3>>,
     /// What was cut.
     pub summary: EyeLevelSummary,
 }
 
-impl EyeLevelCells {
-    /// The cells.
-    pub fn cells(&self) -> &[Aabb<3>] {
-        &self.boxes[..self.n_cells]
-    }
-
-    /// The fillers.
-    pub fn fillers(&self) -> &[Aabb<3>] {
-        &self.boxes[self.n_cells..]
-    }
-}
-
-/// Cuts a region of a scene, or all of it, into cells above floors and fillers.
+/// Cuts a region of a scene, or all of it, into cells above floors.
 ///
 /// The region is divided into columns of equal width. In each of them cells begin at the floors, and end as far above them as eyes are.
 /// Floors are upward-facing triangles of all that hides, of at most some 50 degrees; faces that are seen from both sides may face either way. A floor on
@@ -161,7 +141,7 @@ impl EyeLevelCells {
 ///
 /// * `up`: the axis that points upwards
 /// * `region`: cells are only there; None for everywhere
-/// * `max_cells`: the limit of cells, without fillers
+/// * `max_cells`: the limit of cells
 ///
 /// Cost: a ray or some for each triangle of a floor in each column.
 ///
@@ -190,7 +170,7 @@ pub fn eye_level_cells(
     };
     let eye_height = options.eye_height.unwrap_or([0.0, 2.5 * metre]);
     let lengths = Lengths { metre, eye_height };
-    let cut = |cell_size: f64| match Grid::new(&region, &all, up, cell_size) {
+    let cut = |cell_size: f64| match Grid::new(&region, up, cell_size) {
         Some(grid) if surfaces.n_pieces(&grid) <= MOST_PIECES => {
             let found = floors::find(&surfaces, &grid, &lengths, max_cells as usize, progress)?;
             Ok::<_, Cancelled>(found.map(|found| (grid, found)))
@@ -210,18 +190,10 @@ pub fn eye_level_cells(
         }
     };
     let heights = found.heights().ok_or(EyeLevelError::NoFloor)?;
-    let bounds = grid.bounds(heights);
-    bounds.min.into_iter().chain(bounds.max).try_for_each(|x| match check_coordinate(x) {
-        Ok(_) => Ok(()),
-        Err(error) => Err(EyeLevelError::Bounds(error)),
-    })?;
-    let mut boxes = fill::cells(&grid, &found.columns);
-    let n_cells = boxes.len();
-    let tall = eye_height[1] - eye_height[0];
-    boxes.extend(fill::fillers(&grid, &found.columns, [bounds.min[up], bounds.max[up]], tall));
+    heights.into_iter().try_for_each(|x| check_coordinate(x).map(|_| ())).map_err(EyeLevelError::Bounds)?;
+    let cells = grid.cells(&found.columns);
     let summary = EyeLevelSummary {
-        n_cells,
-        n_fillers: boxes.len() - n_cells,
+        n_cells: cells.len(),
         n_layers: found.columns.iter().map(Vec::len).max().unwrap_or(0),
         n_columns: found.columns.iter().filter(|column| !column.is_empty()).count(),
         units_per_metre: metre,
@@ -231,7 +203,7 @@ pub fn eye_level_cells(
         eye_height,
         left_out: found.left_out,
     };
-    Ok(EyeLevelCells { bounds, boxes, n_cells, summary })
+    Ok(EyeLevelCells { cells, summary })
 }
 
 /// The width of cells where nothing else is said, in metres.

@@ -6,7 +6,7 @@ use sightlines_geometry::{Point3, Random, ray_triangle};
 use sightlines_multifocal::RaySampler;
 use sightlines_progress::{Cancelled, Counter, Observer};
 
-/// Rays from each box in both directions of a line.
+/// Rays from each cell in both directions of a line.
 const N_LINES: u32 = 192;
 
 /// So many times its direction a ray goes that meets nothing.
@@ -15,7 +15,7 @@ const FAR: f64 = 1e6;
 /// A ray back starts this share of the way before the end, so that it does not hit the surface there. Rays only choose; nothing is hidden by them.
 const BEFORE: f64 = 1.0 / (1u64 << 20) as f64;
 
-/// Boxes whose rays are in memory at once.
+/// Cells whose rays are in memory at once.
 const CHUNK: usize = 1024;
 
 /// Where a cell sees an object.
@@ -56,7 +56,7 @@ pub(super) fn sights(
             };
             for k in 0..2 {
                 let (here, beyond) = (line.ends[k], line.ends[1 - k]);
-                tiling.walk(line.cell, line.origin, here.1, |cell| {
+                tiling.passed(line.origin, here.1, |cell| {
                     note(cell, here);
                     if line.is_free_back[k] {
                         note(cell, beyond);
@@ -70,7 +70,6 @@ pub(super) fn sights(
 
 /// A free line through a point of a cell.
 struct Line {
-    cell: u32,
     origin: Point3,
     /// What is seen in both directions, and where.
     ends: [(Option<u32>, Point3); 2],
@@ -89,7 +88,7 @@ fn lines_of(tiling: &Tiling, rays: &RaySampler, cell: u32) -> Vec<Line> {
             return None;
         }
         let is_free_back = ends.map(|(_, end)| !is_one_way || is_free_back(rays, origin, end));
-        Some(Line { cell, origin, ends, is_free_back })
+        Some(Line { origin, ends, is_free_back })
     });
     lines.collect()
 }

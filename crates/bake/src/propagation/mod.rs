@@ -1,6 +1,6 @@
 //! Shadows propagated over the faces between cells: what is hidden from thousands of cells at once.
 //!
-//! Cells that tile a region share faces. If an object is hidden from the cell beyond a face, no line through that face reaches it, so only faces whose
+//! Cells share faces. If an object is hidden from the cell beyond a face, no line through that face reaches it, so only faces whose
 //! neighbour may see the object need a question: are all lines blocked that leave the cell through this face and end at the object? What
 //! is asked grows with the surface of an object's shadow, not with its volume.
 //!
@@ -11,8 +11,7 @@
 //! `c` to `b`. No plane is crossed twice, so this ends, and not in a cell that has `b`. It needs no order of the cells: they may lean on each other in
 //! circles, and any `H` of which this is true is right. `is_sound` repeats that check without the solver.
 //!
-//! Rays come first: what they reach is visible, and need not be asked about. They only choose. A filler is asked about once a cell needs it in `H`, and
-//! not before.
+//! Rays come first: what they reach is visible, and need not be asked about. They only choose.
 
 mod lines;
 mod solve;

@@ -1,7 +1,7 @@
 //! The cells from which one object is hidden.
 
 use super::lines::{Sight, hit, is_free_back, sights};
-use super::tiling::{Tiling, side};
+use super::tiling::{Part, Tiling};
 use sightlines_geometry::{Aabb, Point3, Random, orient3d};
 use sightlines_line_space::{FaceEffort, FaceExit, FaceSearch, FaceTarget, Surface};
 use sightlines_multifocal::{RaySampler, Volume};
@@ -23,9 +23,10 @@ const LONGEST_CHAIN: usize = 300;
 /// Cells of line space for the triangle at which the search from a neighbour failed.
 const AGAIN: u32 = 20;
 
-/// Up to this number of pairs of a box and an object, each question gets the full effort; beyond it the effort shrinks in proportion, down to
-/// [`LEAST_SHARE`]. Measured on a castle with 20 million pairs: a quarter of the effort finds 98 % of what the full effort finds, in half the time.
-const FULL_EFFORT_PAIRS: f64 = 5e6;
+/// Up to this number of pairs of a cell and an object, each question gets the full effort; beyond it the effort shrinks in proportion, down to
+/// [`LEAST_SHARE`]. Measured on a castle with 9.5 million pairs: a tenth of the effort lists 23.1 % of the objects where a quarter lists 21.5, in
+/// three quarters of the time.
+const FULL_EFFORT_PAIRS: f64 = 1.5e6;
 const LEAST_SHARE: f64 = 0.1;
 
 /// Cells of line space for a question, apart from half a one for each triangle of the object. Ten times as many find hardly more.
@@ -34,26 +35,13 @@ const EFFORT: FaceEffort = FaceEffort { cells: 60, triangle_cells: 40, attempts:
 /// The most of them.
 const MOST_CELLS: u32 = 400;
 
-/// What is known of a cell.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Mark {
-    /// A filler on which no cell leaned yet.
-    Unasked,
-    /// Hidden from, if it stays so.
-    Hidden,
-    /// May see the object.
-    Visible,
-}
-
-/// A tiling of boxes in a scene, ready for one object after the other.
+/// Cells in a scene, ready for one object after the other.
 #[derive(Debug)]
 pub(crate) struct Propagation<'a> {
     tiling: Tiling,
     rays: &'a RaySampler,
     surface: Arc<Surface>,
     sights: Vec<Vec<Sight>>,
-    /// How many of the boxes are cells; the others only have to be known where cells lean on them.
-    n_cells: usize,
     /// Which share of the full effort each question gets.
     share: f64,
 }
@@ -61,9 +49,9 @@ pub(crate) struct Propagation<'a> {
 /// What was found of one object.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Solved {
-    /// The boxes from which it is hidden: of fillers only those on which cells lean.
+    /// The cells from which it is hidden.
     pub(crate) hidden: Vec<Range<u32>>,
-    /// Boxes that rays found to see it.
+    /// Cells that rays found to see it.
     pub(crate) n_seen: u64,
     /// Questions, and those that found no proof.
     pub(crate) n_asked: u64,
@@ -94,45 +82,35 @@ impl Solved {
 #[derive(Debug)]
 pub(crate) struct Memory {
     search: FaceSearch,
-    marks: Vec<Mark>,
-    /// By pair of neighbours: whether the part of a side was found blocked.
+    /// By cell: whether it may see the object. All others are those from which it is hidden, if they stay so.
+    is_visible: Vec<bool>,
+    /// By part of a side: whether it was found blocked.
     is_blocked: Vec<bool>,
-    /// The same of open sides, a bit for each side of a box.
-    are_blocked: Vec<u8>,
     waits: Vec<bool>,
 }
 
 impl<'a> Propagation<'a> {
-    /// Shoots the rays of all cells. O(n log n) of triangles, and of boxes.
+    /// Shoots the rays of all cells. O(n log n) of triangles, and of cells.
     ///
-    /// * `boxes`: the cells, then the fillers
     /// * `rays`: of which each object is one
     ///
     /// # Errors
     /// [`Cancelled`] by the observer.
     pub(crate) fn new(
-        (boxes, n_cells): (Vec<Aabb<3>>, usize),
+        cells: Vec<Aabb<3>>,
         rays: &'a RaySampler,
         surface: Arc<Surface>,
         n_objects: usize,
         observer: Option<&dyn Observer>,
     ) -> Result<Self, Cancelled> {
-        let tiling = Tiling::new(boxes);
+        let tiling = Tiling::new(cells);
         let sights = sights(&tiling, rays, n_objects, observer)?;
         let n_pairs = tiling.len() as f64 * n_objects as f64;
-        Ok(Self {
-            tiling,
-            rays,
-            surface,
-            sights,
-            n_cells,
-            share: (FULL_EFFORT_PAIRS / n_pairs).clamp(LEAST_SHARE, 1.0),
-        })
+        Ok(Self { tiling, rays, surface, sights, share: (FULL_EFFORT_PAIRS / n_pairs).clamp(LEAST_SHARE, 1.0) })
     }
 
-    /// The impostor: lines leave through no side without a neighbour.
     #[cfg(test)]
-    pub(super) fn close_open_sides(&mut self) {
+    pub(super) fn close(&mut self) {
         self.tiling.close();
     }
 
@@ -140,24 +118,20 @@ impl<'a> Propagation<'a> {
         let n = self.tiling.len();
         Memory {
             search: FaceSearch::new(self.surface.clone(), LONGEST_CHAIN),
-            marks: vec![Mark::Hidden; n],
-            is_blocked: vec![false; self.tiling.n_pairs()],
-            are_blocked: vec![0; n],
+            is_visible: vec![false; n],
+            is_blocked: vec![false; self.tiling.n_parts()],
             waits: vec![false; n],
         }
     }
 
-    /// Finds from which boxes an object is hidden; the same whatever was asked before.
+    /// Finds from which cells an object is hidden; the same whatever was asked before.
     ///
     /// * `object`: its index, if it is one of the objects that rays find
     /// * `fronts`: whether only the fronts of its triangles are seen
     pub(crate) fn solve(&self, memory: &mut Memory, object: Option<u32>, target: &FaceTarget, fronts: bool) -> Solved {
         memory.search.forget();
-        let (cells, fillers) = memory.marks.split_at_mut(self.n_cells);
-        cells.fill(Mark::Hidden);
-        fillers.fill(Mark::Unasked);
+        memory.is_visible.fill(false);
         memory.is_blocked.fill(false);
-        memory.are_blocked.fill(0);
         let n_cells = memory.search.n_cells();
         let mut one = One {
             of: self,
@@ -197,8 +171,9 @@ struct One<'a> {
     solved: Solved,
 }
 
-fn exit(volume: &Aabb<3>, side: usize, part: Aabb<3>) -> FaceExit {
-    FaceExit { volume: *volume, axis: side / 2, upward: side % 2 == 1, part }
+fn exit(volume: &Aabb<3>, part: &Part) -> FaceExit {
+    let side = usize::from(part.side);
+    FaceExit { volume: *volume, axis: side / 2, upward: side % 2 == 1, part: part.bounds }
 }
 
 fn meet(a: &Aabb<3>, b: &Aabb<3>) -> bool {
@@ -207,20 +182,14 @@ fn meet(a: &Aabb<3>, b: &Aabb<3>) -> bool {
 
 impl One<'_> {
     fn is_hidden(&self, cell: u32) -> bool {
-        self.memory.marks[cell as usize] == Mark::Hidden
-    }
-
-    fn is_visible(&self, cell: u32) -> bool {
-        self.memory.marks[cell as usize] == Mark::Visible
+        !self.memory.is_visible[cell as usize]
     }
 
     /// Marks what touches the object, what rays find to see it, and from there on neighbours from which it is seen as well.
     fn see(&mut self) {
         let around = self.target.bounds();
-        for (mark, b) in self.memory.marks.iter_mut().zip(self.of.tiling.boxes()) {
-            if meet(b, around) {
-                *mark = Mark::Visible;
-            }
+        for (is_visible, b) in self.memory.is_visible.iter_mut().zip(self.of.tiling.boxes()) {
+            *is_visible |= meet(b, around);
         }
         let of = self.of;
         let Some(object) = self.object.filter(|&object| !of.sights[object as usize].is_empty()) else {
@@ -233,22 +202,21 @@ impl One<'_> {
         self.follow(queue);
     }
 
-    /// Marks boxes from which a point of the box around the object is seen: of what rays do not find, as it stops none.
+    /// Marks cells from which a point of the box around the object is seen: of what rays do not find, as it stops none.
     fn see_box(&mut self) {
         let (of, around) = (self.of, self.target.bounds());
-        for (mark, b) in self.memory.marks.iter_mut().zip(of.tiling.boxes()) {
-            let volume = Volume::new(*b).ok().filter(|_| *mark != Mark::Visible);
+        for (is_visible, b) in self.memory.is_visible.iter_mut().zip(of.tiling.boxes()) {
+            let volume = Volume::new(*b).ok().filter(|_| !*is_visible);
             if volume.is_some_and(|volume| of.rays.sees(&volume, around, AIMED as u32)) {
-                *mark = Mark::Visible;
+                *is_visible = true;
                 self.solved.n_seen += 1;
             }
         }
     }
 
     fn note(&mut self, sight: Sight, queue: &mut VecDeque<Sight>) {
-        let mark = &mut self.memory.marks[sight.cell as usize];
-        if *mark != Mark::Visible {
-            *mark = Mark::Visible;
+        if self.is_hidden(sight.cell) {
+            self.memory.is_visible[sight.cell as usize] = true;
             self.solved.n_seen += 1;
             self.changed.push(sight.cell);
             queue.push_back(sight);
@@ -259,18 +227,18 @@ impl One<'_> {
     fn follow(&mut self, mut queue: VecDeque<Sight>) {
         let (of, Some(object)) = (self.of, self.object) else { return };
         while let Some(sight) = queue.pop_front() {
-            for (_, near) in of.tiling.neighbours(sight.cell) {
-                if self.is_visible(near.of) {
+            for near in of.tiling.neighbours(sight.cell) {
+                if !self.is_hidden(near) {
                     continue;
                 }
-                let b = &of.tiling.boxes()[near.of as usize];
+                let b = &of.tiling.boxes()[near as usize];
                 for _ in 0..AIMED {
                     let origin = self.random.point(b);
                     let way: Point3 = std::array::from_fn(|k| sight.at[k] - origin[k]);
                     let (found, at) = hit(of.rays, origin, way);
                     if found == Some(object) {
                         let mut passed = Vec::new();
-                        of.tiling.walk(near.of, origin, at, |cell| passed.push(cell));
+                        of.tiling.passed(origin, at, |cell| passed.push(cell));
                         for cell in passed {
                             self.note(Sight { cell, at }, &mut queue);
                         }
@@ -281,7 +249,7 @@ impl One<'_> {
         }
     }
 
-    /// Asks about faces until each is blocked, or has a box behind it from which the object is hidden, or its cell may see the object.
+    /// Asks about parts of faces until each is blocked, or has a cell behind it from which the object is hidden, or its cell may see the object.
     fn ask_all(&mut self) {
         let tiling = &self.of.tiling;
         let mut queue: VecDeque<u32> = (0..tiling.len() as u32).filter(|&cell| self.is_hidden(cell)).collect();
@@ -293,19 +261,17 @@ impl One<'_> {
                 continue;
             }
             self.changed.clear();
-            let Err(line) = self.ask(cell, &mut queue) else { continue };
-            self.memory.marks[cell as usize] = Mark::Visible;
+            let Err(line) = self.ask(cell) else { continue };
+            self.memory.is_visible[cell as usize] = true;
             self.changed.push(cell);
             if let Some(line) = line {
                 self.confirm(cell, line);
             }
             // What leaned on them has to be looked at again.
             for k in 0..self.changed.len() {
-                for (_, near) in tiling.neighbours(self.changed[k]) {
-                    let waits = &mut self.memory.waits[near.of as usize];
-                    if self.memory.marks[near.of as usize] == Mark::Hidden && !*waits {
-                        *waits = true;
-                        queue.push_back(near.of);
+                for near in tiling.neighbours(self.changed[k]) {
+                    if self.is_hidden(near) && !std::mem::replace(&mut self.memory.waits[near as usize], true) {
+                        queue.push_back(near);
                     }
                 }
             }
@@ -321,9 +287,9 @@ impl One<'_> {
         }
         let (_, behind) = hit(self.of.rays, from, way.map(|x| -x));
         let mut passed = Vec::new();
-        self.of.tiling.walk(cell, from, at, |cell| passed.push(cell));
+        self.of.tiling.passed(from, at, |cell| passed.push(cell));
         if !self.of.rays.is_one_way() || is_free_back(self.of.rays, from, behind) {
-            self.of.tiling.walk(cell, from, behind, |cell| passed.push(cell));
+            self.of.tiling.passed(from, behind, |cell| passed.push(cell));
         }
         let mut queue = VecDeque::from([Sight { cell, at }]);
         for cell in passed {
@@ -344,42 +310,20 @@ impl One<'_> {
         })
     }
 
-    /// Whether all parts of the sides of a cell that face the object, and have no hidden box behind them, are blocked; or else a free line, if one
-    /// was found.
-    fn ask(&mut self, cell: u32, queue: &mut VecDeque<u32>) -> Result<(), Option<[Point3; 2]>> {
+    /// Whether all parts of the sides of a cell that face the object, and have no cell behind them from which it is hidden, are blocked; or else a free
+    /// line, if one was found.
+    fn ask(&mut self, cell: u32) -> Result<(), Option<[Point3; 2]>> {
         let tiling = &self.of.tiling;
         let b = tiling.boxes()[cell as usize];
         let mut is_first = true;
-        for s in 0..6 {
-            if !self.faces(&b, s) {
+        for (k, part) in tiling.parts(cell) {
+            if self.memory.is_blocked[k] || !self.faces(&b, part) || part.near.is_some_and(|near| self.is_hidden(near))
+            {
                 continue;
             }
-            if tiling.is_open(cell, s) {
-                if self.memory.are_blocked[cell as usize] >> s & 1 == 0 {
-                    self.aim_first(cell, &mut is_first)?;
-                    self.ask_part(&b, s, tiling.whole(cell, s))?;
-                    self.memory.are_blocked[cell as usize] |= 1 << s;
-                }
-                continue;
-            }
-            for (pair, near) in tiling.neighbours(cell).filter(|(_, near)| usize::from(near.side) == s) {
-                if self.memory.is_blocked[pair] {
-                    continue;
-                }
-                match self.memory.marks[near.of as usize] {
-                    Mark::Hidden => continue,
-                    Mark::Unasked => {
-                        self.memory.marks[near.of as usize] = Mark::Hidden;
-                        self.memory.waits[near.of as usize] = true;
-                        queue.push_back(near.of);
-                        continue;
-                    }
-                    Mark::Visible => {}
-                }
-                self.aim_first(cell, &mut is_first)?;
-                self.ask_part(&b, s, tiling.part(cell, near))?;
-                self.memory.is_blocked[pair] = true;
-            }
+            self.aim_first(cell, &mut is_first)?;
+            self.ask_part(&b, part)?;
+            self.memory.is_blocked[k] = true;
         }
         Ok(())
     }
@@ -390,14 +334,14 @@ impl One<'_> {
         free.map_or(Ok(()), |line| Err(Some(line)))
     }
 
-    /// Whether lines to the object may leave a box by a side.
-    fn faces(&self, b: &Aabb<3>, side: usize) -> bool {
-        exit(b, side, *b).faces(self.target.bounds())
+    /// Whether lines to the object may leave a box by a part of a side.
+    fn faces(&self, b: &Aabb<3>, part: &Part) -> bool {
+        exit(b, part).faces(self.target.bounds())
     }
 
-    fn ask_part(&mut self, volume: &Aabb<3>, side: usize, part: Aabb<3>) -> Result<(), Option<[Point3; 2]>> {
-        let exit = exit(volume, side, part);
-        let (target, fronts, corners) = (self.target, self.fronts, part.corners());
+    fn ask_part(&mut self, volume: &Aabb<3>, part: &Part) -> Result<(), Option<[Point3; 2]>> {
+        let exit = exit(volume, part);
+        let (target, fronts, corners) = (self.target, self.fronts, part.bounds.corners());
         // Where a line leaves the cell, it is on the same side of what it ends at as its eye.
         let leave_out = |t: u32| {
             let [a, b, c] = target.triangles()[t as usize];
@@ -437,15 +381,10 @@ impl One<'_> {
         let (tiling, memory) = (&self.of.tiling, &*self.memory);
         (0..tiling.len() as u32).filter(|&cell| self.is_hidden(cell)).all(|cell| {
             let b = &tiling.boxes()[cell as usize];
-            let covered = |s: usize| {
-                if tiling.is_open(cell, s) {
-                    return memory.are_blocked[cell as usize] >> s & 1 == 1;
-                }
-                let mut behind = tiling.neighbours(cell).filter(|(_, near)| usize::from(near.side) == s);
-                behind.all(|(pair, near)| self.is_hidden(near.of) || memory.is_blocked[pair])
-            };
-            let sides = (0..3).flat_map(|axis| [false, true].map(|upward| side(axis, upward)));
-            !meet(b, self.target.bounds()) && sides.filter(|&s| self.faces(b, s)).all(covered)
+            let mut facing = tiling.parts(cell).filter(|(_, part)| self.faces(b, part));
+            let is_covered =
+                |(k, part): (usize, &Part)| memory.is_blocked[k] || part.near.is_some_and(|near| self.is_hidden(near));
+            !meet(b, self.target.bounds()) && facing.all(is_covered)
         })
     }
 }

@@ -36,10 +36,10 @@ fn tiles(n: usize, seed: u64) -> Vec<Aabb<3>> {
 /// The boxes of a tiling that are found hidden from targets.
 fn hidden(soup: &Soup, tiles: &[Aabb<3>], targets: &[Aabb<3>], fault: bool) -> Vec<Vec<u32>> {
     let rays = RaySampler::of(soup.clone());
-    let mut propagation = Propagation::new((tiles.to_vec(), tiles.len()), &rays, Arc::new(Surface::new(soup)), 1, None)
-        .expect("nobody cancels");
+    let mut propagation =
+        Propagation::new(tiles.to_vec(), &rays, Arc::new(Surface::new(soup)), 1, None).expect("nobody cancels");
     if fault {
-        propagation.close_open_sides();
+        propagation.close();
     }
     let mut memory = propagation.memory();
     let of = |target: &Aabb<3>| {

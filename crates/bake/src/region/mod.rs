@@ -204,7 +204,6 @@ pub(crate) fn decide(
     boxes.extend(regions.iter().copied().flatten());
     let mut by_sightlines = options.sightlines || options.method.is_none();
     let (mut n_assumed, mut summary, mut eye_level, mut left, mut cut_time) = (0, None, None, None, None);
-    let mut tiles = Vec::new();
     let Start { graph, mut parts, cells, rows, objects } = match options.cells {
         CellsFrom::KdTree if by_sightlines => {
             let RegionBakeOptions { cut, portals, threads, progress, units, .. } = *options;
@@ -218,7 +217,7 @@ pub(crate) fn decide(
         CellsFrom::KdTree => parts::of_cut(scene, subdivide_scene(scene, &options.cut)?, boxes.len()),
         alone => {
             let cut = cells_alone(scene, options, alone)?;
-            (summary, eye_level, tiles) = (cut.places, cut.eye_level, cut.tiles);
+            (summary, eye_level) = (cut.places, cut.eye_level);
             let n_wanted = match wanted {
                 Wanted::All => None,
                 Wanted::LastRegions => regions.last().map(|last| last.len()),
@@ -242,8 +241,8 @@ pub(crate) fn decide(
         let made = make();
         let method = (made.name(), made.only_in_air());
         let (occludees, witness) = targets_of(scene, &boxes[..n_objects]);
-        if let Some(surface) = options.surface.filter(|_| !tiles.is_empty() && regions.is_empty()) {
-            let seen = tiled::see((scene, Arc::clone(surface)), (&tiles, n), (&occludees, &witness), &boxes, options)?;
+        if let Some(surface) = options.surface.filter(|_| eye_level.is_some() && regions.is_empty()) {
+            let seen = tiled::see((scene, Arc::clone(surface)), &cells, (&occludees, &witness), &boxes, options)?;
             left = seen.left;
             break 'method (seen.rows, seen.objects, seen.effort, Some(method));
         }
@@ -338,12 +337,10 @@ struct CellsAlone {
     parts: TableParts,
     places: Option<PlaceSummary>,
     eye_level: Option<EyeLevelSummary>,
-    /// The cells, and fillers that tile the rest of a box; none if the cells are not of that kind.
-    tiles: Vec<Aabb<3>>,
 }
 
 fn cells_alone(scene: &Scene, options: &RegionBakeOptions<'_>, how: &CellsFrom) -> Result<CellsAlone, BakeError> {
-    let (mut places, mut eye_level, mut tiles, cut) = (None, None, Vec::new(), &options.cut);
+    let (mut places, mut eye_level, cut) = (None, None, &options.cut);
     let mut cut_places = |how: &PlaceOptions| {
         let found = observed_places(scene, cut, how, options.progress).map_err(|error| match error {
             PlacesError::Cancelled(cancelled) => cancelled.into(),
@@ -370,9 +367,7 @@ fn cells_alone(scene: &Scene, options: &RegionBakeOptions<'_>, how: &CellsFrom) 
             ) {
                 Ok(found) => {
                     eye_level = Some(found.summary);
-                    let cells = found.cells().to_vec();
-                    tiles = found.boxes;
-                    parts::places_alone(cells, "eye-level")
+                    parts::places_alone(found.cells, "eye-level")
                 }
                 Err(EyeLevelError::NoFloor) => cut_places(&PlaceOptions::default())?,
                 Err(EyeLevelError::Cancelled(cancelled)) => return Err(cancelled.into()),
@@ -381,7 +376,7 @@ fn cells_alone(scene: &Scene, options: &RegionBakeOptions<'_>, how: &CellsFrom) 
         }
         CellsFrom::Boxes(cells) => parts::boxes_alone(&upright(cells)),
     };
-    Ok(CellsAlone { cells, parts, places, eye_level, tiles })
+    Ok(CellsAlone { cells, parts, places, eye_level })
 }
 
 /// What from-region methods are asked about, and the rays that find what is visible.

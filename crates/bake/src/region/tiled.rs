@@ -1,4 +1,4 @@
-//! What cells see that tile a box together with fillers: by shadows that are propagated from cell to cell.
+//! What cells see that share faces: by shadows that are propagated from cell to cell.
 
 use super::parts::ones;
 use super::{RegionBakeOptions, phase};
@@ -11,7 +11,6 @@ use sightlines_line_space::{FaceTarget, Surface};
 use sightlines_multifocal::{Occludees, QueryCounts, RaySampler, WorkDone};
 use sightlines_pvs::BitMatrix;
 use sightlines_stabtree::PairMask;
-use std::ops::Range;
 use std::sync::{Arc, Mutex, MutexGuard};
 
 /// The phase of units of work: one for each object, and for each group of cells.
@@ -40,23 +39,21 @@ struct Wanted {
 
 /// Decides from which cells objects and other cells are hidden.
 ///
-/// * `tiles`: the cells, then the fillers
 /// * `extents`: the boxes of the objects
 pub(super) fn see(
     (scene, surface): (&Scene, Arc<Surface>),
-    (tiles, n): (&[Aabb<3>], usize),
+    cells: &[Aabb<3>],
     (occludees, rays): (&Occludees, &RaySampler),
     extents: &[Aabb<3>],
     options: &RegionBakeOptions<'_>,
 ) -> Result<Tiled, BakeError> {
-    let n_objects = occludees.len();
-    let propagation = threads::on(options.threads, || {
-        Propagation::new((tiles.to_vec(), n), rays, surface, n_objects, options.progress)
-    })?;
-    let wanted = wanted(&tiles[..n], occludees, extents);
+    let (n, n_objects) = (cells.len(), occludees.len());
+    let propagation =
+        threads::on(options.threads, || Propagation::new(cells.to_vec(), rays, surface, n_objects, options.progress))?;
+    let wanted = wanted(cells, occludees, extents);
     let costs: Vec<f64> = wanted.iter().map(|of| 100.0 + of.target.triangles().len() as f64).collect();
     let memories = Mutex::new(Vec::new());
-    let from_bytes = |bytes: &[u8]| Solved::from_bytes(bytes, tiles.len() as u32);
+    let from_bytes = |bytes: &[u8]| Solved::from_bytes(bytes, n as u32);
     let found = phase::decide(PHASE, &costs, options, (Solved::to_bytes, from_bytes), |unit| {
         let Wanted { object, target, .. } = &wanted[unit];
         let is_culled = object.is_some_and(|object| scene.is_single_sided(object));
@@ -86,7 +83,7 @@ pub(super) fn see(
         };
         counts.boxes += solved.n_asked;
         counts.triangles += solved.n_cells;
-        for row in within(&solved.hidden, n) {
+        for row in solved.hidden.iter().cloned().flatten().map(|cell| cell as usize) {
             for &column in columns {
                 match object {
                     Some(_) => tiled.objects.set(row, column as usize, false),
@@ -108,13 +105,8 @@ pub(super) fn see(
     // Nothing is drawn of an object without triangles.
     let nothing = (0..n_objects).filter(|&object| extents[object].is_empty());
     nothing.for_each(|object| (0..n).for_each(|row| tiled.objects.set(row, object, false)));
-    tiled.effort = WorkDone { n_volumes: tiles.len() as u64, queries: counts };
+    tiled.effort = WorkDone { n_volumes: n as u64, queries: counts };
     Ok(tiled)
-}
-
-/// The cells of runs of boxes.
-fn within(runs: &[Range<u32>], n: usize) -> impl Iterator<Item = usize> + '_ {
-    runs.iter().cloned().flatten().map(|tile| tile as usize).take_while(move |&tile| tile < n)
 }
 
 /// The objects that are somewhere and have an extent, and groups of cells.

@@ -45,7 +45,7 @@ pub(crate) struct RegionArgs {
     #[arg(long, value_name = "SIZE", value_parser = crate::numbers::above_zero, allow_hyphen_values = true, conflicts_with_all = ["cells", "grid"])]
     cell_size: Option<f64>,
     /// Scenes in space: cells above floors, where eyes are from LOW to HIGH units above the ground, and 4 m wide or by --cell-size. Shadows are
-    /// propagated from cell to cell, through boxes that fill the rest of the scene. For people 0,2.5
+    /// propagated from cell to cell. For people 0,2.5
     #[arg(long, value_name = "LOW,HIGH", value_parser = heights, conflicts_with_all = ["cells", "grid", "n_cells"])]
     eye_height: Option<[f64; 2]>,
     #[command(flatten)]
@@ -148,8 +148,6 @@ pub(super) struct Outcome {
 /// Cells at the height of eyes.
 #[derive(Debug, Serialize, JsonSchema)]
 struct EyeLevel {
-    /// Boxes that fill the rest of the scene, which are not stored.
-    n_fillers: usize,
     /// The most cells above each other.
     n_layers: usize,
     /// Width of cells, at most, in scene units.
@@ -168,16 +166,16 @@ impl EyeLevel {
             UnitsFrom::Metres => "the file",
             _ => "the options",
         };
-        let EyeLevelSummary { n_fillers, n_layers, cell_size, units_per_metre, .. } = of;
-        Self { n_fillers, n_layers, cell_size, units_per_metre, units_from }
+        let EyeLevelSummary { n_layers, cell_size, units_per_metre, .. } = of;
+        Self { n_layers, cell_size, units_per_metre, units_from }
     }
 }
 
 impl fmt::Display for EyeLevel {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { n_fillers, n_layers, cell_size, units_per_metre, units_from } = self;
-        write!(f, "cells at eyes  at most {cell_size:.4} units wide, up to {n_layers} above each other, and ")?;
-        writeln!(f, "{n_fillers} boxes for the rest; {units_per_metre} units are a metre, by {units_from}")
+        let Self { n_layers, cell_size, units_per_metre, units_from } = self;
+        write!(f, "cells at eyes  at most {cell_size:.4} units wide, up to {n_layers} above each other; ")?;
+        writeln!(f, "{units_per_metre} units are a metre, by {units_from}")
     }
 }
 
