@@ -2,6 +2,7 @@
 //!
 //! Nothing here decides what is hidden; a bad choice costs time, or hides less than another one would.
 
+use crate::eye_level::EyeLevelOptions;
 use crate::input::BakeInput;
 use crate::methods::OcclusionMethod;
 use crate::options::{Recipe, SceneMethod};
@@ -63,15 +64,20 @@ impl SceneFacts {
         if self.axial >= AXIAL || self.n_triangles == 0 {
             CellsFrom::KdTree
         } else {
-            CellsFrom::Places(PlaceOptions::default())
+            CellsFrom::EyeLevel(EyeLevelOptions::default())
         }
     }
 }
 
-/// The cells of a scene for which none are named: those of a k-d tree where nearly all walls are perpendicular to an axis, else
-/// [`places`](crate::places). O(n log n) of objects, O(n) of triangles.
-pub fn own_cells(scene: &Scene) -> CellsFrom {
-    SceneFacts::quick(scene).own_cells()
+/// The cells of a scene for which none are named: those of a k-d tree where nearly all walls are perpendicular to an axis, else cells at the height of
+/// [eyes](crate::eye_level), or [`places`](crate::places) where viewers may fly. O(n log n) of objects, O(n) of triangles.
+///
+/// * `flying`: whether viewers may be anywhere, as in a region that is stated for them, or where nobody says what is up
+pub fn own_cells(scene: &Scene, flying: bool) -> CellsFrom {
+    match SceneFacts::quick(scene).own_cells() {
+        CellsFrom::EyeLevel(_) if flying => CellsFrom::Places(PlaceOptions::default()),
+        cells => cells,
+    }
 }
 
 /// All that hide, if only from one side.
@@ -281,7 +287,7 @@ pub struct Choice {
 pub(crate) fn choose_for(scene: &Scene, recipe: &mut Recipe, progress: Option<&dyn Observer>) -> Choice {
     if matches!(recipe.cells, CellsFrom::EyeLevel(_)) {
         recipe.method = SceneMethod::FromRegion(OcclusionMethod::LineSpace);
-        let reason = "cells are at the height of eyes: shadows are propagated from cell to cell".to_owned();
+        let reason = "cells are at the height of eyes: shadows are propagated from cell to cell, and whoever is elsewhere sees everything".to_owned();
         return Choice { method: recipe.method.name().to_owned(), reasons: vec![reason], facts: None };
     }
     let (facts, mut choice) = choose_observed(scene, progress);
@@ -373,7 +379,7 @@ mod tests {
         assert_eq!(rooms.to_string(), "sightlines and sheets");
         assert_eq!(room.own_cells(), CellsFrom::KdTree);
         let few = SceneFacts { axial: 0.2, ..room };
-        assert_eq!(few.own_cells(), CellsFrom::Places(PlaceOptions::default()));
+        assert_eq!(few.own_cells(), CellsFrom::EyeLevel(EyeLevelOptions::default()));
         assert_eq!([0.5, 0.04, 0.02, 0.001].map(texels), [32, 64, 128, 256]);
         assert!([&choice, &slanted, &screens].iter().all(|c| !c.reasons.is_empty()));
     }

@@ -6,6 +6,7 @@ use crate::error::{BakeError, Meaningless};
 use crate::framed::{Framed, growth_of_cells};
 use crate::input::BakeInput;
 use crate::options::{Recipe, SceneMethod};
+use crate::places::PlaceOptions;
 use crate::region::{CellsFrom, PackRegionsError};
 use crate::reports::RegionReport;
 use crate::request::{BakeRequest, Runtime};
@@ -123,14 +124,20 @@ impl<'i> PreparedBake<'i> {
             recipe.surroundings = around.iter().map(|&object| Surrounding::of(whole, object)).collect();
         }
         let scene = rest.as_ref().unwrap_or(whole);
-        if let CellsFrom::EyeLevel(how) = &mut recipe.cells {
-            let up = how.up.or(file.map(|file| file.up)).unwrap_or(Axis::Z);
-            how.up = Some(upwards(up, framed.as_ref())?);
-        }
         let sightlines = request.method == Some(SceneMethod::Sightlines);
         // Mirrors reflect the cells of a k-d tree.
-        if request.cells.is_none() && !sightlines && !request.for_proofs && scene.mirrors().is_empty() {
-            recipe.cells = own_cells(scene);
+        let are_own = request.cells.is_none() && !sightlines && !request.for_proofs && scene.mirrors().is_empty();
+        if are_own {
+            let has_no_up = file.is_none_or(|file| file.up_is_assumed);
+            recipe.cells = own_cells(scene, request.is_for_places() || recipe.cut.view_region.is_some() || has_no_up);
+        }
+        if let CellsFrom::EyeLevel(how) = &mut recipe.cells {
+            let up = how.up.or(file.map(|file| file.up)).unwrap_or(Axis::Z);
+            match upwards(up, framed.as_ref()) {
+                Ok(up) => how.up = Some(up),
+                Err(_) if are_own => recipe.cells = CellsFrom::Places(PlaceOptions::default()),
+                Err(leans) => return Err(leans.into()),
+            }
         }
         match request.method {
             Some(method) if !is_auto => recipe.method = method,

@@ -139,6 +139,16 @@ impl BakeRequest {
         self.method.is_none() && self.for_proofs && self.has_portals()
     }
 
+    /// Whether a method is named, or an option of one, that means nothing for cells at the height of eyes, or would take each of the thousands by
+    /// itself.
+    pub(crate) fn is_for_places(&self) -> bool {
+        !matches!(self.method, None | Some(SceneMethod::Auto))
+            || self.split.is_some()
+            || self.tau.is_some()
+            || self.detail_below.is_some()
+            || self.keep_solid
+    }
+
     /// Whether cells of a scene are joined by portals if [proofs or stab trees](Self::for_proofs) are to be made.
     fn has_portals(&self) -> bool {
         self.cells.as_ref().is_none_or(CellsFrom::have_portals)

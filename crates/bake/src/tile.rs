@@ -89,7 +89,7 @@ fn cells_here(
 ) -> Result<Vec<ViewCell>, BakeError> {
     let nameless = |bounds: Aabb<3>| ViewCell { id: String::new(), bounds };
     let cut = SceneOptions { view_region: Some(*viewers), ..request.recipe().cut };
-    let cells = request.cells.clone().unwrap_or_else(|| own_cells(scene));
+    let cells = request.cells.clone().unwrap_or_else(|| own_cells(scene, true));
     Ok(match &cells {
         CellsFrom::KdTree => {
             let cut = subdivide_scene(scene, &cut)?;

@@ -32,6 +32,9 @@ const LEAST_SHARE: f64 = 1.0 / 16.0;
 /// Most points at which it is tried whether somebody can stand on a part of a floor; as many as its area has square metres, and one.
 const MOST_TRIES: u32 = 16;
 
+/// What is around a narrow column counts as well, so far from side to side, in metres.
+const NEAR: f64 = 4.0;
+
 /// A layer is at most so many times as high as eyes are, before its ends move to floors.
 const HIGHEST: f64 = 1.5;
 
@@ -56,6 +59,8 @@ struct Piece {
     high: f64,
     /// Seen from above.
     area: f64,
+    /// The same of what is in the column or near to it: what is small at its border may be large beyond.
+    area_near: f64,
     triangle: u32,
     /// Its corners.
     corners: Vec<Point3>,
@@ -123,6 +128,22 @@ impl Column<'_> {
         [0, 1].map(|k| [0, 1].map(|end| self.grid.lines[k][self.place[k] + end]))
     }
 
+    /// The same of a narrow column and what is around it.
+    fn near_sides(&self) -> [[f64; 2]; 2] {
+        self.sides().map(|[low, high]| {
+            let more = (NEAR * self.lengths.metre - (high - low)).max(0.0) / 2.0;
+            [low - more, high + more]
+        })
+    }
+
+    /// What of a triangle is between sides, seen from above.
+    fn between(&self, corners: [Point3; 3], sides: [[f64; 2]; 2]) -> Vec<Point3> {
+        (0..2).fold(corners.to_vec(), |polygon, k| {
+            let axis = self.grid.axes[k];
+            clip(&clip(&polygon, axis, sides[k][0], 1.0), axis, sides[k][1], -1.0)
+        })
+    }
+
     /// The cells above floors.
     fn cells(&self, floors: &[u32], left_out: &mut LeftOut) -> Vec<[f64; 2]> {
         let mut pieces: Vec<Piece> = floors.iter().filter_map(|&floor| self.piece(floor)).collect();
@@ -142,7 +163,7 @@ impl Column<'_> {
         let least = (LEAST_AREA * metre * metre).min(LEAST_SHARE * (b - a) * (d - c));
         let mut runs: Vec<Run<'_>> = Vec::new();
         for patch in patches(&pieces, STEP * metre) {
-            if patch.iter().map(|piece| piece.area).sum::<f64>() < least {
+            if patch.iter().map(|piece| piece.area_near).sum::<f64>() < least {
                 left_out.slivers += patch.len();
                 continue;
             }
@@ -156,12 +177,10 @@ impl Column<'_> {
     /// What of a triangle is in the column.
     fn piece(&self, triangle: u32) -> Option<Piece> {
         let corners = self.surfaces.triangles()[triangle as usize];
-        let (up, sides) = (self.grid.up, self.sides());
-        let clipped = (0..2).fold(corners.to_vec(), |polygon, k| {
-            let axis = self.grid.axes[k];
-            clip(&clip(&polygon, axis, sides[k][0], 1.0), axis, sides[k][1], -1.0)
-        });
-        let area = area(&clipped, self.grid.axes);
+        let up = self.grid.up;
+        let clipped = self.between(corners, self.sides());
+        let area_of = |polygon: &[Point3]| area(polygon, self.grid.axes);
+        let area = area_of(&clipped);
         if clipped.len() < 3 || area <= 0.0 {
             return None;
         }
@@ -173,26 +192,40 @@ impl Column<'_> {
             .map(|p| p[up])
             .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
         let (low, high) = ((heights[0] - error).max(whole.min[up]), (heights[1] + error).min(whole.max[up]));
-        Some(Piece { low, high, area, triangle, corners: clipped })
+        let near = self.between(corners, self.near_sides());
+        Some(Piece { low, high, area, area_near: area_of(&near), triangle, corners: clipped })
     }
 
-    /// Whether somebody can stand somewhere on a part of a floor.
+    /// Whether somebody can stand somewhere on a part of a floor; or, as who stands beside furniture may be missed, near to it on the same floor.
     fn stands(&self, piece: &Piece, left_out: &mut LeftOut) -> bool {
-        let metre = self.lengths.metre;
-        let tries = 1 + ((piece.area / (metre * metre)) as u32).min(MOST_TRIES - 1);
-        let mut why_not = Standing::NoRoom;
-        for i in 0..tries {
-            let p = point(&piece.corners, self.grid.axes, i, tries);
-            why_not = self.surfaces.standing(p, ON_FLOOR * metre, ROOM * metre);
-            if why_not == Standing::Free {
-                return true;
+        let mut found = self.tried(&piece.corners, piece.area);
+        if found != Standing::Free {
+            let near = self.between(self.surfaces.triangles()[piece.triangle as usize], self.near_sides());
+            if piece.area_near > piece.area {
+                found = self.tried(&near, piece.area_near);
             }
         }
-        match why_not {
+        match found {
+            Standing::Free => {}
             Standing::Behind => left_out.behind += 1,
-            _ => left_out.no_room += 1,
+            Standing::NoRoom => left_out.no_room += 1,
         }
-        false
+        found == Standing::Free
+    }
+
+    /// Whether somebody can stand at one of some points.
+    fn tried(&self, corners: &[Point3], area: f64) -> Standing {
+        let metre = self.lengths.metre;
+        let tries = 1 + ((area / (metre * metre)) as u32).min(MOST_TRIES - 1);
+        let mut found = Standing::NoRoom;
+        for i in 0..tries {
+            let p = point(corners, self.grid.axes, i, tries);
+            found = self.surfaces.standing(p, ON_FLOOR * metre, ROOM * metre);
+            if found == Standing::Free {
+                break;
+            }
+        }
+        found
     }
 
     /// Adds the heights of eyes above a part of a floor. Parts come by height, ascending.

@@ -23,7 +23,7 @@ use surfaces::Surfaces;
 /// How cells at the height of eyes are cut. Lengths are in scene units.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct EyeLevelOptions {
-    /// Width of cells, at most. None for 4 m, or twice that as often as the limit of cells needs.
+    /// Width of cells, at most. None for 1, 2 or 4 m, or wider ones, as many cells as take some minutes to bake.
     pub cell_size: Option<f64>,
     /// From how far to how far above a floor eyes are. None for 0 to 2.5 m.
     pub eye_height: Option<[f64; 2]>,
@@ -112,8 +112,6 @@ pub struct EyeLevelSummary {
     pub units_from: UnitsFrom,
     /// Width of cells, at most, in scene units.
     pub cell_size: f64,
-    /// How often the width was doubled for the limit of cells.
-    pub n_doublings: u32,
     /// From how far to how far above floors eyes are, in scene units.
     pub eye_height: [f64; 2],
     /// What was left out.
@@ -146,7 +144,7 @@ pub struct EyeLevelCells {
 /// Cost: a ray or some for each triangle of a floor in each column.
 ///
 /// # Errors
-/// [`EyeLevelError`]; a width that was given and makes too many cells is refused, the default is doubled.
+/// [`EyeLevelError`]; a width that was given and makes too many cells is refused.
 pub fn eye_level_cells(
     scene: &Scene,
     up: Axis,
@@ -170,15 +168,24 @@ pub fn eye_level_cells(
     };
     let eye_height = options.eye_height.unwrap_or([0.0, 2.5 * metre]);
     let lengths = Lengths { metre, eye_height };
-    let cut = |cell_size: f64| match Grid::new(&region, up, cell_size) {
-        Some(grid) if surfaces.n_pieces(&grid) <= MOST_PIECES => {
-            let found = floors::find(&surfaces, &grid, &lengths, max_cells as usize, progress)?;
-            Ok::<_, Cancelled>(found.map(|found| (grid, found)))
+    let n_objects = scene.objects().len();
+    let cut = |cell_size: f64| {
+        let (mut limit, mut most_pieces) = (max_cells, MOST_PIECES);
+        if options.cell_size.is_none() {
+            let pairs = if cell_size < WIDTH * metre { PAIRS_WORTH_IT } else { AFFORDABLE_PAIRS };
+            limit = limit.min(n_cells_of(pairs, n_objects));
+            // A floor in far more columns than there may be cells has too many of them.
+            most_pieces = most_pieces.min(4 * scene.n_triangles() + 64 * limit as usize);
         }
-        _ => Ok(None),
+        match Grid::new(&region, up, cell_size) {
+            Some(grid) if surfaces.n_pieces(&grid) <= most_pieces => {
+                let found = floors::find(&surfaces, &grid, &lengths, limit as usize, progress)?;
+                Ok::<_, Cancelled>(found.map(|found| (grid, found)))
+            }
+            _ => Ok(None),
+        }
     };
-    let mut cell_size = options.cell_size.unwrap_or(WIDTH * metre);
-    let mut n_doublings = 0;
+    let mut cell_size = options.cell_size.unwrap_or(NARROWEST * metre);
     let (grid, found) = loop {
         match cut(cell_size)? {
             Some(found) => break found,
@@ -186,7 +193,7 @@ pub fn eye_level_cells(
             None if options.cell_size.is_some() || grid::is_one_column(&region, up, cell_size) => {
                 return Err(EyeLevelError::TooMany { cell_size, limit: max_cells });
             }
-            None => (cell_size, n_doublings) = (cell_size * 2.0, n_doublings + 1),
+            None => cell_size *= 2.0,
         }
     };
     let heights = found.heights().ok_or(EyeLevelError::NoFloor)?;
@@ -199,15 +206,29 @@ pub fn eye_level_cells(
         units_per_metre: metre,
         units_from,
         cell_size,
-        n_doublings,
         eye_height,
         left_out: found.left_out,
     };
     Ok(EyeLevelCells { cells, summary })
 }
 
-/// The width of cells where nothing else is said, in metres.
+/// The width of cells where nothing else is said, in metres. Twice that as often as there are too many cells; less if there are few of them.
 const WIDTH: f64 = 4.0;
+const NARROWEST: f64 = 1.0;
+
+/// How many pairs of a cell and what it may see are decided in a minute or two, and in some ten minutes: objects, and groups of eight cells.
+const PAIRS_WORTH_IT: f64 = 1.5e6;
+const AFFORDABLE_PAIRS: f64 = 12.5e6;
+
+/// So many cells are always worth it.
+const FEW: u32 = 1000;
+
+/// With how many cells there are so many pairs.
+fn n_cells_of(pairs: f64, n_objects: usize) -> u32 {
+    let n = n_objects as f64;
+    let cells = 4.0 * ((n * n + pairs / 2.0).sqrt() - n);
+    (cells as u32).max(FEW)
+}
 
 /// More parts of triangles in columns than this take too long: the columns are too narrow for the scene.
 const MOST_PIECES: usize = 1 << 24;

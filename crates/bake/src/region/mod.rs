@@ -357,14 +357,8 @@ fn cells_alone(scene: &Scene, options: &RegionBakeOptions<'_>, how: &CellsFrom) 
         }
         CellsFrom::Places(how) => cut_places(how)?,
         CellsFrom::EyeLevel(how) => {
-            match eye_level_cells(
-                scene,
-                how.up.unwrap_or(Axis::Z),
-                cut.view_region.as_ref(),
-                how,
-                cut.max_cells,
-                options.progress,
-            ) {
+            let (up, region) = (how.up.unwrap_or(Axis::Z), cut.view_region.as_ref());
+            match eye_level_cells(scene, up, region, how, cut.max_cells, options.progress) {
                 Ok(found) => {
                     eye_level = Some(found.summary);
                     parts::places_alone(found.cells, "eye-level")

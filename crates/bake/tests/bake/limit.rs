@@ -153,7 +153,7 @@ fn boxes_by_sightlines_and_from_regions() {
 #[test]
 fn places_by_both_methods() {
     let scene = building(true);
-    assert_ne!(own_cells(&scene), CellsFrom::KdTree);
+    assert_ne!(own_cells(&scene, true), CellsFrom::KdTree);
     let cells = Some(CellsFrom::Places(PlaceOptions { n_cells: Some(30), cell_size: None }));
     let method = SceneMethod::FromRegion(OcclusionMethod::Multifocal);
     check("places by one method", &scene, &BakeRequest { cells: cells.clone(), ..by(method) });

@@ -91,7 +91,7 @@ pub(super) fn warn_of_large_cells(path: &Path, request: &BakeRequest, input: Bak
     let is_asked = request.for_proofs && request.method.is_none() && request.cells.is_none();
     if let BakeInput::Scene(scene, _) = input
         && is_asked
-        && !matches!(own_cells(scene), CellsFrom::KdTree)
+        && !matches!(own_cells(scene, true), CellsFrom::KdTree)
     {
         tracing::warn!(
             "{}: few walls are axis-aligned, and only along these are cells cut that have portals, which --certify and --stab-trees need: the cells \

@@ -114,7 +114,11 @@ impl Outcome {
             n_visible_pairs: report.n_visible_pairs,
             n_objects_seen: report.n_objects_seen,
             seconds: report.time.as_secs_f64(),
-            noun: if report.places.is_some() { "place" } else { "given cell" },
+            noun: match (report.places, report.eye_level) {
+                (Some(_), _) => "place",
+                (None, Some(_)) => "cell",
+                (None, None) => "given cell",
+            },
         }
     }
 

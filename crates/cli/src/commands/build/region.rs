@@ -25,8 +25,9 @@ pub(crate) struct RegionArgs {
     /// Scenes in space: what decides which cells and objects are visible. All methods err towards visible: a weaker one
     /// shows more, and hides nothing wrongly. With sightlines only axis-aligned walls hide; with the others any surface may hide, from a whole
     /// cell at once; both hides what either hides. auto measures the input and chooses; -v prints the reasons. What auto calls sheets is
-    /// both --planes 0. Without --grid, --cells, --n-cells and --cell-size, cells are cut along axis-aligned walls; where there are few of these, every method but
-    /// sightlines has boxes instead, cut where views differ
+    /// both --planes 0. Without --grid, --cells, --n-cells and --cell-size, cells are cut along axis-aligned walls; where there are few of these, cells
+    /// are at the height of eyes (--eye-height), or, for a method that is named, in a view region, and if the file does not say what is up,
+    /// boxes anywhere (--n-cells)
     /// [default: auto; sightlines with --certify and --stab-trees]
     #[arg(long, value_name = "HOW", value_parser = one_of(&SceneMethod::all(), SceneMethod::name, SceneMethod::about))]
     method: Option<SceneMethod>,
@@ -36,16 +37,17 @@ pub(crate) struct RegionArgs {
     /// Scenes in space: use a grid of boxes as cells, in the view region or the box of the scene
     #[arg(long, value_name = "NX,NY,NZ", value_parser = counts, conflicts_with = "cells")]
     grid: Option<[u32; 3]>,
-    /// Scenes in space: so many boxes as cells, cut where rays show that views differ; solid matter, and what is behind the backs of
-    /// single-sided faces, is in none. The default for scenes with few axis-aligned walls, with up to 256 cells
+    /// Scenes in space: so many boxes as cells, anywhere in the scene, cut where rays show that views differ; solid matter, and what is
+    /// behind the backs of single-sided faces, is in none. For viewers who fly
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), conflicts_with_all = ["cells", "grid"])]
     n_cells: Option<u32>,
     /// Scenes in space: the same, with no side of a cell longer than SIZE, in scene units; there are as many cells as that needs, if it
     /// is more than otherwise
     #[arg(long, value_name = "SIZE", value_parser = crate::numbers::above_zero, allow_hyphen_values = true, conflicts_with_all = ["cells", "grid"])]
     cell_size: Option<f64>,
-    /// Scenes in space: cells above floors, where eyes are from LOW to HIGH units above the ground, and 4 m wide or by --cell-size. Shadows are
-    /// propagated from cell to cell. For people 0,2.5
+    /// Scenes in space: cells above floors, where eyes are from LOW to HIGH units above the ground, and 1, 2, 4 m wide or more, as their number
+    /// allows, or by --cell-size. Shadows are propagated from cell to cell; viewers elsewhere see everything. The default for scenes with few
+    /// axis-aligned walls, from 0 to 2.5 m
     #[arg(long, value_name = "LOW,HIGH", value_parser = heights, conflicts_with_all = ["cells", "grid", "n_cells"])]
     eye_height: Option<[f64; 2]>,
     #[command(flatten)]

@@ -31,7 +31,7 @@ pub(super) fn sentence(viewer: &ViewerShare, is_auto: bool) -> Option<String> {
     } else {
         format!(
             "hardly: {still}: the scene is open, few walls hide anything; a table saves little here; smaller cells \
-             (--n-cells, --cell-size) may save more"
+             (--eye-height with a --cell-size, or more --n-cells) may save more"
         )
     })
 }
