@@ -195,7 +195,7 @@
 
 /**
  * Chosen by the scene, as the program `sightlines` does: those of a k-d tree where nearly all walls are perpendicular to an axis, else
- * boxes cut where views differ.
+ * cells at the height of eyes above floors, or boxes cut where views differ if no file says what is up.
  */
 #define SL_CELLS_CHOSEN 0
 

@@ -45,7 +45,7 @@ pub struct SlProgress {
 pub type SlProgressFn = Option<unsafe extern "C" fn(user: *mut c_void, progress: *const SlProgress) -> i32>;
 
 /// Chosen by the scene, as the program `sightlines` does: those of a k-d tree where nearly all walls are perpendicular to an axis, else
-/// boxes cut where views differ.
+/// cells at the height of eyes above floors, or boxes cut where views differ if no file says what is up.
 pub const SL_CELLS_CHOSEN: u32 = 0;
 /// Those of a k-d tree along the walls, with portals.
 pub const SL_CELLS_KD_TREE: u32 = 1;

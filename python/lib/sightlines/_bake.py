@@ -41,8 +41,8 @@ def bake(
     :param source: a file (``.glb``, ``.gltf``, ``.obj``, ``.bsp``, ``.prt``, ``.wad``, ``.geojson``) as a path, its content as
         bytes, a ``trimesh.Scene`` or ``Trimesh``, or meshes by name: ``{"wall": (corners, triangles)}`` with arrays of shapes (n, 3)
         and (m, 3)
-    :param cells: where viewers can be. None: chosen by the scene. ``"kd-tree"``: boxes along the walls, with portals. A number: so many
-        boxes, cut where views differ. Three numbers: a grid. An array (n, 2, 3): these boxes
+    :param cells: where viewers can be. None: chosen by the scene, such as above floors at the height of eyes. ``"kd-tree"``: boxes along
+        the walls, with portals. A number: so many boxes, cut where views differ. Three numbers: a grid. An array (n, 2, 3): these boxes
     :param method: what decides. None: chosen by the scene, as ``"auto"`` does. Otherwise ``"sightlines"``, ``"auto"``,
         ``"both"``, ``"multifocal"``, ``"line-space"``, ``"shafts"``
     :param view_region: a box (2, 3) in which viewers are; rooms that cannot be reached from it are no cells. None: the box around the view

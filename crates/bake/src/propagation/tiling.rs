@@ -48,8 +48,10 @@ impl Tiling {
             }
             for side in 0..6 {
                 let covered = of.iter().filter(|part| usize::from(part.side) == side).map(|part| part.bounds);
-                let open = uncovered(&whole(b, side), &covered.collect::<Vec<_>>(), side / 2);
-                of.extend(open.into_iter().map(|bounds| Part { side: side as u8, near: None, bounds }));
+                let whole = whole(b, side);
+                let open = uncovered(&whole, &covered.collect::<Vec<_>>(), side / 2);
+                let wide = open.into_iter().map(|part| wide(part, &whole));
+                of.extend(wide.map(|bounds| Part { side: side as u8, near: None, bounds }));
             }
             of.sort_by_key(|part| (part.side, part.near));
             parts.extend(of);
@@ -130,6 +132,21 @@ fn shares(b: &Aabb<3>, near: &Aabb<3>, side: usize) -> bool {
     is_behind && (0..3).all(|k| k == side / 2 || b.min[k] < near.max[k] && near.min[k] < b.max[k])
 }
 
+/// What is open is asked about at least so wide, as a share of the side: between doubles that are next to each other there is no line to begin with.
+const LEAST_WIDTH: f64 = 1.0 / 1024.0;
+
+/// A part of a side that is not too thin, with all of another one.
+fn wide(mut part: Aabb<3>, whole: &Aabb<3>) -> Aabb<3> {
+    for k in 0..3 {
+        let least = (whole.max[k] - whole.min[k]) * LEAST_WIDTH;
+        if part.max[k] - part.min[k] < least {
+            part.max[k] = part.max[k].max(part.min[k] + least).min(whole.max[k]);
+            part.min[k] = part.min[k].min(part.max[k] - least).max(whole.min[k]);
+        }
+    }
+    part
+}
+
 /// What rectangles across an axis leave of another one, as rectangles. Exact: between two of their coordinates nothing changes.
 fn uncovered(whole: &Aabb<3>, covered: &[Aabb<3>], axis: usize) -> Vec<Aabb<3>> {
     let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
@@ -192,8 +209,8 @@ mod tests {
         assert_eq!(open(vec![cell, low, high(2.0)]), []);
         assert_eq!(of(vec![cell, low, high(2.0)], Some(2)), [block([2.0, 0.0, 1.0], [2.0; 3])]);
         let below = 2.0_f64.next_down();
-        let last = block([2.0, 0.0, below], [2.0; 3]);
-        assert_eq!(open(vec![cell, low, high(below)]), [last], "by a unit in the last place");
+        let last = block([2.0, 0.0, 2.0 - 2.0 / 1024.0], [2.0; 3]);
+        assert_eq!(open(vec![cell, low, high(below)]), [last], "by a unit in the last place, and asked about wider");
         assert_eq!(open(vec![cell, low]), [block([2.0, 0.0, 1.0], [2.0; 3])]);
         let mut moved = high(2.0);
         moved.min[0] = 2.0_f64.next_up();

@@ -16,7 +16,9 @@ use std::sync::{Arc, Mutex, MutexGuard};
 /// The phase of units of work: one for each object, and for each group of cells.
 const PHASE: &str = "shadows";
 
-/// Cells that are asked about together, as a box around them.
+/// So many groups of cells are asked about at least, each as a box around them, if there are so many cells; and so many cells are in a group at least.
+/// Objects matter more to whoever draws.
+const GROUPS: usize = 128;
 const GROUP: usize = 8;
 
 /// What is left visible.
@@ -117,7 +119,7 @@ fn wanted(cells: &[Aabb<3>], occludees: &Occludees, extents: &[Aabb<3>]) -> Vec<
         let of = |target| Wanted { object: Some(object as u32), target, columns: vec![object as u32] };
         wanted.extend(target.map(of));
     }
-    let tree = BoxTree::build(cells, GROUP);
+    let tree = BoxTree::build(cells, (cells.len() / GROUPS).max(GROUP));
     for leaf in tree.nodes().iter().filter(|node| node.is_leaf() && !node.is_empty()) {
         let columns = tree.order()[leaf.start as usize..leaf.end as usize].to_vec();
         wanted.extend(FaceTarget::of_box(&leaf.bounds).map(|target| Wanted { object: None, target, columns }));
