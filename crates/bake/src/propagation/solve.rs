@@ -26,7 +26,7 @@ const AGAIN: u32 = 20;
 /// Up to this number of pairs of a cell and an object, each question gets the full effort; beyond it the effort shrinks in proportion, down to
 /// [`LEAST_SHARE`]. Measured on a castle with 9.5 million pairs: a tenth of the effort lists 23.1 % of the objects where a quarter lists 21.5, in
 /// three quarters of the time.
-const FULL_EFFORT_PAIRS: f64 = 1.5e6;
+const FULL_EFFORT_PAIRS: f64 = 0.5e6;
 const LEAST_SHARE: f64 = 0.1;
 
 /// Cells of line space for a question, apart from half a one for each triangle of the object. Ten times as many find hardly more.
