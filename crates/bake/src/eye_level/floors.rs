@@ -1,8 +1,8 @@
 //! Floors in columns, and the cells above them.
 
-use super::LeftOut;
 use super::grid::Grid;
 use super::surfaces::{Standing, Surfaces};
+use super::{LeftOut, WIDTH};
 use rayon::prelude::*;
 use sightlines_geometry::{Aabb, Point3};
 use sightlines_progress::{Cancelled, Counter, Observer, Work};
@@ -31,9 +31,6 @@ const LEAST_SHARE: f64 = 1.0 / 16.0;
 
 /// Most points at which it is tried whether somebody can stand on a part of a floor; as many as its area has square metres, and one.
 const MOST_TRIES: u32 = 16;
-
-/// What is around a narrow column counts as well, so far from side to side, in metres.
-const NEAR: f64 = 4.0;
 
 /// A layer is at most so many times as high as eyes are, before its ends move to floors.
 const HIGHEST: f64 = 1.5;
@@ -128,10 +125,10 @@ impl Column<'_> {
         [0, 1].map(|k| [0, 1].map(|end| self.grid.lines[k][self.place[k] + end]))
     }
 
-    /// The same of a narrow column and what is around it.
+    /// The same of a narrow column with what is around it, as wide as cells are by default.
     fn near_sides(&self) -> [[f64; 2]; 2] {
         self.sides().map(|[low, high]| {
-            let more = (NEAR * self.lengths.metre - (high - low)).max(0.0) / 2.0;
+            let more = (WIDTH * self.lengths.metre - (high - low)).max(0.0) / 2.0;
             [low - more, high + more]
         })
     }
@@ -199,11 +196,9 @@ impl Column<'_> {
     /// Whether somebody can stand somewhere on a part of a floor; or, as who stands beside furniture may be missed, near to it on the same floor.
     fn stands(&self, piece: &Piece, left_out: &mut LeftOut) -> bool {
         let mut found = self.tried(&piece.corners, piece.area);
-        if found != Standing::Free {
+        if found != Standing::Free && piece.area_near > piece.area {
             let near = self.between(self.surfaces.triangles()[piece.triangle as usize], self.near_sides());
-            if piece.area_near > piece.area {
-                found = self.tried(&near, piece.area_near);
-            }
+            found = self.tried(&near, piece.area_near);
         }
         match found {
             Standing::Free => {}

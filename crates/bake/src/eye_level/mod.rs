@@ -216,10 +216,13 @@ pub fn eye_level_cells(
 const WIDTH: f64 = 4.0;
 const NARROWEST: f64 = 1.0;
 
-/// How many pairs of a cell and what it may see are decided in a minute or two, and in some ten minutes: objects, and some groups of cells.
+/// How many pairs of a cell and a target are decided in two or three minutes, and in some fifteen. Targets are objects and groups of cells. Measured in Sponza
+/// and a castle, with two threads.
 const PAIRS_WORTH_IT: f64 = 1.5e6;
 const AFFORDABLE_PAIRS: f64 = 12.5e6;
-const GROUPS: f64 = 128.0;
+
+/// What sees which cells is asked about by so many groups of them, if there are so many cells.
+pub(crate) const GROUPS: usize = 128;
 
 /// So many cells are always worth it; more take much memory, a bit for each two of them.
 const FEW: f64 = 1000.0;
@@ -227,7 +230,7 @@ const MANY: f64 = 10_000.0;
 
 /// With how many cells there are so many pairs.
 fn n_cells_of(pairs: f64, n_objects: usize) -> u32 {
-    (pairs / (n_objects as f64 + GROUPS)).clamp(FEW, MANY) as u32
+    (pairs / (n_objects + GROUPS) as f64).clamp(FEW, MANY) as u32
 }
 
 /// More parts of triangles in columns than this take too long: the columns are too narrow for the scene.

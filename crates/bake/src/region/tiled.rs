@@ -3,6 +3,7 @@
 use super::parts::ones;
 use super::{RegionBakeOptions, phase};
 use crate::error::BakeError;
+use crate::eye_level::GROUPS;
 use crate::propagation::{Propagation, Solved};
 use crate::threads;
 use sightlines_cells::{ANYWHERE, Scene};
@@ -16,9 +17,7 @@ use std::sync::{Arc, Mutex, MutexGuard};
 /// The phase of units of work: one for each object, and for each group of cells.
 const PHASE: &str = "shadows";
 
-/// So many groups of cells are asked about at least, each as a box around them, if there are so many cells; and so many cells are in a group at least.
-/// Objects matter more to whoever draws.
-const GROUPS: usize = 128;
+/// So many cells at least are asked about together, as a box around them.
 const GROUP: usize = 8;
 
 /// What is left visible.

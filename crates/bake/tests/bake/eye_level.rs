@@ -3,12 +3,15 @@
 use crate::places::{block, city_of_boxes, scene};
 use proptest::prelude::*;
 use sightlines_bake::eye_level::{EyeLevelCells, EyeLevelError, EyeLevelOptions, LeftOut, UnitsFrom, eye_level_cells};
+use sightlines_bake::region::CellsFrom;
+use sightlines_bake::{BakeInput, BakeRequest, Runtime, SceneMethod};
 use sightlines_cells::{Scene, SceneObject};
-use sightlines_formats::scene::read_scene;
+use sightlines_formats::scene::{SceneInfo, parse_glb, read_scene, write_glb};
 use sightlines_formats::view_cells::read_view_cells;
 use sightlines_geometry::vector::normal;
 use sightlines_geometry::{Aabb, Point3, Random, ray_triangle};
 use sightlines_kdtree::KdError;
+use sightlines_multifocal::Split;
 use sightlines_progress::{Cancelled, Progress};
 use sightlines_pvs::Axis;
 use sightlines_scenes::{TowerOptions, tower};
@@ -305,6 +308,28 @@ fn units_are_recognised() {
     let told = EyeLevelOptions { units_per_metre: Some(2.0), ..EyeLevelOptions::default() };
     let summary = cut(&tower, Axis::Y, &told).summary;
     assert_eq!((summary.units_from, summary.cell_size, summary.eye_height), (UnitsFrom::Options, 2.0, [0.0, 5.0]));
+}
+
+/// Where nothing is said, cells are at the height of eyes only if the file states what is up, and viewers do not fly.
+#[test]
+fn scenes_with_few_walls_along_axes_have_these_cells() {
+    let glb = parse_glb(&write_glb(&hills()).expect("single precision"), None).expect("a scene");
+    let obj = SceneInfo { up_is_assumed: true, ..glb.info.clone() };
+    let cells = |request: &BakeRequest, info: Option<&SceneInfo>| {
+        let prepared = request.prepare(BakeInput::Scene(&glb.scene, info), &Runtime::default()).expect("a recipe");
+        prepared.recipe().cells.clone()
+    };
+    let plain = BakeRequest::default;
+    let at_eyes = |request: &BakeRequest| matches!(cells(request, Some(&glb.info)), CellsFrom::EyeLevel(_));
+    let auto = BakeRequest { method: Some(SceneMethod::Auto), ..plain() };
+    assert!(at_eyes(&plain()) && at_eyes(&auto));
+    let named = BakeRequest { method: Some("shafts".parse().expect("a method")), ..plain() };
+    let split = BakeRequest { split: Some(Split { depth: 1, ..Split::default() }), ..plain() };
+    let region = BakeRequest { view_region: Some(glb.scene.bounds()), ..plain() };
+    assert!([named, split, region].iter().all(|request| !at_eyes(request)));
+    for info in [Some(&obj), None] {
+        assert!(matches!(cells(&plain(), info), CellsFrom::Places(_)));
+    }
 }
 
 #[test]
