@@ -24,13 +24,14 @@ use crate::cell::{Cell, Passing};
 use crate::end::End;
 use crate::hull::{Code, Hull};
 use crate::marks::Marks;
-use crate::orient::orient;
+use crate::orient::sign;
 use crate::sense::Sense;
 use crate::side::{Limit, Side};
 use crate::surface::Surface;
 use crate::touch::{Start, Target};
 use sightlines_geometry::vector::{cross, dot, sub};
 use sightlines_geometry::{Aabb, Point3, Random};
+use sightlines_multifocal::mesh::collinear;
 
 /// Why a chain does not block a cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -86,24 +87,40 @@ pub(crate) struct Shaft {
     pub(crate) rounding: Point3,
     /// The lines in question, if not all: they are connected, and the middle line is one.
     side: Option<Side>,
+    /// The triangle that lines end at, if all that begin at inner points come from one side of its plane. They meet the plane inside of it only,
+    /// so not its border.
+    ends_in: Option<[Point3; 3]>,
 }
 
 impl Shaft {
     /// None for ends without inner points.
-    ///
-    /// * `reach`: the largest magnitudes of coordinates of the surface
-    pub(crate) fn new(cell: Cell, start: Start, reach: Point3, random: &mut Random) -> Option<Self> {
+    pub(crate) fn new(
+        mut cell: Cell,
+        start: Start,
+        target: &Target,
+        surface: &Surface,
+        random: &mut Random,
+    ) -> Option<Self> {
         let mut weights = || [0; 4].map(|_| 0.7 + 0.6 * random.unit());
-        let (from, _) = cell.from.inner(weights())?;
+        let from = match cell.from.inner_part(weights(), |t| surface.corners(t)) {
+            None if cell.from.is_partial() => {
+                // Asks more.
+                cell.from = cell.from.whole();
+                cell.from.inner(weights())?
+            }
+            found => found?,
+        };
         let (to, rounding) = cell.to.inner(weights())?;
         let (a, b) = (cell.from.bounds(), cell.to.bounds());
         let bounds = a.with(b.min).with(b.max);
-        Some(Self { cell, start, hull: Hull::of(&cell, reach), bounds, line: [from, to], rounding, side: None })
+        let (hull, line, ends_in) =
+            (Hull::of(&cell, surface.reach()), [from.0, to], target.seen_from_one_side(&cell.from));
+        Some(Self { cell, start, hull, bounds, line, rounding, side: None, ends_in })
     }
 
     /// Of the lines of the cell those on a side; says whether they are certainly connected, and one was found.
     pub(crate) fn limit(&mut self, side: Side, random: &mut Random) -> bool {
-        if !side.is_connected() {
+        if !side.is_connected(&self.cell) {
             return false;
         }
         let [i, j] = side.farthest();
@@ -113,7 +130,9 @@ impl Shaft {
             let mut near = |end: &End, corner: usize| {
                 end.inner(end.weights_near(corner, others).map(|w| w * (0.7 + 0.6 * random.unit())))
             };
-            let ends = near(&self.cell.from, i).zip(near(&self.cell.to, j));
+            let is_partial = self.cell.from.is_partial();
+            let from = if is_partial { Some((self.line[0], [0.0; 3])) } else { near(&self.cell.from, i) };
+            let ends = from.zip(near(&self.cell.to, j));
             let Some(((from, _), (to, rounding))) = ends.filter(|_| others > NEAREST) else { return false };
             (self.line, self.rounding) = ([from, to], rounding);
         }
@@ -247,7 +266,8 @@ impl ChainFinder {
                     folded = folded.or(Some(gap));
                     let is_first = shaft.side.is_none() && left.is_none();
                     let on_side = if is_first { shaft.side_of_middle(ends) } else { None };
-                    let Some(on_side) = on_side.filter(|side| side.is_connected() && !side.is_nearly_all()) else {
+                    let Some(on_side) = on_side.filter(|side| side.is_connected(&shaft.cell) && !side.is_nearly_all())
+                    else {
                         return Err(failure(folded.unwrap_or(gap), can_fold));
                     };
                     left = Some(on_side);
@@ -263,10 +283,10 @@ impl ChainFinder {
 
     fn add(&mut self, surface: &Surface, shaft: &Shaft, target: &Target, triangle: u32, sense: i8) -> Result<(), Gap> {
         let (corners, bounds) = (surface.corners(triangle), surface.bounds(triangle));
-        if !shaft.start.is_clear_of(&corners, bounds, &shaft.cell.from) {
+        if !shaft.start.is_clear_of(surface, &corners, bounds, &shaft.cell.from) {
             return Err(Gap::Start { triangle });
         }
-        if !target.is_clear_of(&corners, bounds, &shaft.cell.to) {
+        if !target.is_clear_of(surface, &corners, bounds, &shaft.cell.to) {
             return Err(Gap::Target { triangle });
         }
         self.senses.set(triangle, sense);
@@ -308,7 +328,8 @@ impl ChainFinder {
         let [s, t] = [(ends[0], p), (ends[1], q)].map(|(v, at)| self.code(shaft, v, at));
         let mixed = !shaft.hull.misses(s, t)
             && shaft.cell.passing(p, q) == Passing::Both
-            && shaft.side.is_none_or(|side| !side.misses(&shaft.cell, [p, q]));
+            && shaft.side.is_none_or(|side| !side.misses(&shaft.cell, [p, q]))
+            && !shaft.ends_in.is_some_and(|triangle| is_on_border(&triangle, [p, q]));
         self.mixed.set(edge, mixed);
         mixed
     }
@@ -348,8 +369,8 @@ impl ChainFinder {
                 continue;
             }
             let (corners, bounds) = (surface.corners(other), surface.bounds(other));
-            if !shaft.start.is_clear_of(&corners, bounds, &shaft.cell.from)
-                || !target.is_clear_of(&corners, bounds, &shaft.cell.to)
+            if !shaft.start.is_clear_of(surface, &corners, bounds, &shaft.cell.from)
+                || !target.is_clear_of(surface, &corners, bounds, &shaft.cell.to)
             {
                 continue;
             }
@@ -395,8 +416,13 @@ impl ChainFinder {
     }
 }
 
-/// Rounding of `det` of three differences, as a share of the sum of magnitudes of its products.
-const ROUNDING: f64 = 8.0 * f64::EPSILON;
+/// Whether an edge is a part of the border of a triangle, exactly.
+fn is_on_border(triangle: &[Point3; 3], edge: [Point3; 2]) -> bool {
+    (0..3).any(|i| {
+        let [a, b] = [triangle[i], triangle[(i + 1) % 3]];
+        edge.iter().all(|&p| p == a || p == b || collinear(a, b, p))
+    })
+}
 
 /// Whether the middle line crosses a triangle in its interior: 1 from its front to its back, -1 the other way, 0 not; none if that is not
 /// certain.
@@ -416,23 +442,4 @@ fn crosses(shaft: &Shaft, [a, b, c]: [Point3; 3]) -> Option<i8> {
     }
     // A line that begins on a triangle crosses it there: condition 1 leaves only those that it comes to from behind.
     Some(if start == end { 0 } else { -end })
-}
-
-/// The sign of `orient3d(a, b, c, d)` for every `d` within `radius`; 0 if it is not the same for all, or zero.
-fn sign(a: Point3, b: Point3, c: Point3, d: Point3, radius: Point3) -> i8 {
-    let (u, v, w) = (sub(b, a), sub(c, a), sub(d, a));
-    let normal = cross(u, v);
-    let part = |i: usize, j: usize| (u[i] * v[j]).abs() + (u[j] * v[i]).abs();
-    let weight = [part(1, 2), part(2, 0), part(0, 1)];
-    let value = dot(normal, w);
-    let bound = (0..3).map(|k| ROUNDING * weight[k] * w[k].abs()).sum::<f64>();
-    let slack = (0..3).map(|k| 1.01 * (normal[k].abs() + ROUNDING * weight[k]) * radius[k]).sum::<f64>();
-    if value.abs() > bound + slack {
-        return if value > 0.0 { 1 } else { -1 };
-    }
-    if radius != [0.0; 3] {
-        return 0;
-    }
-    let exact = orient(a, b, c, d);
-    i8::from(exact > 0.0) - i8::from(exact < 0.0)
 }

@@ -1,5 +1,6 @@
 //! One end of a set of lines: a rectangle across an axis, or a triangle.
 
+use crate::orient::{height, sign};
 use sightlines_geometry::{Aabb, Point3, check_coordinate};
 
 /// A convex piece of a plane on which lines begin or end.
@@ -13,7 +14,23 @@ pub(crate) struct End {
     radius: Point3,
     /// Around the true corners.
     bounds: Aabb<3>,
+    /// Where it was cut by planes of triangles.
+    sides: [Option<PlaneSide>; MOST_SIDES],
 }
+
+/// The side of the plane of a triangle of the surface on which all of an end is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct PlaneSide {
+    pub(crate) triangle: u32,
+    /// The sign of `orient3d` of the triangle and points of the end.
+    pub(crate) sign: i8,
+}
+
+/// So many planes are remembered, the last ones.
+const MOST_SIDES: usize = 3;
+
+/// Where a plane is crossed at a part of a side that is less certain than this, nothing is cut.
+const UNCERTAIN: f64 = 1.0 / (1u64 << 12) as f64;
 
 /// What rounding a point `a + (b - a) t` costs at most, as a share of `|a| + |b|`: three roundings of 2^-53 each, of
 /// numbers of at most twice that size.
@@ -39,7 +56,7 @@ impl End {
         };
         let ([x, y], [x1, y1]) = ([b.min[u], b.min[v]], [b.max[u], b.max[v]]);
         let corners = [corner(x, y), corner(x1, y), corner(x1, y1), corner(x, y1)];
-        Some(Self { corners, n: 4, radius: [0.0; 3], bounds: *b })
+        Some(Self { corners, n: 4, radius: [0.0; 3], bounds: *b, sides: [None; MOST_SIDES] })
     }
 
     /// A triangle of the input.
@@ -54,7 +71,7 @@ impl End {
             bounds.min[k] = (bounds.min[k] - radius[k]).next_down();
             bounds.max[k] = (bounds.max[k] + radius[k]).next_up();
         }
-        Self { corners: [a, b, c, c], n: 3, radius, bounds }
+        Self { corners: [a, b, c, c], n: 3, radius, bounds, sides: [None; MOST_SIDES] }
     }
 
     /// The parts of a triangle where coordinate `k` is above `at`, or with `upward` false below: none, the whole, or one or two pieces whose
@@ -197,7 +214,172 @@ impl End {
         let [x, y, z, _] = self.corners;
         let (mut first, mut second) = ([x, y, z], [x, y, z]);
         (first[(i + 1) % 3], second[i]) = (middle, middle);
-        Some([first, second].map(|corners| Self::rounded(corners, radius)))
+        Some([first, second].map(|corners| Self { sides: self.sides, ..Self::rounded(corners, radius) }))
+    }
+
+    /// On which sides of planes it is known to be.
+    pub(crate) fn sides(&self) -> impl Iterator<Item = PlaneSide> + '_ {
+        self.sides.iter().copied().flatten()
+    }
+
+    /// Whether it is a rectangle of which only the part on known sides of planes counts. A triangle with such sides is all on them.
+    pub(crate) fn is_partial(&self) -> bool {
+        self.n == 4 && self.sides[0].is_some()
+    }
+
+    /// All of it, whatever is known of sides.
+    pub(crate) fn whole(&self) -> Self {
+        Self { sides: [None; MOST_SIDES], ..*self }
+    }
+
+    /// Whether nothing of it counts: all is on the wrong side of a plane, or on it.
+    ///
+    /// * `plane_of`: the corners of a triangle of the surface
+    pub(crate) fn counts_for_nothing(&self, plane_of: impl Fn(u32) -> [Point3; 3]) -> bool {
+        self.is_partial()
+            && self.sides().any(|side| {
+                let [a, b, c] = plane_of(side.triangle);
+                self.corners().iter().all(|&p| sign(a, b, c, p, [0.0; 3]) != side.sign)
+            })
+    }
+
+    /// Cuts an end by the plane of a triangle of the surface, into pieces that know on which side they are. The true corners of those of a triangle
+    /// are its own, and where the plane crosses its sides; of a rectangle a piece is a rectangle around a part. None if it is not certain where
+    /// that is.
+    pub(crate) fn cut_by(&self, triangle: u32, plane: [Point3; 3]) -> Option<[Option<Self>; 3]> {
+        if self.n != 3 {
+            let halves = [1, -1].map(|sign| self.part_on(PlaneSide { triangle, sign }, plane));
+            return Some([Some(halves[0]?), Some(halves[1]?), None]);
+        }
+        let corners = self.corners;
+        let heights = [0, 1, 2].map(|i| height(plane, corners[i], self.radius));
+        let [a, b, c] = plane;
+        let signs = [0, 1, 2].map(|i| sign(a, b, c, corners[i], self.radius));
+        let is_certain = |i: usize| signs[i] != 0 || self.is_exact();
+        if !(0..3).all(is_certain) || !signs.contains(&1) || !signs.contains(&-1) {
+            return None;
+        }
+        let mut radius = self.radius;
+        // The corners of the parts above and below, around.
+        let mut rings = [([[0.0; 3]; 4], 0), ([[0.0; 3]; 4], 0)];
+        let mut add = |sign: i8, p: Point3| {
+            for (ring, side) in rings.iter_mut().zip([1, -1]) {
+                if sign != -side && ring.1 < 4 {
+                    ring.0[ring.1] = p;
+                    ring.1 += 1;
+                }
+            }
+        };
+        for i in 0..3 {
+            let j = (i + 1) % 3;
+            add(signs[i], corners[i]);
+            if signs[i] * signs[j] < 0 {
+                add(0, self.crossing([corners[i], corners[j]], [heights[i], heights[j]], &mut radius)?);
+            }
+        }
+        let mut pieces = [None; 3];
+        let mut n = 0;
+        for ((ring, n_ring), sign) in rings.into_iter().zip([1, -1]) {
+            let sides = [Some(PlaneSide { triangle, sign }), self.sides[0], self.sides[1]];
+            for k in 2..n_ring {
+                *pieces.get_mut(n)? = Some(Self { sides, ..Self::rounded([ring[0], ring[k - 1], ring[k]], radius) });
+                n += 1;
+            }
+        }
+        Some(pieces)
+    }
+
+    /// Of a rectangle one around its part on a side of a plane; none if that is not certain, or it is all on one side.
+    fn part_on(&self, side: PlaneSide, plane: [Point3; 3]) -> Option<Self> {
+        let (n, corners) = (usize::from(self.n), self.corners());
+        let heights: [[f64; 2]; 4] = std::array::from_fn(|i| height(plane, corners[i], self.radius));
+        let is_inside = |i: usize| f64::from(side.sign) * heights[i][0] > 0.0;
+        if !(0..n).any(is_inside) || (0..n).all(is_inside) || heights.iter().any(|[h, e]| h.abs() <= *e) {
+            return None;
+        }
+        let mut part = Aabb::EMPTY;
+        for (i, &p) in corners.iter().enumerate() {
+            let j = (i + 1) % n;
+            if is_inside(i) {
+                part = part.with(p);
+            }
+            if is_inside(i) != is_inside(j) {
+                let mut radius = [0.0; 3];
+                let at = self.crossing([p, corners[j]], [heights[i], heights[j]], &mut radius)?;
+                let [low, high] = [-1.0, 1.0].map(|d| std::array::from_fn(|k| at[k] + d * 2.0 * radius[k]));
+                part = part.with(low).with(high);
+            }
+        }
+        let axis = (0..3).find(|&k| self.bounds.min[k] == self.bounds.max[k])?;
+        let clamp =
+            |p: Point3| -> Point3 { std::array::from_fn(|k| p[k].clamp(self.bounds.min[k], self.bounds.max[k])) };
+        let part = Self::rectangle(&Aabb { min: clamp(part.min), max: clamp(part.max) }, axis)?;
+        Some(Self { sides: [Some(side), self.sides[0], self.sides[1]], ..part })
+    }
+
+    /// A point of the part that counts, as [`Self::inner`] has it; none if no double is certainly in it.
+    ///
+    /// * `plane_of`: the corners of a triangle of the surface
+    pub(crate) fn inner_part(
+        &self,
+        weights: [f64; 4],
+        plane_of: impl Fn(u32) -> [Point3; 3],
+    ) -> Option<(Point3, Point3)> {
+        if !self.is_partial() {
+            return self.inner(weights);
+        }
+        let mut ring: Vec<Point3> = self.corners().to_vec();
+        for side in self.sides() {
+            let plane = plane_of(side.triangle);
+            let heights: Vec<f64> =
+                ring.iter().map(|&p| f64::from(side.sign) * height(plane, p, [0.0; 3])[0]).collect();
+            let mut rest = Vec::with_capacity(ring.len() + 1);
+            for (i, &p) in ring.iter().enumerate() {
+                let j = (i + 1) % ring.len();
+                if heights[i] >= 0.0 {
+                    rest.push(p);
+                }
+                if (heights[i] > 0.0) != (heights[j] > 0.0) {
+                    let t = heights[i] / (heights[i] - heights[j]);
+                    rest.push(std::array::from_fn(|k| p[k] + (ring[j][k] - p[k]) * t));
+                }
+            }
+            ring = rest;
+        }
+        let sum: f64 = (0..ring.len()).map(|i| weights[i % 4]).sum();
+        let at = |k: usize| ring.iter().enumerate().map(|(i, p)| p[k] * weights[i % 4]).sum::<f64>() / sum;
+        let mut point = self.corners[0];
+        for k in (0..3).filter(|&k| self.bounds.min[k] < self.bounds.max[k]) {
+            point[k] = check_coordinate(at(k)).ok()?;
+            if !(self.bounds.min[k] < point[k] && point[k] < self.bounds.max[k]) {
+                return None;
+            }
+        }
+        let is_inside = |side: PlaneSide| {
+            let [a, b, c] = plane_of(side.triangle);
+            sign(a, b, c, point, [0.0; 3]) == side.sign
+        };
+        self.sides().all(is_inside).then_some((point, [0.0; 3]))
+    }
+
+    /// Where a plane crosses a side, from how high its ends are above it, and how far off that may be; the radius grows by how far the true
+    /// point may be from it. None if doubles leave no room, or that is not certain enough.
+    fn crossing(&self, [a, b]: [Point3; 2], heights: [[f64; 2]; 2], radius: &mut Point3) -> Option<Point3> {
+        let [[low_a, high_a], [low_b, high_b]] = heights.map(|[h, e]| [(h.abs() - e).max(0.0), h.abs() + e]);
+        let (low, high) = (low_a / (low_a + high_b), high_a / (high_a + low_b));
+        if !(high - low <= UNCERTAIN) {
+            return None;
+        }
+        let t = (low + high) / 2.0;
+        let mut p = [0.0; 3];
+        for k in 0..3 {
+            p[k] = check_coordinate(a[k] + (b[k] - a[k]) * t).ok()?;
+            if a[k] != b[k] {
+                let rounded = (high - low) * (b[k] - a[k]).abs() + 2.0 * ROUNDING * (a[k].abs() + b[k].abs());
+                radius[k] = radius[k].max(self.radius[k] + 1.01 * rounded);
+            }
+        }
+        (p != a && p != b).then_some(p)
     }
 
     /// Cuts a rectangle where coordinate `k` is `at`; none if that is not inside.
@@ -238,6 +420,7 @@ fn is_sum(x: f64, y: f64, sum: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::truth::{Exact, cut_triangle, cuts, det, exact, mix};
     use num_rational::BigRational;
     use num_traits::Signed;
     use proptest::prelude::*;
@@ -319,5 +502,121 @@ mod tests {
             let has = |p: &[BigRational; 3]| pieces.iter().any(|e| e.corners().iter().any(|c| is_near(e, c, p)));
             prop_assert!(pieces.is_empty() || truth.iter().all(has), "{:?} {:?}", pieces, truth);
         }
+
+        /// Invariant: what a plane cuts a triangle into, which may have been cut before, covers it, and each piece is on the side that it knows. True
+        /// corners are those of the triangle and where the plane crosses its sides, in fractions; the stored ones are within the radius.
+        #[test]
+        fn pieces_know_on_which_side_of_a_plane_they_are(
+            triangle in [corner(), corner(), corner()], cuts in cuts(3), plane in [corner(), corner(), corner()],
+            shift in prop_oneof![Just(0.0), Just(1e6)],
+        ) {
+            let [triangle, plane] = [triangle, plane].map(|t| t.map(|p| p.map(|x| x + shift)));
+            let (end, truth) = cut_triangle(triangle, cuts);
+            let Some(pieces) = end.cut_by(7, plane) else { return Ok(()) };
+            let [a, b, c] = plane.map(exact);
+            let height = |p: &Exact| det(&a, &b, &c, p);
+            let mut points = truth.to_vec();
+            for i in 0..3 {
+                let (p, q) = (&truth[i], &truth[(i + 1) % 3]);
+                let (x, y) = (height(p), height(q));
+                if x.is_positive() && y.is_negative() || x.is_negative() && y.is_positive() {
+                    let t = &x / (&x - &y);
+                    points.push([0, 1, 2].map(|k| &p[k] + (&q[k] - &p[k]) * &t));
+                }
+            }
+            let area = |[p, q, r]: [&Exact; 3]| -> [BigRational; 3] {
+                let [u, v] = [q, r].map(|x| [0, 1, 2].map(|k| &x[k] - &p[k]));
+                [0, 1, 2].map(|k| &u[(k + 1) % 3] * &v[(k + 2) % 3] - &u[(k + 2) % 3] * &v[(k + 1) % 3])
+            };
+            let mut covered = [0, 1, 2].map(|_| BigRational::from_integer(0.into()));
+            let mut signs = Vec::new();
+            for piece in pieces.into_iter().flatten() {
+                let side = piece.sides().next().expect("it knows the plane");
+                prop_assert_eq!(side.triangle, 7);
+                let is_near = |c: &Point3, p: &Exact| (0..3).all(|k| {
+                    let [low, high] = [piece.bounds().min[k], piece.bounds().max[k]].map(|x| BigRational::from_float(x).expect("finite"));
+                    (exact(*c)[k].clone() - &p[k]).abs() <= exact(piece.radius())[k] && low <= p[k] && p[k] <= high
+                });
+                let is_on_side = |p: &Exact| if side.sign > 0 { !height(p).is_negative() } else { !height(p).is_positive() };
+                let of = |c: &Point3| points.iter().find(|p| is_on_side(p) && is_near(c, p));
+                let corners: Vec<Option<&Exact>> = piece.corners().iter().map(of).collect();
+                let [Some(p), Some(q), Some(r)] = corners[..] else {
+                    return Err(TestCaseError::fail(format!("{piece:?} of {end:?}")));
+                };
+                covered.iter_mut().zip(area([p, q, r])).for_each(|(sum, x)| *sum += x);
+                signs.push(side.sign);
+            }
+            prop_assert!(signs.contains(&1) && signs.contains(&-1));
+            // Of two points that are within rounding of each other the wrong one may have been taken.
+            let slack = BigRational::new(1.into(), 1_000_000.into());
+            let whole = area([&truth[0], &truth[1], &truth[2]]);
+            prop_assert!(covered.iter().zip(&whole).all(|(x, y)| (x - y).abs() < slack), "{:?} of {:?}", covered, whole);
+        }
+
+        /// Invariant: the parts into which planes cut a rectangle are around what counts, and an inner point of a part is on the sides that it knows.
+        #[test]
+        fn parts_of_rectangles_hold_what_counts(
+            low in corner(), size in [1i32..9, 1i32..9], planes in prop::collection::vec([corner(), corner(), corner()], 1..5),
+            weights in prop::collection::vec([1u64..20, 1u64..20, 1u64..20, 1u64..20], 20), shift in prop_oneof![Just(0.0), Just(1e6)],
+        ) {
+            let moved = |p: Point3| p.map(|x| x + shift);
+            let (low, planes) = (moved(low), planes.into_iter().map(|t| t.map(moved)).collect::<Vec<_>>());
+            let high = [low[0] + f64::from(size[0]) * 0.7, low[1] + f64::from(size[1]) * 0.7, low[2]];
+            let whole = End::rectangle(&Aabb { min: low, max: high }, 2).expect("it has an area");
+            let plane_of = |t: u32| planes[t as usize];
+            let mut parts = vec![whole];
+            for t in 0..planes.len() as u32 {
+                let cut = |end: End| end.cut_by(t, plane_of(t)).unwrap_or([Some(end), None, None]).into_iter().flatten();
+                parts = parts.into_iter().flat_map(cut).collect();
+            }
+            let corners: Vec<Exact> = whole.corners().iter().map(|&p| exact(p)).collect();
+            let signum = |t: u32, p: &Exact| {
+                let [a, b, c] = plane_of(t).map(exact);
+                let height = det(&a, &b, &c, p);
+                i8::from(height.is_positive()) - i8::from(height.is_negative())
+            };
+            let counts = |part: &End, p: &Exact| part.sides().all(|side| signum(side.triangle, p) == side.sign);
+            for w in &weights {
+                let p = mix(&corners, w);
+                if (0..planes.len() as u32).any(|t| signum(t, &p) == 0) {
+                    continue;
+                }
+                let has = |part: &&End| {
+                    let b = part.bounds();
+                    counts(part, &p) && (0..3).all(|k| exact(b.min)[k] <= p[k] && p[k] <= exact(b.max)[k])
+                };
+                let holding: Vec<&End> = parts.iter().filter(has).collect();
+                prop_assert!(!holding.is_empty() && holding.iter().all(|part| !part.counts_for_nothing(plane_of)));
+            }
+            for part in &parts {
+                if let Some((inner, _)) = part.inner_part([1.0, 1.1, 0.9, 1.2], plane_of) {
+                    prop_assert!(!part.is_partial() || counts(part, &exact(inner)));
+                    prop_assert!((0..2).all(|k| part.bounds().min[k] < inner[k] && inner[k] < part.bounds().max[k]));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn planes_cut_triangles_and_rectangles() {
+        let plane = [[0.3, 0.0, 0.0], [0.5, 1.0, 0.0], [0.4, 0.0, 7.0]];
+        let triangle = End::triangle([[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0]]);
+        let pieces = triangle.cut_by(3, plane).expect("it is crossed");
+        assert_eq!(pieces.iter().flatten().count(), 3);
+        assert!(triangle.cut_by(3, plane.map(|p| [p[0] + 2.0, p[1], p[2]])).is_none(), "a plane beside it");
+        assert!(triangle.cut_by(3, [[0.0, 0.0, 1.0], [3.0, 0.0, 1.0], [0.0, 5.0, 1.0]]).is_none(), "its own plane");
+        let square = End::rectangle(&Aabb { min: [0.0, 0.0, 1.0], max: [1.0, 1.0, 1.0] }, 2).expect("it has an area");
+        let [Some(one), Some(other), None] = square.cut_by(3, plane).expect("it is crossed") else {
+            panic!("two parts")
+        };
+        assert!(one.is_partial() && other.is_partial() && !square.is_partial() && !one.whole().is_partial());
+        assert!(!one.counts_for_nothing(|_| plane) && one.inner_part([1.0; 4], |_| plane).is_some());
+        // Beyond where the other part ends, nothing of it counts.
+        let most = one.bounds().max[0].min(other.bounds().max[0]);
+        let rest = [one, other].map(|part| part.cut_across(0, most + 0.1).map(|halves| halves[1]));
+        let [Some(rest), None] = rest else { panic!("{rest:?}") };
+        assert!(!rest.counts_for_nothing(|_| plane));
+        let turned = PlaneSide { triangle: 3, sign: -rest.sides[0].expect("it knows one").sign };
+        assert!(End { sides: [Some(turned), None, None], ..rest }.counts_for_nothing(|_| plane));
     }
 }

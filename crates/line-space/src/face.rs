@@ -13,7 +13,7 @@ use crate::method::with_area;
 use crate::roots::{Planes, beyond, start_at};
 use crate::search::{AT_END, MOST_BEYOND_FOLD};
 use crate::side::{Limit, Part, Side};
-use crate::split::{promise, split};
+use crate::split::{promise, split, split_at};
 use crate::surface::{Hit, Surface};
 use crate::touch::Target;
 use sightlines_geometry::{Aabb, BoxTree, Point3, Random, check_coordinate};
@@ -307,7 +307,11 @@ impl FaceSearch {
                 self.cut_node(exit, target, &question, k, leave_out);
                 continue;
             };
-            let Some(mut shaft) = Shaft::new(cell, start, surface.reach(), &mut random) else { return Err(failed) };
+            if cell.from.counts_for_nothing(|t| surface.corners(t)) {
+                continue;
+            }
+            let Some(mut shaft) = Shaft::new(cell, start, &end, surface, &mut random) else { return Err(failed) };
+            let cell = shaft.cell;
             let side = question.limit.map(|limit| Side::new(&cell, limit));
             let side = match side.map(|side| (side, side.part())) {
                 Some((_, Part::None)) => continue,
@@ -315,12 +319,13 @@ impl FaceSearch {
                 // Asks a little more, never less.
                 Some((_, Part::All)) | None => None,
             };
-            let mut question = Question { limit: side.map(|side| side.limit), ..question };
+            let mut question = Question { from: cell.from, limit: side.map(|side| side.limit), ..question };
             let is_ready = side.is_none_or(|side| shaft.limit(side, &mut random));
-            let answer = if is_ready {
-                self.block(surface, &shaft, &end, &mut question, effort)
-            } else {
-                Answer::Open(Gap::Other)
+            // If they may not be connected, or no line of them is found, all lines are looked at: a little more.
+            let enough = if is_ready { effort.enough } else { f64::INFINITY };
+            let answer = match self.block(surface, &shaft, &end, &mut question, &FaceEffort { enough, ..*effort }) {
+                Answer::Blocked(Blocked::Side { .. }) | Answer::Free if !is_ready => Answer::Open(Gap::Other),
+                answer => answer,
             };
             let gap = match answer {
                 Answer::Blocked(Blocked::All) => continue,
@@ -332,19 +337,24 @@ impl FaceSearch {
                 Answer::Free => Gap::Other,
                 Answer::Open(gap) => gap,
             };
-            let halves = split(surface, &shaft, &gap);
+            let parts = match question.limit {
+                Some(limit) if !is_ready => split_at(&shaft, &limit),
+                _ => split(surface, &shaft, &gap),
+            };
             question.cut_at = if let Gap::Edge { edge, .. } = gap { Some(edge) } else { None };
-            match (question.to, halves) {
-                (Piece::Node(k), halves) => match halves.filter(|halves| halves[0].from != cell.from) {
-                    Some(halves) => {
-                        self.waiting.extend(halves.map(|half| Question { from: half.from, ..question }));
+            match (question.to, parts) {
+                (Piece::Node(k), parts) => {
+                    let of = |part: Cell| (part.from != cell.from).then_some(Question { from: part.from, ..question });
+                    let n = self.waiting.len();
+                    self.waiting.extend(parts.into_iter().flatten().flatten().filter_map(of));
+                    if self.waiting.len() == n {
+                        self.cut_node(exit, target, &question, k, leave_out);
                     }
-                    None => self.cut_node(exit, target, &question, k, leave_out),
-                },
+                }
                 (Piece::Triangle(..), None) => return Err(failed),
-                (Piece::Triangle(t, _), Some(halves)) => {
-                    let of = |half: Cell| Question { from: half.from, to: Piece::Triangle(t, half.to), ..question };
-                    self.waiting.extend(halves.map(of));
+                (Piece::Triangle(t, _), Some(parts)) => {
+                    let of = |part: Cell| Question { from: part.from, to: Piece::Triangle(t, part.to), ..question };
+                    self.waiting.extend(parts.into_iter().flatten().map(of));
                 }
             }
         }
@@ -377,7 +387,8 @@ impl FaceSearch {
                 if is_free {
                     break;
                 }
-                self.hits.retain(|hit| Some(hit.triangle) != first);
+                let is_level = |t: u32| target.is_level_with(&surface.corners(t));
+                self.hits.retain(|hit| Some(hit.triangle) != first && !is_level(hit.triangle));
                 self.hits.truncate(effort.attempts);
             }
             for k in 0..self.hits.len() {

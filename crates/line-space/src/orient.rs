@@ -1,5 +1,6 @@
 //! The orientation predicate, with a short way for the edges that are most common: those along an axis.
 
+use sightlines_geometry::vector::{cross, dot, sub};
 use sightlines_geometry::{Point2, Point3, orient2d, orient3d};
 
 /// `orient3d(a, b, c, d)`. Exact. Where two of the points are one, it is zero. Where `a` and `b`, or `c` and `d`, differ along one axis only, it
@@ -29,6 +30,33 @@ fn axis_along(a: Point3, b: Point3) -> Option<usize> {
         [false, false, true] => Some(2),
         _ => None,
     }
+}
+
+/// Rounding of `det` of three differences, as a share of the sum of magnitudes of its products.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+/// `orient3d(a, b, c, d)` in doubles, and how far it may be from that of every point within `radius` of `d`.
+pub(crate) fn height([a, b, c]: [Point3; 3], d: Point3, radius: Point3) -> [f64; 2] {
+    let (u, v, w) = (sub(b, a), sub(c, a), sub(d, a));
+    let normal = cross(u, v);
+    let part = |i: usize, j: usize| (u[i] * v[j]).abs() + (u[j] * v[i]).abs();
+    let weight = [part(1, 2), part(2, 0), part(0, 1)];
+    let bound = (0..3).map(|k| ROUNDING * weight[k] * w[k].abs()).sum::<f64>();
+    let slack = (0..3).map(|k| 1.01 * (normal[k].abs() + ROUNDING * weight[k]) * radius[k]).sum::<f64>();
+    [dot(normal, w), bound + slack]
+}
+
+/// The sign of `orient3d(a, b, c, d)` for every `d` within `radius`; 0 if it is not the same for all, or zero.
+pub(crate) fn sign(a: Point3, b: Point3, c: Point3, d: Point3, radius: Point3) -> i8 {
+    let [value, error] = height([a, b, c], d, radius);
+    if value.abs() > error {
+        return if value > 0.0 { 1 } else { -1 };
+    }
+    if radius != [0.0; 3] {
+        return 0;
+    }
+    let exact = orient(a, b, c, d);
+    i8::from(exact > 0.0) - i8::from(exact < 0.0)
 }
 
 #[cfg(test)]

@@ -110,9 +110,14 @@ impl Search {
             }
             n += 1;
             let parts = roots.parts(&root);
-            let Some(mut shaft) = Shaft::new(root.cell, root.start, surface.reach(), &mut random) else {
+            if root.cell.from.counts_for_nothing(|t| surface.corners(t)) {
+                open -= root.share;
+                continue;
+            }
+            let Some(mut shaft) = Shaft::new(root.cell, root.start, target, surface, &mut random) else {
                 return (Outcome::Undecided, n);
             };
+            let root = Root { cell: shaft.cell, ..root };
             let side = root.limit.map(|limit| Side::new(&root.cell, limit));
             let side = match side.map(|side| (side, side.part())) {
                 Some((_, Part::None)) => {
@@ -156,8 +161,11 @@ impl Search {
                 self.queue.extend(parts.iter().map(|part| Root { limit: root.limit, share, ..*part }));
                 continue;
             }
-            let Some(halves) = split(surface, &shaft, &gap) else { return (Outcome::Undecided, n) };
-            self.queue.extend(halves.map(|cell| Root { cell, share: root.share / 2.0, ..root }));
+            let Some(parts) = split(surface, &shaft, &gap) else { return (Outcome::Undecided, n) };
+            let first = self.queue.len();
+            self.queue.extend(parts.into_iter().flatten().map(|cell| Root { cell, ..root }));
+            let share = root.share / (self.queue.len() - first) as f64;
+            self.queue.iter_mut().skip(first).for_each(|part| part.share = share);
         }
         (Outcome::Hidden, n)
     }

@@ -160,7 +160,9 @@ impl Side {
     }
 
     /// Whether these lines are certainly connected, and there are some.
-    pub(crate) fn is_connected(&self) -> bool {
+    ///
+    /// If only a part of the first end counts, it has to be possible to reach one corner of the second end from all of it.
+    pub(crate) fn is_connected(&self, cell: &Cell) -> bool {
         let passes = &self.passes;
         let of = |sign| passes.pairs().filter(move |&[i, j]| passes.sign[i][j] == sign);
         let Some([first, _]) = of(Sign::Positive).next() else { return false };
@@ -170,7 +172,13 @@ impl Side {
             signs.contains(&Sign::Positive) && signs.iter().all(|s| matches!(s, Sign::Positive | Sign::Zero))
         };
         let to_corner = |j: usize| -> [Sign; 4] { std::array::from_fn(|i| passes.sign[i.min(n - 1)][j]) };
-        if (0..n).any(|i| is_whole(&passes.sign[i][..m])) || (0..m).any(|j| is_whole(&to_corner(j))) {
+        if (0..m).any(|j| is_whole(&to_corner(j))) {
+            return true;
+        }
+        if cell.from.is_partial() {
+            return false;
+        }
+        if (0..n).any(|i| is_whole(&passes.sign[i][..m])) {
             return true;
         }
         let (mut from, mut to) = ([false; 4], [false; 4]);
@@ -423,13 +431,13 @@ mod tests {
                 is_connected_by_samples(&of)
             });
             if found == [None; 2] {
-                prop_assert!(!side.is_connected() && side.part() != Part::All);
+                prop_assert!(!side.is_connected(&case.cell) && side.part() != Part::All);
                 return Ok(());
             }
             let is_connected = found.contains(&Some(true));
             prop_assert!(side.part() != Part::None);
-            prop_assert!(is_connected || !side.is_connected(), "{:?}", limit);
-            let count = if side.is_connected() { &yes } else { &no };
+            prop_assert!(is_connected || !side.is_connected(&case.cell), "{:?}", limit);
+            let count = if side.is_connected(&case.cell) { &yes } else { &no };
             count.set(count.get() + 1);
             apart.set(apart.get() + usize::from(!is_connected));
             Ok(())
@@ -457,7 +465,7 @@ mod tests {
         // Lines that pass x = 1 at z = 2 on its right also pass x = 0.4 at z = 3 on its right, but x = 1.2 on both sides.
         let right = beyond(1.0, 2.0, sign);
         assert_eq!(right.part(), Part::Some);
-        assert!(right.is_connected() && right.misses(&cell, across(0.4, 3.0)));
+        assert!(right.is_connected(&cell) && right.misses(&cell, across(0.4, 3.0)));
         assert!(!right.misses(&cell, across(1.2, 3.0)));
         // Edges that end at the left of it are out of their way.
         assert!(
@@ -479,7 +487,7 @@ mod tests {
         let to = End::rectangle(&Aabb { min: [0.0, -1.0, 0.0], max: [0.0, 1.0, 2.0] }, 0).expect("an area");
         let cell = Cell { from, to };
         let side = |sign| Side::new(&cell, Limit { edge: [[0.0, 0.0, -1.0], [0.0, 0.0, 3.0]], sign });
-        assert!(!side(1.0).is_connected() && !side(-1.0).is_connected());
+        assert!(!side(1.0).is_connected(&cell) && !side(-1.0).is_connected(&cell));
         assert_eq!([side(1.0).part(), side(-1.0).part()], [Part::Some; 2]);
     }
 }

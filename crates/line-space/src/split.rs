@@ -3,6 +3,8 @@
 use crate::cell::Cell;
 use crate::chain::{Gap, Shaft};
 use crate::end::End;
+use crate::orient::height;
+use crate::side::Limit;
 use crate::surface::Surface;
 use sightlines_geometry::Point3;
 use sightlines_geometry::vector::{cross, dot, length, normal, sub};
@@ -32,16 +34,31 @@ pub(crate) fn promise(surface: &Surface, shaft: &Shaft, gap: &Gap) -> f64 {
     }
 }
 
-/// The two halves of a cell, cut as a gap suggests, or else across its longest side; none if doubles leave no room.
-pub(crate) fn split(surface: &Surface, shaft: &Shaft, gap: &Gap) -> Option<[Cell; 2]> {
-    let cell = &shaft.cell;
+/// The parts of a cell, cut as a gap suggests, or else across its longest side; none if doubles leave no room.
+pub(crate) fn split(surface: &Surface, shaft: &Shaft, gap: &Gap) -> Option<[Option<Cell>; 3]> {
+    let cell = shaft.cell;
     let suggested = match *gap {
-        Gap::Edge { edge, triangle } => at_edge(&Values::of_edge(surface, shaft, edge, triangle), cell),
-        Gap::Start { triangle } => at_plane(surface, triangle, &cell.from).map(|halves| with_from(cell, halves)),
-        Gap::Target { triangle } => at_plane(surface, triangle, &cell.to).map(|halves| with_to(cell, halves)),
+        Gap::Edge { edge, triangle } => at_edge(&Values::of_edge(surface, shaft, edge, triangle), &cell).map(both),
+        Gap::Start { triangle } => at_plane(surface, triangle, &cell.from, true)
+            .map(|parts| parts.map(|part| part.map(|from| Cell { from, ..cell }))),
+        Gap::Target { triangle } => {
+            let is_triangle = cell.to.corners().len() == 3;
+            at_plane(surface, triangle, &cell.to, is_triangle)
+                .map(|parts| parts.map(|part| part.map(|to| Cell { to, ..cell })))
+        }
         Gap::Other => None,
     };
-    suggested.or_else(|| longest(cell))
+    suggested.or_else(|| longest(&cell).map(both))
+}
+
+fn both<T>([a, b]: [T; 2]) -> [Option<T>; 3] {
+    [Some(a), Some(b), None]
+}
+
+/// The parts of a cell, cut where its lines begin to pass an edge on a side, or else across its longest side; none if doubles leave no room.
+pub(crate) fn split_at(shaft: &Shaft, limit: &Limit) -> Option<[Option<Cell>; 3]> {
+    let halves = at_edge(&Values::of(shaft, limit.edge, limit.sign), &shaft.cell);
+    halves.or_else(|| longest(&shaft.cell)).map(both)
 }
 
 fn with_from(cell: &Cell, halves: [End; 2]) -> [Cell; 2] {
@@ -64,7 +81,10 @@ impl Values {
         let [x, y] = surface.edge(edge);
         let eye = shaft.line[0];
         let side = dot(cross(sub(x, eye), sub(y, eye)), sub(surface.middle(triangle), eye));
-        let sign = if side > 0.0 { 1.0 } else { -1.0 };
+        Self::of(shaft, [x, y], if side > 0.0 { 1.0 } else { -1.0 })
+    }
+
+    fn of(shaft: &Shaft, [x, y]: [Point3; 2], sign: f64) -> Self {
         let (from, to) = (shaft.cell.from.corners(), shaft.cell.to.corners());
         let mut values = Self { of: [[0.0; 4]; 4], n: [from.len(), to.len()] };
         for (i, &a) in from.iter().enumerate() {
@@ -149,20 +169,26 @@ fn heights<'a>(surface: &Surface, triangle: u32, end: &'a End) -> impl Iterator<
 
 fn straddles(surface: &Surface, triangle: u32, end: &End) -> bool {
     let (mut up, mut down) = (false, false);
-    for h in heights(surface, triangle, end) {
-        up |= h > 0.0;
-        down |= h < 0.0;
+    for &p in end.corners() {
+        let [h, error] = height(surface.corners(triangle), p, end.radius());
+        up |= h > error;
+        down |= h < -error;
     }
     up && down
 }
 
 /// Cuts an end where a plane crosses it: exactly along planes across an axis.
-fn at_plane(surface: &Surface, triangle: u32, end: &End) -> Option<[End; 2]> {
+///
+/// * `may_know`: whether the parts may know on which side they are
+fn at_plane(surface: &Surface, triangle: u32, end: &End, may_know: bool) -> Option<[Option<End>; 3]> {
     let [a, b, c] = surface.corners(triangle);
     if let Some(k) = (0..3).find(|&k| a[k] == b[k] && b[k] == c[k])
         && let Some(halves) = end.cut_across(k, a[k])
     {
-        return Some(halves);
+        return Some(both(halves));
+    }
+    if may_know && let Some(parts) = end.cut_by(triangle, [a, b, c]) {
+        return Some(parts);
     }
     let mut heights: Vec<f64> = heights(surface, triangle, end).collect();
     if heights.len() == 4 {
@@ -171,12 +197,12 @@ fn at_plane(surface: &Surface, triangle: u32, end: &End) -> Option<[End; 2]> {
             vec![heights[0] + heights[3], heights[1] + heights[2], heights[0] + heights[1], heights[3] + heights[2]];
         let sides = [[heights[0], heights[1]], [heights[2], heights[3]]];
         let side = if (sides[0][1] - sides[0][0]).abs() >= (sides[1][1] - sides[1][0]).abs() { 0 } else { 1 };
-        return cut_at_root(end, side, sides[side]);
+        return cut_at_root(end, side, sides[side]).map(both);
     }
     let sides = [[heights[0], heights[1]], [heights[1], heights[2]], [heights[2], heights[0]]];
     let side =
         (0..3).max_by(|&s, &t| (sides[s][1] - sides[s][0]).abs().total_cmp(&(sides[t][1] - sides[t][0]).abs()))?;
-    cut_at_root(end, side, sides[side])
+    cut_at_root(end, side, sides[side]).map(both)
 }
 
 fn cut_at_root(end: &End, side: usize, [low, high]: [f64; 2]) -> Option<[End; 2]> {

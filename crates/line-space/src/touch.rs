@@ -1,7 +1,8 @@
 //! Whether a triangle of a chain stays away from an end of the lines. Exact.
 
 use crate::end::End;
-use crate::orient::orient;
+use crate::orient::{orient, sign};
+use crate::surface::Surface;
 use sightlines_geometry::{Aabb, Point2, Point3, orient2d};
 use sightlines_multifocal::mesh::avoids as avoids_box;
 
@@ -15,10 +16,23 @@ pub(crate) enum Target {
 }
 
 impl Target {
+    /// A triangle, if no inner point of where lines begin is on its plane.
+    pub(crate) fn seen_from_one_side(&self, from: &End) -> Option<[Point3; 3]> {
+        let Self::Triangle([a, b, c]) = *self else { return None };
+        let sides = Sides::of(from.corners(), |p| orient(a, b, c, p));
+        (sides.positive != sides.negative).then_some([a, b, c])
+    }
+
+    /// Whether a triangle is in the plane of the target, so that no line is blocked there before it ends.
+    pub(crate) fn is_level_with(&self, triangle: &[Point3; 3]) -> bool {
+        let Self::Triangle([a, b, c]) = *self else { return false };
+        triangle.iter().all(|&p| orient(a, b, c, p) == 0.0)
+    }
+
     /// Whether a triangle stays away from the end of the lines of a cell at this target.
-    pub(crate) fn is_clear_of(&self, triangle: &[Point3; 3], bounds: &Aabb<3>, end: &End) -> bool {
+    pub(crate) fn is_clear_of(&self, surface: &Surface, triangle: &[Point3; 3], bounds: &Aabb<3>, end: &End) -> bool {
         let around = end.bounds();
-        if apart(bounds, around) {
+        if apart(bounds, around) || is_parted(surface, triangle, end) {
             return true;
         }
         match self {
@@ -27,10 +41,26 @@ impl Target {
                 let inside_of = |piece: &[Point3; 3]| avoids_inside(triangle, piece);
                 inside_of(whole)
                     || end.is_exact() && inside_of(&[end.corners()[0], end.corners()[1], end.corners()[2]])
+                    || !end.is_exact() && leaves_plane_of(triangle, end)
                     || avoids_box(triangle, around, true)
             }
         }
     }
+}
+
+/// Whether a plane that an end is known to be on a side of has a triangle on its other side, or on it.
+fn is_parted(surface: &Surface, triangle: &[Point3; 3], end: &End) -> bool {
+    end.sides().any(|side| {
+        let [a, b, c] = surface.corners(side.triangle);
+        triangle.iter().all(|&p| f64::from(side.sign) * orient(a, b, c, p) <= 0.0)
+    })
+}
+
+/// Whether all of a rounded end is certainly on one side of the plane of a triangle.
+fn leaves_plane_of([a, b, c]: &[Point3; 3], end: &End) -> bool {
+    let side = |p: Point3| sign(*a, *b, *c, p, end.radius());
+    let first = side(end.corners()[0]);
+    first != 0 && end.corners()[1..].iter().all(|&p| side(p) == first)
 }
 
 fn apart(a: &Aabb<3>, b: &Aabb<3>) -> bool {
@@ -51,10 +81,13 @@ pub(crate) struct Start {
 impl Start {
     /// Whether a triangle stays away from the end where lines begin. Or else, if lines come from behind, whether it lies on the end's plane or
     /// beyond: they then cross it where they begin.
-    pub(crate) fn is_clear_of(&self, triangle: &[Point3; 3], bounds: &Aabb<3>, end: &End) -> bool {
+    pub(crate) fn is_clear_of(&self, surface: &Surface, triangle: &[Point3; 3], bounds: &Aabb<3>, end: &End) -> bool {
         let at = end.corners()[0][self.axis];
         let is_beyond = if self.upward { bounds.min[self.axis] >= at } else { bounds.max[self.axis] <= at };
-        self.from_behind && is_beyond || apart(bounds, end.bounds()) || avoids(triangle, end, true)
+        self.from_behind && is_beyond
+            || apart(bounds, end.bounds())
+            || is_parted(surface, triangle, end)
+            || avoids(triangle, end, true)
     }
 }
 

@@ -2,13 +2,13 @@
 
 use crate::fronts::{Mixed, corner, lattice, mixed};
 use proptest::prelude::*;
-use sightlines_geometry::{Aabb, Point3};
+use sightlines_geometry::{Aabb, Point3, Random};
 use sightlines_line_space::{FaceEffort, FaceExit, FaceSearch, FaceTarget, LineSpace, Surface};
 use sightlines_multifocal::{BackendError, FromRegion, Guarantee, Umbra, Volume};
 use sightlines_testkit::conformance::from_regions::wrong;
 use sightlines_testkit::conformance::{FromRegions, RegionScene, Suite};
 use sightlines_testkit::draw;
-use sightlines_testkit::meshes::{boxes, soup};
+use sightlines_testkit::meshes::{boxes, quad, soup};
 use std::sync::Arc;
 
 /// The sides of a box, each in parts.
@@ -164,4 +164,98 @@ fn sides_find_what_whole_boxes_do() {
     }
     eprintln!("whole {whole}, both {both}, sides {sides}");
     assert!(whole > 100 && both * 10 > whole * 8, "whole {whole}, both {both}, sides {sides}");
+}
+
+/// Points of a triangle.
+fn points_of([a, b, c]: [Point3; 3], random: &mut Random) -> Point3 {
+    let [x, y] = [random.unit(), random.unit()];
+    let [x, y] = if x + y > 1.0 { [1.0 - x, 1.0 - y] } else { [x, y] };
+    std::array::from_fn(|k| a[k] + x * (b[k] - a[k]) + y * (c[k] - a[k]))
+}
+
+/// Large walls at any angle, of both kinds, that cross what is looked at, where it is looked from, and each other.
+fn crossing_walls() -> impl Strategy<Value = (Mixed, Aabb<3>, [Point3; 3])> {
+    let corner = || [-4i32..5, -4i32..5, -4i32..5].prop_map(|p| p.map(|x| f64::from(x) * 0.61));
+    let wall = (corner(), corner(), corner(), 0u8..4);
+    (prop::collection::vec(wall, 3..12), corner(), [corner(), corner(), corner()]).prop_map(|(walls, eye, target)| {
+        let mut mixed = Mixed { both_sides: Vec::new(), fronts: Vec::new() };
+        for (p, u, v, kind) in walls {
+            let at = |s: f64, t: f64| std::array::from_fn(|k| p[k] + s * u[k] * 2.0 + t * v[k] * 2.0);
+            let wall = quad([at(-1.0, -1.0), at(1.0, -1.0), at(1.0, 1.0), at(-1.0, 1.0)], kind == 0);
+            if kind < 2 { mixed.fronts.extend(wall) } else { mixed.both_sides.extend(wall) }
+        }
+        let low = [eye[0] - 6.0, eye[1], eye[2]];
+        (mixed, Aabb { min: low, max: low.map(|x| x + 1.3) }, target.map(|p| [p[0] + 4.0, p[1], p[2]]))
+    })
+}
+
+/// How many questions are about something hidden, and a free line where the answer is wrong.
+fn asked(mixed: &Mixed, volume: &Aabb<3>, triangle: [Point3; 3], seed: u64) -> (u32, Option<[Point3; 2]>) {
+    let (mut search, mut n) = (search(mixed), 0);
+    let Some(target) = FaceTarget::new(&[triangle]) else { return (0, None) };
+    for exit in exits(volume, 1).into_iter().filter(|exit| exit.faces(target.bounds())) {
+        let effort = FaceEffort { cells: 400, triangle_cells: 400, ..FaceEffort::default() };
+        if search.is_blocked(&exit, &target, None, &|_| false, &effort).is_err() {
+            continue;
+        }
+        n += 1;
+        let mut random = Random::new(seed);
+        for _ in 0..300 {
+            let [p, q] = [random.point(&exit.part), points_of(triangle, &mut random)];
+            let beyond = if exit.upward { q[exit.axis] > p[exit.axis] } else { q[exit.axis] < p[exit.axis] };
+            let [p, q] = [Aabb { min: p, max: p }, Aabb { min: q, max: q }];
+            if let Some(free) = mixed.free_segment(&p, &q, 0, 1).filter(|_| beyond) {
+                return (n, Some(free));
+            }
+        }
+    }
+    (n, None)
+}
+
+proptest! {
+    /// Invariant: no segment from a part of a side to a point of a triangle beyond it is free if lines are reported blocked, where walls cross both.
+    #[test]
+    fn nothing_that_is_seen_is_hidden_where_walls_cross_both_ends(
+        (mixed, volume, triangle) in crossing_walls(), seed in any::<u64>(),
+    ) {
+        let (_, free) = asked(&mixed, &volume, triangle, seed);
+        prop_assert!(free.is_none(), "{:?}", free);
+    }
+}
+
+/// The tightness twin: in many of those scenes something is hidden.
+#[test]
+fn much_is_hidden_where_walls_cross_both_ends() {
+    let scenes = draw(&crossing_walls(), 400);
+    let n: u32 = scenes.iter().map(|(mixed, volume, triangle)| asked(mixed, volume, *triangle, 1).0).sum();
+    assert!(n > 60, "{n} of {} scenes", scenes.len());
+}
+
+/// A wall at an angle from within where it is looked from, or what is looked at, and another that begins where it ends: no line passes both.
+fn slanted(with_second: bool) -> Vec<[Point3; 3]> {
+    let upright = |[x, y]: [f64; 2], [x1, y1]: [f64; 2]| {
+        quad([[x, y, -50.0], [x1, y1, -50.0], [x1, y1, 50.0], [x, y, 50.0]], false)
+    };
+    let mut walls = upright([0.3, -0.2], [3.1, 2.6]).to_vec();
+    walls.extend(upright([3.1, 2.6], [3.3, -50.0]).into_iter().filter(|_| with_second));
+    walls
+}
+
+/// The tightness twin where it counts: of an end that a wall crosses at an angle both parts are hidden, by different walls.
+#[test]
+fn both_sides_of_a_wall_that_crosses_an_end_are_asked_about() {
+    let near = Aabb { min: [0.0; 3], max: [1.0; 3] };
+    let far = Aabb { min: [10.0, -1.0, 0.0], max: [11.0, 2.0, 1.0] };
+    let side = |b: &Aabb<3>, at: f64| [[at, b.min[1], 0.1], [at, b.max[1], 0.1], [at, b.min[1], 0.9]];
+    let part = |b: &Aabb<3>, at: f64| Aabb { min: [at, b.min[1], 0.0], max: [at, b.max[1], 1.0] };
+    let away = FaceExit { volume: near, axis: 0, upward: true, part: part(&near, 1.0) };
+    let back = FaceExit { volume: far, axis: 0, upward: false, part: part(&far, 10.0) };
+    for (exit, triangle) in [(away, side(&far, 10.0)), (back, side(&near, 1.0))] {
+        let target = FaceTarget::new(&[triangle]).expect("a triangle");
+        let is_blocked = |walls: &[[Point3; 3]]| {
+            let mut search = FaceSearch::new(Arc::new(Surface::new(walls)), 300);
+            search.is_blocked(&exit, &target, None, &|_| false, &FaceEffort::default()).is_ok()
+        };
+        assert!(is_blocked(&slanted(true)) && !is_blocked(&slanted(false)), "{exit:?}");
+    }
 }
