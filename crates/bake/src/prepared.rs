@@ -6,7 +6,6 @@ use crate::error::{BakeError, Meaningless};
 use crate::framed::{Framed, growth_of_cells};
 use crate::input::BakeInput;
 use crate::options::{Recipe, SceneMethod};
-use crate::places::PlaceOptions;
 use crate::region::{CellsFrom, PackRegionsError};
 use crate::reports::RegionReport;
 use crate::request::{BakeRequest, Runtime};
@@ -129,13 +128,16 @@ impl<'i> PreparedBake<'i> {
         let are_own = request.cells.is_none() && !sightlines && !request.for_proofs && scene.mirrors().is_empty();
         if are_own {
             let has_no_up = file.is_none_or(|file| file.up_is_assumed);
-            recipe.cells = own_cells(scene, request.is_for_places() || recipe.cut.view_region.is_some() || has_no_up);
+            let flying = request.is_for_places() || recipe.cut.view_region.is_some() || has_no_up;
+            recipe.cells = request.of_width(own_cells(scene, flying));
+        } else if request.cells.is_none() {
+            recipe.cells = request.of_width(recipe.cells);
         }
         if let CellsFrom::EyeLevel(how) = &mut recipe.cells {
             let up = how.up.or(file.map(|file| file.up)).unwrap_or(Axis::Z);
             match upwards(up, framed.as_ref()) {
                 Ok(up) => how.up = Some(up),
-                Err(_) if are_own => recipe.cells = CellsFrom::Places(PlaceOptions::default()),
+                Err(_) if are_own => recipe.cells = CellsFrom::Places(how.places()),
                 Err(leans) => return Err(leans.into()),
             }
         }

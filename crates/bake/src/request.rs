@@ -1,10 +1,12 @@
 //! What to bake, by the names that every face of the project has for it.
 
 use crate::error::Meaningless;
+use crate::eye_level::EyeLevelOptions;
 use crate::gap::Gap;
 use crate::input::BakeInput;
 use crate::methods::{Backend, BufferOptions};
 use crate::options::{Recipe, SceneMethod};
+use crate::places::PlaceOptions;
 use crate::region::CellsFrom;
 use crate::subdivide::Subdivide;
 use sightlines_geometry::Aabb;
@@ -21,8 +23,11 @@ use std::fmt;
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct BakeRequest {
     /// Scenes: the cells. None: those of a k-d tree where nearly all walls are perpendicular to an axis, where there are mirrors, and for
-    /// sightlines alone; else [`places`](crate::places).
+    /// sightlines alone; else cells at the height of [eyes](crate::eye_level), or [`places`](crate::places) where viewers may fly.
     pub cells: Option<CellsFrom>,
+    /// Scenes: the width of cells that are not named, at most, in scene units: of those at the height of eyes, or else of [`places`](crate::places),
+    /// which then take the place of cells of a k-d tree. None: by their kind.
+    pub cell_size: Option<f64>,
     /// Scenes: what decides. None: what the properties of the scene suggest, as for [`SceneMethod::Auto`]; sightlines alone for what has
     /// [proofs or stab trees](Self::for_proofs), and for cells of a k-d tree with mirrors, of which they report what does not reflect.
     pub method: Option<SceneMethod>,
@@ -151,7 +156,16 @@ impl BakeRequest {
 
     /// Whether cells of a scene are joined by portals if [proofs or stab trees](Self::for_proofs) are to be made.
     fn has_portals(&self) -> bool {
-        self.cells.as_ref().is_none_or(CellsFrom::have_portals)
+        self.cell_size.is_none() && self.cells.as_ref().is_none_or(CellsFrom::have_portals)
+    }
+
+    /// Cells that are not named, as wide as is asked for.
+    pub(crate) fn of_width(&self, own: CellsFrom) -> CellsFrom {
+        match (self.cell_size, own) {
+            (None, own) => own,
+            (cell_size, CellsFrom::EyeLevel(how)) => CellsFrom::EyeLevel(EyeLevelOptions { cell_size, ..how }),
+            (cell_size, _) => CellsFrom::Places(PlaceOptions { n_cells: None, cell_size }),
+        }
     }
 
     /// What is known without the input.
@@ -179,12 +193,8 @@ impl BakeRequest {
     }
 
     /// Options that mean something for scenes only, and whether each was named.
-    fn of_scenes(&self) -> [(&'static str, bool); 9] {
+    fn of_scenes(&self) -> [(&'static str, bool); 10] {
         let cells = |is: fn(&CellsFrom) -> bool| self.cells.as_ref().is_some_and(is);
-        let places = match &self.cells {
-            Some(CellsFrom::Places(how)) => Some(how),
-            _ => None,
-        };
         let is_auto = matches!(self.method, None | Some(SceneMethod::Auto));
         [
             ("view_region", self.view_region.is_some()),
@@ -195,12 +205,8 @@ impl BakeRequest {
             ("cells", cells(|cells| matches!(cells, CellsFrom::Boxes(_) | CellsFrom::KdTree))),
             ("grid", cells(|cells| matches!(cells, CellsFrom::Grid(_)))),
             ("eye_height", cells(|cells| matches!(cells, CellsFrom::EyeLevel(_)))),
-            (
-                places.map_or("n_cells", |how| {
-                    if how.n_cells.is_none() && how.cell_size.is_some() { "cell_size" } else { "n_cells" }
-                }),
-                places.is_some(),
-            ),
+            ("n_cells", cells(|cells| matches!(cells, CellsFrom::Places(_)))),
+            ("cell_size", self.cell_size.is_some()),
         ]
     }
 
@@ -238,6 +244,8 @@ impl BakeRequest {
         let are_boxes = are_given || matches!(self.cells, Some(CellsFrom::Grid(_)));
         let found = if are_given { "given boxes" } else { "a grid" };
         refuse(&[("keep_solid", self.keep_solid && are_boxes)], "cells that are cut along walls", found)?;
+        let are_named = self.cells.is_some();
+        refuse(&[("cell_size", self.cell_size.is_some() && are_named)], "cells that are not named", "named cells")?;
         let at_eyes = matches!(self.cells, Some(CellsFrom::EyeLevel(_)));
         let named = [("keep_solid", self.keep_solid && at_eyes), ("split", self.split.is_some() && at_eyes)];
         refuse(&named, "other cells", "cells at the height of eyes")?;
@@ -247,7 +255,7 @@ impl BakeRequest {
             let found = if method == SceneMethod::Auto { "the method chosen by the scene" } else { method.name() };
             refuse(&self.buffers.named(), "the methods multifocal and both", found)?;
         }
-        if !method.by_sightlines() && self.cells.as_ref().is_some_and(|cells| !cells.have_portals()) {
+        if !method.by_sightlines() && !self.has_portals() {
             let named = [("tau", self.tau.is_some()), ("detail_below", self.detail_below.is_some())];
             refuse(&named, "the cells of a k-d tree and for sightlines", method.name())?;
         }

@@ -89,7 +89,7 @@ fn cells_here(
 ) -> Result<Vec<ViewCell>, BakeError> {
     let nameless = |bounds: Aabb<3>| ViewCell { id: String::new(), bounds };
     let cut = SceneOptions { view_region: Some(*viewers), ..request.recipe().cut };
-    let cells = request.cells.clone().unwrap_or_else(|| own_cells(scene, true));
+    let cells = request.cells.clone().unwrap_or_else(|| request.of_width(own_cells(scene, true)));
     Ok(match &cells {
         CellsFrom::KdTree => {
             let cut = subdivide_scene(scene, &cut)?;
@@ -105,7 +105,11 @@ fn cells_here(
         CellsFrom::Grid(n) => grid::grid(viewers, *n)?.cells.into_iter().map(|cell| nameless(cell.bounds)).collect(),
         // A tile does not say which way is up.
         CellsFrom::Places(_) | CellsFrom::EyeLevel(_) => {
-            let how = if let CellsFrom::Places(how) = &cells { *how } else { PlaceOptions::default() };
+            let how = match &cells {
+                CellsFrom::Places(how) => *how,
+                CellsFrom::EyeLevel(how) => how.places(),
+                _ => PlaceOptions::default(),
+            };
             let found = observed_places(scene, &cut, &how, runtime.progress).map_err(|error| match error {
                 PlacesError::Cancelled(cancelled) => cancelled.into(),
                 error => BakeError::from(error),

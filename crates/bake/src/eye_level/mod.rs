@@ -11,6 +11,7 @@ mod grid;
 mod surfaces;
 mod units;
 
+use crate::places::PlaceOptions;
 use floors::Lengths;
 use grid::Grid;
 use sightlines_cells::Scene;
@@ -31,6 +32,13 @@ pub struct EyeLevelOptions {
     pub up: Option<Axis>,
     /// Scene units in a metre. None for what the scene shows ([`UnitsFrom`]).
     pub units_per_metre: Option<f64>,
+}
+
+impl EyeLevelOptions {
+    /// Places of that width, where there are no floors, or where they lean.
+    pub(crate) fn places(&self) -> PlaceOptions {
+        PlaceOptions { n_cells: None, cell_size: self.cell_size }
+    }
 }
 
 /// Why there are no cells at the height of eyes.

@@ -363,7 +363,7 @@ fn cells_alone(scene: &Scene, options: &RegionBakeOptions<'_>, how: &CellsFrom) 
                     eye_level = Some(found.summary);
                     parts::places_alone(found.cells, "eye-level")
                 }
-                Err(EyeLevelError::NoFloor) => cut_places(&PlaceOptions::default())?,
+                Err(EyeLevelError::NoFloor) => cut_places(&how.places())?,
                 Err(EyeLevelError::Cancelled(cancelled)) => return Err(cancelled.into()),
                 Err(error) => return Err(error.into()),
             }

@@ -3,6 +3,7 @@
 use crate::places::{block, city_of_boxes, scene};
 use proptest::prelude::*;
 use sightlines_bake::eye_level::{EyeLevelCells, EyeLevelError, EyeLevelOptions, LeftOut, UnitsFrom, eye_level_cells};
+use sightlines_bake::places::PlaceOptions;
 use sightlines_bake::region::CellsFrom;
 use sightlines_bake::{BakeInput, BakeRequest, Runtime, SceneMethod};
 use sightlines_cells::{Scene, SceneObject};
@@ -330,6 +331,20 @@ fn scenes_with_few_walls_along_axes_have_these_cells() {
     for info in [Some(&obj), None] {
         assert!(matches!(cells(&plain(), info), CellsFrom::Places(_)));
     }
+    // A width alone says nothing of what cells are; along axes it takes the place of a k-d tree.
+    let wide = |request: BakeRequest| BakeRequest { cell_size: Some(3.0), ..request };
+    let of_eyes = CellsFrom::EyeLevel(EyeLevelOptions {
+        cell_size: Some(3.0),
+        up: Some(glb.info.up),
+        ..EyeLevelOptions::default()
+    });
+    let anywhere = CellsFrom::Places(PlaceOptions { n_cells: None, cell_size: Some(3.0) });
+    assert_eq!(cells(&wide(plain()), Some(&glb.info)), of_eyes);
+    assert_eq!(cells(&wide(plain()), Some(&obj)), anywhere);
+    assert_eq!(cells(&wide(BakeRequest { for_proofs: true, ..plain() }), Some(&glb.info)), anywhere);
+    let grid = wide(BakeRequest { cells: Some(CellsFrom::Grid([1; 3])), ..plain() });
+    let refused = grid.prepare(BakeInput::Scene(&glb.scene, Some(&glb.info)), &Runtime::default());
+    assert!(refused.expect_err("cells have their widths").to_string().contains("cell_size"));
 }
 
 #[test]

@@ -145,7 +145,12 @@ fn options() -> Vec<(&'static str, BakeRequest)> {
     let tau = Some(0.5);
     vec![
         ("--n-cells 12", few()),
-        ("--cell-size 4", BakeRequest { cells: places(None, Some(4.0)), ..plain() }),
+        ("--cell-size 4", BakeRequest { cell_size: Some(4.0), ..plain() }),
+        ("--n-cells 12 --cell-size 4", BakeRequest { cells: places(Some(12), Some(4.0)), ..plain() }),
+        (
+            "--method line-space --cell-size 4",
+            BakeRequest { cell_size: Some(4.0), method: method("line-space"), ..plain() },
+        ),
         ("--grid 3,1,2", grid()),
         ("--grid 3,1,2 --method line-space", BakeRequest { method: method("line-space"), ..grid() }),
         ("--method sightlines", sightlines()),

@@ -88,7 +88,8 @@ impl CertifyArgs {
 
 /// Warns if the cells of a scene are those of a k-d tree because of `request`, and others would be cut without proofs and stab trees.
 pub(super) fn warn_of_large_cells(path: &Path, request: &BakeRequest, input: BakeInput<'_>) {
-    let is_asked = request.for_proofs && request.method.is_none() && request.cells.is_none();
+    let BakeRequest { cells, cell_size, method, for_proofs, .. } = request;
+    let is_asked = *for_proofs && method.is_none() && cells.is_none() && cell_size.is_none();
     if let BakeInput::Scene(scene, _) = input
         && is_asked
         && !matches!(own_cells(scene, true), CellsFrom::KdTree)

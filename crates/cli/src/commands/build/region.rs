@@ -41,8 +41,8 @@ pub(crate) struct RegionArgs {
     /// behind the backs of single-sided faces, is in none. For viewers who fly
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), conflicts_with_all = ["cells", "grid"])]
     n_cells: Option<u32>,
-    /// Scenes in space: the same, with no side of a cell longer than SIZE, in scene units; there are as many cells as that needs, if it
-    /// is more than otherwise
+    /// Scenes in space: the width of cells, at most, in scene units: of those at the height of eyes; with --n-cells, and where viewers may fly or
+    /// most walls are axis-aligned, of boxes anywhere, no side of which is longer then, and of which there are as many as that needs
     #[arg(long, value_name = "SIZE", value_parser = crate::numbers::above_zero, allow_hyphen_values = true, conflicts_with_all = ["cells", "grid"])]
     cell_size: Option<f64>,
     /// Scenes in space: cells above floors, where eyes are from LOW to HIGH units above the ground, and 1, 2, 4 m wide or more, as their number
@@ -80,20 +80,16 @@ impl RegionArgs {
     /// [`ReadError`] with the file's name and the place in it.
     pub(crate) fn put_into(&self, request: &mut BakeRequest) -> Result<(), ReadError> {
         let Self { method, cells, grid, n_cells, cell_size, eye_height, buffers, split } = self;
-        let eye_level = |&height: &[f64; 2]| {
-            let options =
-                EyeLevelOptions { cell_size: *cell_size, eye_height: Some(height), ..EyeLevelOptions::default() };
-            CellsFrom::EyeLevel(options)
-        };
-        let places = || CellsFrom::Places(PlaceOptions { n_cells: *n_cells, cell_size: *cell_size });
+        let eye_level =
+            EyeLevelOptions { cell_size: *cell_size, eye_height: *eye_height, ..EyeLevelOptions::default() };
+        let places = PlaceOptions { n_cells: *n_cells, cell_size: *cell_size };
         request.cells = match (cells.as_ref().map(read_view_cells).transpose()?, grid) {
             (Some(cells), _) => Some(CellsFrom::Boxes(cells)),
             (None, Some(n)) => Some(CellsFrom::Grid(*n)),
-            (None, None) => match eye_height {
-                Some(height) => Some(eye_level(height)),
-                None => (n_cells.is_some() || cell_size.is_some()).then(places),
-            },
+            (None, None) if eye_height.is_some() => Some(CellsFrom::EyeLevel(eye_level)),
+            (None, None) => n_cells.is_some().then_some(CellsFrom::Places(places)),
         };
+        request.cell_size = cell_size.filter(|_| request.cells.is_none());
         (request.method, request.buffers, request.split) =
             (*method, buffers.request(), split.map(|depth| Split { depth, ..Split::default() }));
         Ok(())
