@@ -6,6 +6,7 @@ use crate::long;
 use crate::table::Table;
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
+use sightlines_bake::eye_level::EyeLevelOptions;
 use sightlines_bake::places::PlaceOptions;
 use sightlines_bake::{
     BakeError, BakeInput, BakeRequest, Bakeable, BakeableError, Baked, CellsFrom, Gap, Report, Runtime,
@@ -15,6 +16,7 @@ use sightlines_formats::view_cells::ViewCell;
 use sightlines_formats::{Source, ViewCells};
 use sightlines_geometry::{Aabb, check_coordinate};
 use sightlines_progress::Observer;
+use sightlines_pvs::Axis;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -26,9 +28,12 @@ pub(crate) type Said = (u64, u64, u64);
 #[pyo3(from_item_all)]
 pub(crate) struct Options<'py> {
     method: Option<String>,
-    /// "kd-tree", "places", "grid" or "boxes".
+    /// "kd-tree", "places", "eye-level", "grid" or "boxes".
     cells: Option<String>,
     place_count: Option<u32>,
+    cell_size: Option<f64>,
+    eye_height: Option<[f64; 2]>,
+    up: Option<u8>,
     grid: Option<[u32; 3]>,
     boxes: Option<PyReadonlyArray2<'py, f64>>,
     view_region: Option<[f64; 6]>,
@@ -69,10 +74,19 @@ impl Options<'_> {
                 return Err(value_error(format!("{name} is {x}, where a finite number from 0 on is expected")));
             }
         }
+        let Self { cell_size, eye_height, .. } = *self;
+        let mut width = None;
         let cells = match self.cells.as_deref() {
-            None => None,
+            None => {
+                width = cell_size;
+                None
+            }
             Some("kd-tree") => Some(CellsFrom::KdTree),
-            Some("places") => Some(CellsFrom::Places(PlaceOptions { n_cells: self.place_count, cell_size: None })),
+            Some("places") => Some(CellsFrom::Places(PlaceOptions { n_cells: self.place_count, cell_size })),
+            Some("eye-level") => {
+                let up = self.up.and_then(|up| Axis::ALL.get(usize::from(up))).copied();
+                Some(CellsFrom::EyeLevel(EyeLevelOptions { cell_size, eye_height, up, ..EyeLevelOptions::default() }))
+            }
             Some("grid") => Some(CellsFrom::Grid(self.grid.unwrap_or_default())),
             Some("boxes") => {
                 let boxes = self.boxes.as_ref().map(|boxes| rows::<6>(boxes, "cells")).transpose()?.unwrap_or_default();
@@ -90,6 +104,7 @@ impl Options<'_> {
         let request = BakeRequest {
             method: self.method.as_deref().map(|name| name.parse().map_err(value_error)).transpose()?,
             cells,
+            cell_size: width,
             view_region: self.view_region.map(|b| aabb(b, "view_region")).transpose()?,
             gap: match self.gap {
                 Some(width) => Gap::Width(width),

@@ -82,6 +82,18 @@ def test_cells_may_be_chosen():
     assert grid.kind == "scene, boxes as cells" and grid.n_cells == 6
     places = sl.bake(HALLS, cells=8, progress=False)
     assert 0 < places.n_cells <= 16
+    assert sl.bake(HALLS, cells="places", cell_size=4.0, progress=False).n_cells > places.n_cells
+    eyes = sl.bake(HALLS, cells="eye-level", cell_size=4.0, eye_height=(0.5, 2.0), up="z", progress=False)
+    sizes = eyes.cells[:, 1] - eyes.cells[:, 0]
+    assert (sizes[:, :2] <= 4.0).all() and (sizes[:, 2] <= 2.25).all()
+    for wrong in (
+        {"cells": (3, 2, 1), "cell_size": 2.0},
+        {"eye_height": (0, 2)},
+        {"cells": "eye-level", "up": "w"},
+        {"cells": "eye-level", "eye_height": (0, 1, 2)},
+    ):
+        with pytest.raises(ValueError):
+            sl.bake(HALLS, progress=False, **wrong)
     boxes = np.array([[[1, 1, 1], [3, 3, 2]], [[15, 1, 1], [18, 3, 2]]])
     given = sl.bake(HALLS, cells=boxes, method="both", progress=False)
     assert (given.cells == boxes).all() and not given.sees(0, 1)

@@ -220,6 +220,11 @@
 #define SL_CELLS_BOXES 4
 
 /**
+ * Cells above floors, as high as eyes are; without portals. Viewers elsewhere see everything.
+ */
+#define SL_CELLS_EYE_LEVEL 5
+
+/**
  * A scene that is being put together. One call at a time.
  */
 typedef struct sl_scene sl_scene;
@@ -623,6 +628,18 @@ typedef struct sl_bake_options {
      * Passed to it.
      */
     void *user;
+    /**
+     * Width of cells, at most, in scene units, for `SL_CELLS_CHOSEN`, `SL_CELLS_PLACES` and `SL_CELLS_EYE_LEVEL`; 0 for what suits the kind.
+     */
+    double cell_size;
+    /**
+     * From how far to how far above floors eyes are, in scene units, for `SL_CELLS_EYE_LEVEL`; 0 and 0 for 0 to 2.5 m.
+     */
+    double eye_height[2];
+    /**
+     * The axis that points upwards, for `SL_CELLS_EYE_LEVEL`: 1, 2 or 3 for x, y or z; 0 for what the file says, or else z.
+     */
+    uint64_t up;
 } sl_bake_options;
 
 /**

@@ -5,6 +5,7 @@ use crate::info::SlBox;
 use crate::scene::{SlScene, scene};
 use crate::status::{Failure, SL_ERROR_BAKE, SL_ERROR_CANCELLED, SL_ERROR_GEOMETRY, SlStatus, guard};
 use crate::table::{SlTable, new_table};
+use sightlines_bake::eye_level::EyeLevelOptions;
 use sightlines_bake::places::PlaceOptions;
 use sightlines_bake::region::CellsFrom;
 use sightlines_bake::{BakeError, BakeInput, BakeRequest, Baked, Gap, Report, Runtime, SceneMethod};
@@ -13,7 +14,7 @@ use sightlines_formats::ViewCells;
 use sightlines_formats::view_cells::ViewCell;
 use sightlines_geometry::{Aabb, Point2, check_coordinate};
 use sightlines_progress::{Observer, Progress};
-use sightlines_pvs::Table;
+use sightlines_pvs::{Axis, Table};
 use std::ffi::{CString, c_char, c_void};
 use std::ops::ControlFlow;
 use std::sync::Mutex;
@@ -55,6 +56,8 @@ pub const SL_CELLS_PLACES: u32 = 2;
 pub const SL_CELLS_GRID: u32 = 3;
 /// The boxes at `boxes`; without portals.
 pub const SL_CELLS_BOXES: u32 = 4;
+/// Cells above floors, as high as eyes are; without portals. Viewers elsewhere see everything.
+pub const SL_CELLS_EYE_LEVEL: u32 = 5;
 
 /// How to make a table. Set everything to 0 but `struct_size`, which is `sizeof(sl_bake_options)`: 0 is the default of every field.
 #[repr(C)]
@@ -97,6 +100,12 @@ pub struct SlBakeOptions {
     pub progress: SlProgressFn,
     /// Passed to it.
     pub user: *mut c_void,
+    /// Width of cells, at most, in scene units, for `SL_CELLS_CHOSEN`, `SL_CELLS_PLACES` and `SL_CELLS_EYE_LEVEL`; 0 for what suits the kind.
+    pub cell_size: f64,
+    /// From how far to how far above floors eyes are, in scene units, for `SL_CELLS_EYE_LEVEL`; 0 and 0 for 0 to 2.5 m.
+    pub eye_height: [f64; 2],
+    /// The axis that points upwards, for `SL_CELLS_EYE_LEVEL`: 1, 2 or 3 for x, y or z; 0 for what the file says, or else z.
+    pub up: u64,
 }
 
 impl Plain for SlBakeOptions {}
@@ -198,6 +207,9 @@ static DEFAULT: Shareable = Shareable(SlBakeOptions {
     time_limit: 0.0,
     progress: None,
     user: std::ptr::null_mut(),
+    cell_size: 0.0,
+    eye_height: [0.0; 2],
+    up: 0,
 });
 
 struct Shareable(SlBakeOptions);
@@ -240,10 +252,18 @@ impl Given<'_> {
                 "gap, time limit or size of detail is no finite number, or the limit is below 0",
             ));
         }
+        let SlBakeOptions { cell_size, eye_height, up, .. } = *self.options;
+        let axis = match up {
+            0 => None,
+            1..=3 => Some(Axis::ALL[up as usize - 1]),
+            _ => return Err(Failure::argument(format!("up is {up}, where 0, 1, 2 or 3 is expected"))),
+        };
         for (field, is_given, kind) in [
             ("place_count", place_count != 0, SL_CELLS_PLACES),
             ("grid", grid != [0; 3], SL_CELLS_GRID),
             ("box_count", self.options.box_count != 0, SL_CELLS_BOXES),
+            ("eye_height", eye_height != [0.0; 2], SL_CELLS_EYE_LEVEL),
+            ("up", up != 0, SL_CELLS_EYE_LEVEL),
         ] {
             if is_given && cells != kind {
                 return Err(Failure::argument(format!(
@@ -252,10 +272,25 @@ impl Given<'_> {
             }
         }
         let n_cells = if place_count == 0 { None } else { Some(place_count) };
+        let cell_size = if cell_size == 0.0 { None } else { Some(cell_size) };
+        let eyes = EyeLevelOptions {
+            cell_size,
+            eye_height: if eye_height == [0.0; 2] { None } else { Some(eye_height) },
+            up: axis,
+            ..EyeLevelOptions::default()
+        };
+        let mut width = cell_size;
         let cells = match cells {
             SL_CELLS_CHOSEN => None,
             SL_CELLS_KD_TREE => Some(CellsFrom::KdTree),
-            SL_CELLS_PLACES => Some(CellsFrom::Places(PlaceOptions { n_cells, cell_size: None })),
+            SL_CELLS_PLACES => {
+                width = None;
+                Some(CellsFrom::Places(PlaceOptions { n_cells, cell_size }))
+            }
+            SL_CELLS_EYE_LEVEL => {
+                width = None;
+                Some(CellsFrom::EyeLevel(eyes))
+            }
             SL_CELLS_GRID => Some(CellsFrom::Grid(grid)),
             SL_CELLS_BOXES => {
                 let cell = |(i, b): (usize, &SlBox)| {
@@ -276,6 +311,7 @@ impl Given<'_> {
         }
         Ok(BakeRequest {
             cells,
+            cell_size: width,
             method: self.method,
             gap: match gap {
                 0.0 if is_single => Gap::OfSingle,

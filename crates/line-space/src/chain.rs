@@ -4,12 +4,15 @@
 //! 1. no triangle of `F` has a point in the relative interior of either end, but for triangles on the plane where lines begin or
 //!    beyond it, which lines cross as they begin,
 //! 2. no line between inner points of the ends meets the rim, because all pass it on one side, or it lies outside of their hull or off
-//!    their [side](crate::side) of an edge,
+//!    their [side](crate::side) of an edge, or on the border of the triangle inside of which they end, where they begin on one side of its plane,
 //! 3. one such line crosses `F` an odd number of times, nowhere at an edge,
 //!
 //! then every line of the cell meets `F`. Lines between inner points can be moved into each other without passing the rim (2) or
 //! having an end on `F` (1), so the number of crossings stays odd (3); all others are limits of these, and `F` is closed. For the lines
 //! on one side of an edge all three are needed only of those, if they are connected: then they too can be moved into each other.
+//!
+//! An end that a triangle of `F` crosses is [cut](crate::end) by its plane, into parts that know on which side they are: no rounding puts points of
+//! them on the other side. Lines are connected as well if only a convex part of an end counts.
 //!
 //! Where `F` has triangles that block from their fronts only, the number of crossings is counted with signs; see [`crate::sense`].
 //!

@@ -21,6 +21,9 @@ def bake(
     source: Any,
     *,
     cells: str | int | tuple[int, int, int] | ArrayLike | None = None,
+    cell_size: float | None = None,
+    eye_height: tuple[float, float] | None = None,
+    up: str | None = None,
     method: str | None = None,
     view_region: ArrayLike | None = None,
     gap: float | None = None,
@@ -42,7 +45,11 @@ def bake(
         bytes, a ``trimesh.Scene`` or ``Trimesh``, or meshes by name: ``{"wall": (corners, triangles)}`` with arrays of shapes (n, 3)
         and (m, 3)
     :param cells: where viewers can be. None: chosen by the scene, such as above floors at the height of eyes. ``"kd-tree"``: boxes along
-        the walls, with portals. A number: so many boxes, cut where views differ. Three numbers: a grid. An array (n, 2, 3): these boxes
+        the walls, with portals. ``"eye-level"``: above floors at the height of eyes; viewers elsewhere see everything. ``"places"`` or a
+        number: so many boxes, cut where views differ. Three numbers: a grid. An array (n, 2, 3): these boxes
+    :param cell_size: width of cells above floors, or of boxes that are cut where views differ, at most, in scene units
+    :param eye_height: of ``"eye-level"``: from how far to how far above floors eyes are, in scene units. None: 0 to 2.5 m
+    :param up: of ``"eye-level"``: the axis that points upwards, ``"x"``, ``"y"`` or ``"z"``. None: as the file says, else z
     :param method: what decides. None: chosen by the scene, as ``"auto"`` does. Otherwise ``"sightlines"``, ``"auto"``,
         ``"both"``, ``"multifocal"``, ``"line-space"``, ``"shafts"``
     :param view_region: a box (2, 3) in which viewers are; rooms that cannot be reached from it are no cells. None: the box around the view
@@ -62,7 +69,8 @@ def bake(
     :raises OSError: for a file that cannot be read
     :raises Error: for a damaged file, or a scene that cannot be baked
     """
-    options = _options(cells, method, view_region, gap, detail_below, keep_solid, max_cells, time_limit, threads)
+    eyes = (cell_size, eye_height, up)
+    options = _options(cells, eyes, method, view_region, gap, detail_below, keep_solid, max_cells, time_limit, threads)
     if map is not None and not isinstance(map, str):
         raise TypeError("map is the name of a map")
     with Reporter(progress) as report:
@@ -78,6 +86,7 @@ def bake(
 
 def _options(
     cells: Any,
+    eyes: tuple[float | None, tuple[float, float] | None, str | None],
     method: str | None,
     view_region: ArrayLike | None,
     gap: float | None,
@@ -93,8 +102,8 @@ def _options(
     boxes: NDArray[np.float64] | None = None
     if cells is None or isinstance(cells, str):
         kind = cells
-        if kind not in (None, "kd-tree", "places"):
-            raise ValueError(f"cells: {kind!r} is neither 'kd-tree' nor 'places', nor numbers or boxes")
+        if kind not in (None, "kd-tree", "places", "eye-level"):
+            raise ValueError(f"cells: {kind!r} is none of 'kd-tree', 'places' and 'eye-level', nor numbers or boxes")
     elif np.ndim(cells) == 0:
         kind, place_count = "places", count(index(cells, "cells"), "cells")
     elif np.ndim(cells) == 1:
@@ -106,6 +115,16 @@ def _options(
         if boxes.ndim != 3 or boxes.shape[1:] != (2, 3):
             raise ValueError(f"cells: an array of shape {boxes.shape}, where boxes (n, 2, 3) are expected")
         kind, boxes = "boxes", boxes.reshape(-1, 6)
+    cell_size, eye_height, up = eyes
+    if cell_size is not None and kind not in (None, "places", "eye-level"):
+        raise ValueError("cell_size: cells of a k-d tree, of a grid and boxes have their own widths")
+    if kind != "eye-level" and (eye_height is not None or up is not None):
+        raise ValueError("eye_height and up are for cells='eye-level'")
+    if up not in (None, "x", "y", "z"):
+        raise ValueError(f"up: {up!r} is none of 'x', 'y' and 'z'")
+    heights = None if eye_height is None else floats(eye_height, "eye_height").tolist()
+    if heights is not None and len(heights) != 2:
+        raise ValueError(f"eye_height: {len(heights)} numbers, where two are expected")
     region: list[float] | None = None
     if view_region is not None:
         box = floats(view_region, "view_region")
@@ -116,6 +135,9 @@ def _options(
         "method": method,
         "cells": kind,
         "place_count": place_count,
+        "cell_size": None if cell_size is None else float(cell_size),
+        "eye_height": heights,
+        "up": None if up is None else "xyz".index(up),
         "grid": grid,
         "boxes": boxes,
         "view_region": region,

@@ -259,7 +259,7 @@ impl Driver<'_> {
         let mut left = 1 + u32::from(self.bytes.byte());
         let stated = size_of::<SlBakeOptions>() - self.bytes.below(16) / 15;
         let method = self.bytes.below(14);
-        let cells = self.bytes.below(6) as u32;
+        let cells = self.bytes.below(7) as u32;
         // What cells of another kind need is refused.
         let is_odd = self.bytes.below(16) == 0;
         let options =
@@ -282,6 +282,13 @@ impl Driver<'_> {
                 time_limit: [0.0, 0.05, f64::NAN][self.bytes.below(24) / 11 % 3],
                 progress: if self.bytes.below(2) == 0 { Some(progress) } else { None },
                 user: ptr::from_mut(&mut left).cast(),
+                cell_size: if self.bytes.below(8) == 0 { self.bytes.real() } else { 0.0 },
+                eye_height: if cells == SL_CELLS_EYE_LEVEL && self.bytes.below(4) == 0 {
+                    [self.bytes.real(), self.bytes.real()]
+                } else {
+                    [0.0; 2]
+                },
+                up: if cells == SL_CELLS_EYE_LEVEL || is_odd { self.bytes.below(5) as u64 } else { 0 },
             };
         let mut report = SlBakeReport {
             struct_size: size_of::<SlBakeReport>() + self.bytes.below(16) / 15,

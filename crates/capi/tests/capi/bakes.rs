@@ -2,6 +2,7 @@
 
 use crate::common::{Handle, list, plans, towers};
 use crate::same::compare_content;
+use sightlines_bake::eye_level::EyeLevelOptions;
 use sightlines_bake::methods::OcclusionMethod;
 use sightlines_bake::places::PlaceOptions;
 use sightlines_bake::region::CellsFrom;
@@ -11,6 +12,7 @@ use sightlines_cells::{MovingObject, Point3, Scene, SceneObject};
 use sightlines_formats::ViewCells;
 use sightlines_formats::view_cells::ViewCell;
 use sightlines_geometry::Aabb;
+use sightlines_pvs::Axis;
 use sightlines_scenes::{TowerOptions, tower};
 use std::collections::BTreeSet;
 use std::ffi::CString;
@@ -112,8 +114,19 @@ fn flags_and_options_are_those_of_rust() {
     (zero.struct_size, zero.gap) = (size_of::<SlBakeOptions>(), 0.0);
     let exact = BakeRequest::default();
     let places = PlaceOptions { n_cells: Some(6), cell_size: None };
-    let cases: [(SlBakeOptions, BakeRequest); 6] = [
+    let eyes = EyeLevelOptions {
+        cell_size: Some(3.0),
+        eye_height: Some([0.5, 2.0]),
+        up: Some(Axis::Y),
+        ..EyeLevelOptions::default()
+    };
+    let cases: [(SlBakeOptions, BakeRequest); 8] = [
         (zero, exact.clone()),
+        (
+            SlBakeOptions { cells: SL_CELLS_EYE_LEVEL, cell_size: 3.0, eye_height: [0.5, 2.0], up: 2, ..zero },
+            BakeRequest { cells: Some(CellsFrom::EyeLevel(eyes)), ..exact.clone() },
+        ),
+        (SlBakeOptions { cell_size: 4.0, ..zero }, BakeRequest { cell_size: Some(4.0), ..exact.clone() }),
         (
             SlBakeOptions { cells: SL_CELLS_GRID, grid: [2, 1, 2], method: c"multifocal".as_ptr(), ..zero },
             BakeRequest {

@@ -101,8 +101,8 @@ impl RegionArgs {
     }
 }
 
-/// With a `--method` of from-region occlusion, with given cells (`--grid`, `--cells`) or with places (`--n-cells`, `--cell-size`, and scenes with
-/// few axis-aligned walls).
+/// With a `--method` of from-region occlusion, with given cells (`--grid`, `--cells`), with places (`--n-cells`) or with cells at the height of
+/// eyes, as scenes with few axis-aligned walls have.
 #[derive(Debug, Serialize, JsonSchema)]
 pub(super) struct Outcome {
     /// The table that was written.
