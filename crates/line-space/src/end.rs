@@ -2,6 +2,7 @@
 
 use crate::orient::{height, sign};
 use sightlines_geometry::{Aabb, Point3, check_coordinate};
+use std::num::NonZeroI32;
 
 /// A convex piece of a plane on which lines begin or end.
 ///
@@ -18,12 +19,25 @@ pub(crate) struct End {
     sides: [Option<PlaneSide>; MOST_SIDES],
 }
 
-/// The side of the plane of a triangle of the surface on which all of an end is.
+/// The side of the plane of a triangle of the surface on which all of an end is. In few bytes: the number of the triangle, from 1 on, with the sign.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct PlaneSide {
-    pub(crate) triangle: u32,
+pub(crate) struct PlaneSide(NonZeroI32);
+
+impl PlaneSide {
+    /// None for numbers that are too large.
+    fn new(triangle: u32, sign: i8) -> Option<Self> {
+        let number = i32::try_from(triangle).ok()?.checked_add(1)?;
+        NonZeroI32::new(number * i32::from(sign)).map(Self)
+    }
+
+    pub(crate) fn triangle(self) -> u32 {
+        self.0.get().unsigned_abs() - 1
+    }
+
     /// The sign of `orient3d` of the triangle and points of the end.
-    pub(crate) sign: i8,
+    pub(crate) fn sign(self) -> i8 {
+        if self.0.get() > 0 { 1 } else { -1 }
+    }
 }
 
 /// So many planes are remembered, the last ones.
@@ -238,8 +252,8 @@ impl End {
     pub(crate) fn counts_for_nothing(&self, plane_of: impl Fn(u32) -> [Point3; 3]) -> bool {
         self.is_partial()
             && self.sides().any(|side| {
-                let [a, b, c] = plane_of(side.triangle);
-                self.corners().iter().all(|&p| sign(a, b, c, p, [0.0; 3]) != side.sign)
+                let [a, b, c] = plane_of(side.triangle());
+                self.corners().iter().all(|&p| sign(a, b, c, p, [0.0; 3]) != side.sign())
             })
     }
 
@@ -248,8 +262,8 @@ impl End {
     /// that is.
     pub(crate) fn cut_by(&self, triangle: u32, plane: [Point3; 3]) -> Option<[Option<Self>; 3]> {
         if self.n != 3 {
-            let halves = [1, -1].map(|sign| self.part_on(PlaneSide { triangle, sign }, plane));
-            return Some([Some(halves[0]?), Some(halves[1]?), None]);
+            let part = |sign| self.part_on(PlaneSide::new(triangle, sign)?, plane);
+            return Some([Some(part(1)?), Some(part(-1)?), None]);
         }
         let corners = self.corners;
         let heights = [0, 1, 2].map(|i| height(plane, corners[i], self.radius));
@@ -280,7 +294,7 @@ impl End {
         let mut pieces = [None; 3];
         let mut n = 0;
         for ((ring, n_ring), sign) in rings.into_iter().zip([1, -1]) {
-            let sides = [Some(PlaneSide { triangle, sign }), self.sides[0], self.sides[1]];
+            let sides = [Some(PlaneSide::new(triangle, sign)?), self.sides[0], self.sides[1]];
             for k in 2..n_ring {
                 *pieces.get_mut(n)? = Some(Self { sides, ..Self::rounded([ring[0], ring[k - 1], ring[k]], radius) });
                 n += 1;
@@ -293,7 +307,7 @@ impl End {
     fn part_on(&self, side: PlaneSide, plane: [Point3; 3]) -> Option<Self> {
         let (n, corners) = (usize::from(self.n), self.corners());
         let heights: [[f64; 2]; 4] = std::array::from_fn(|i| height(plane, corners[i], self.radius));
-        let is_inside = |i: usize| f64::from(side.sign) * heights[i][0] > 0.0;
+        let is_inside = |i: usize| f64::from(side.sign()) * heights[i][0] > 0.0;
         if !(0..n).any(is_inside) || (0..n).all(is_inside) || heights.iter().any(|[h, e]| h.abs() <= *e) {
             return None;
         }
@@ -330,9 +344,9 @@ impl End {
         }
         let mut ring: Vec<Point3> = self.corners().to_vec();
         for side in self.sides() {
-            let plane = plane_of(side.triangle);
+            let plane = plane_of(side.triangle());
             let heights: Vec<f64> =
-                ring.iter().map(|&p| f64::from(side.sign) * height(plane, p, [0.0; 3])[0]).collect();
+                ring.iter().map(|&p| f64::from(side.sign()) * height(plane, p, [0.0; 3])[0]).collect();
             let mut rest = Vec::with_capacity(ring.len() + 1);
             for (i, &p) in ring.iter().enumerate() {
                 let j = (i + 1) % ring.len();
@@ -356,8 +370,8 @@ impl End {
             }
         }
         let is_inside = |side: PlaneSide| {
-            let [a, b, c] = plane_of(side.triangle);
-            sign(a, b, c, point, [0.0; 3]) == side.sign
+            let [a, b, c] = plane_of(side.triangle());
+            sign(a, b, c, point, [0.0; 3]) == side.sign()
         };
         self.sides().all(is_inside).then_some((point, [0.0; 3]))
     }
@@ -367,7 +381,7 @@ impl End {
     fn crossing(&self, [a, b]: [Point3; 2], heights: [[f64; 2]; 2], radius: &mut Point3) -> Option<Point3> {
         let [[low_a, high_a], [low_b, high_b]] = heights.map(|[h, e]| [(h.abs() - e).max(0.0), h.abs() + e]);
         let (low, high) = (low_a / (low_a + high_b), high_a / (high_a + low_b));
-        if !(high - low <= UNCERTAIN) {
+        if (high - low).is_nan() || high - low > UNCERTAIN {
             return None;
         }
         let t = (low + high) / 2.0;
@@ -532,19 +546,19 @@ mod tests {
             let mut signs = Vec::new();
             for piece in pieces.into_iter().flatten() {
                 let side = piece.sides().next().expect("it knows the plane");
-                prop_assert_eq!(side.triangle, 7);
+                prop_assert_eq!(side.triangle(), 7);
                 let is_near = |c: &Point3, p: &Exact| (0..3).all(|k| {
                     let [low, high] = [piece.bounds().min[k], piece.bounds().max[k]].map(|x| BigRational::from_float(x).expect("finite"));
                     (exact(*c)[k].clone() - &p[k]).abs() <= exact(piece.radius())[k] && low <= p[k] && p[k] <= high
                 });
-                let is_on_side = |p: &Exact| if side.sign > 0 { !height(p).is_negative() } else { !height(p).is_positive() };
+                let is_on_side = |p: &Exact| if side.sign() > 0 { !height(p).is_negative() } else { !height(p).is_positive() };
                 let of = |c: &Point3| points.iter().find(|p| is_on_side(p) && is_near(c, p));
                 let corners: Vec<Option<&Exact>> = piece.corners().iter().map(of).collect();
                 let [Some(p), Some(q), Some(r)] = corners[..] else {
                     return Err(TestCaseError::fail(format!("{piece:?} of {end:?}")));
                 };
                 covered.iter_mut().zip(area([p, q, r])).for_each(|(sum, x)| *sum += x);
-                signs.push(side.sign);
+                signs.push(side.sign());
             }
             prop_assert!(signs.contains(&1) && signs.contains(&-1));
             // Of two points that are within rounding of each other the wrong one may have been taken.
@@ -575,7 +589,7 @@ mod tests {
                 let height = det(&a, &b, &c, p);
                 i8::from(height.is_positive()) - i8::from(height.is_negative())
             };
-            let counts = |part: &End, p: &Exact| part.sides().all(|side| signum(side.triangle, p) == side.sign);
+            let counts = |part: &End, p: &Exact| part.sides().all(|side| signum(side.triangle(), p) == side.sign());
             for w in &weights {
                 let p = mix(&corners, w);
                 if (0..planes.len() as u32).any(|t| signum(t, &p) == 0) {
@@ -616,7 +630,7 @@ mod tests {
         let rest = [one, other].map(|part| part.cut_across(0, most + 0.1).map(|halves| halves[1]));
         let [Some(rest), None] = rest else { panic!("{rest:?}") };
         assert!(!rest.counts_for_nothing(|_| plane));
-        let turned = PlaneSide { triangle: 3, sign: -rest.sides[0].expect("it knows one").sign };
-        assert!(End { sides: [Some(turned), None, None], ..rest }.counts_for_nothing(|_| plane));
+        let turned = PlaneSide::new(3, -rest.sides[0].expect("it knows one").sign());
+        assert!(End { sides: [turned, None, None], ..rest }.counts_for_nothing(|_| plane));
     }
 }

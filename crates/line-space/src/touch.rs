@@ -51,8 +51,8 @@ impl Target {
 /// Whether a plane that an end is known to be on a side of has a triangle on its other side, or on it.
 fn is_parted(surface: &Surface, triangle: &[Point3; 3], end: &End) -> bool {
     end.sides().any(|side| {
-        let [a, b, c] = surface.corners(side.triangle);
-        triangle.iter().all(|&p| f64::from(side.sign) * orient(a, b, c, p) <= 0.0)
+        let [a, b, c] = surface.corners(side.triangle());
+        triangle.iter().all(|&p| f64::from(side.sign()) * orient(a, b, c, p) <= 0.0)
     })
 }
 
