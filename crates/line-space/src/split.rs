@@ -7,7 +7,7 @@ use crate::orient::height;
 use crate::side::Limit;
 use crate::surface::Surface;
 use sightlines_geometry::Point3;
-use sightlines_geometry::vector::{cross, dot, length, normal, sub};
+use sightlines_geometry::vector::{cross, dot, length, sub};
 
 /// A cut with this share of a side on its smaller part is worth it if nothing is left to decide there.
 const WORTH: f64 = 0.15;
@@ -160,13 +160,6 @@ fn cut_by(values: &Values, end: &End) -> Option<[End; 2]> {
     end.cut(side, t)
 }
 
-/// Where the corners of an end are to the plane of a triangle, in some unit.
-fn heights<'a>(surface: &Surface, triangle: u32, end: &'a End) -> impl Iterator<Item = f64> + 'a {
-    let corners = surface.corners(triangle);
-    let (at, normal): (Point3, Point3) = (corners[0], normal(corners));
-    end.corners().iter().map(move |&p| dot(normal, sub(p, at)))
-}
-
 fn straddles(surface: &Surface, triangle: u32, end: &End) -> bool {
     let (mut up, mut down) = (false, false);
     for &p in end.corners() {
@@ -190,7 +183,7 @@ fn at_plane(surface: &Surface, triangle: u32, end: &End, may_know: bool) -> Opti
     if may_know && let Some(parts) = end.cut_by(triangle, [a, b, c]) {
         return Some(parts);
     }
-    let mut heights: Vec<f64> = heights(surface, triangle, end).collect();
+    let mut heights: Vec<f64> = end.corners().iter().map(|&p| height([a, b, c], p, [0.0; 3])[0]).collect();
     if heights.len() == 4 {
         // Both sides of a rectangle along a direction count.
         heights =
