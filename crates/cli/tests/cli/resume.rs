@@ -101,6 +101,7 @@ fn proofs_are_kept_piece_by_piece() {
     let folder = crate::jobs::inputs();
     folder.write("office.geojson", Folder::with_office().read("office.geojson"));
     for input in ["tower.glb", "office.geojson", "map.prt"] {
+        let mut n_anew = 0;
         let build = ["build", input, "-o", "out.pvs", "--certify", "-q", "--save-after", "0", "--resume"];
         folder.run(&build).expect(0);
         let outputs = ["out.pvs", "out.cert"];
@@ -108,7 +109,13 @@ fn proofs_are_kept_piece_by_piece() {
         outputs.iter().for_each(|name| std::fs::remove_file(folder.path(name)).unwrap());
         let n_bytes = || std::fs::metadata(folder.path(STATE)).map_or(0, |state| state.len());
         let (step, mut n_kills, mut n_before) = (whole[1].len() as u64 / 8, 0, 0);
-        while !folder.path("out.cert").exists() {
+        // One that is done before it is killed twice begins anew: how fast it is, depends on the machine.
+        while (n_kills < 2 && cfg!(unix)) || !folder.path("out.cert").exists() {
+            if folder.path("out.cert").exists() {
+                outputs.iter().for_each(|name| std::fs::remove_file(folder.path(name)).unwrap());
+                (n_kills, n_before, n_anew) = (0, 0, n_anew + 1);
+                assert!(n_anew < 100, "{input}: it was always over before it could be killed twice");
+            }
             let (mut child, least) = (start(&folder, &build), n_bytes() + step);
             while child.try_wait().unwrap().is_none() && n_bytes() < least {
                 std::thread::sleep(Duration::from_millis(1));
@@ -122,23 +129,15 @@ fn proofs_are_kept_piece_by_piece() {
         }
         folder.run(&build).expect(0);
         assert!(outputs.map(|name| folder.read(name)) == whole, "{input}");
-        assert!(n_kills > 1 || cfg!(not(unix)), "{input}: {n_kills} kills");
+        eprintln!("{input}: {n_kills} kills, begun anew {n_anew} times");
     }
 }
 
 /// The impostor: results in the wrong place change the output, so results are taken from the file.
 #[test]
 fn results_that_are_kept_count() {
-    let (folder, whole, took) = scene();
-    let mut child = start(&folder, &BUILD);
-    let begin = Instant::now();
-    // Nobody else opens a state while a build uses it.
-    while std::fs::metadata(folder.path(STATE)).map_or(0, |state| state.len()) < 2000 {
-        assert!(begin.elapsed() < took * 20, "no results");
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    child.kill().unwrap();
-    child.wait().unwrap();
+    let (folder, whole, _) = scene();
+    killed(&folder);
     let kept = journal(&folder);
     let result = |unit: usize| kept.load("cells", unit).unwrap();
     let mut found = (0..48).filter_map(|unit| Some((unit, result(unit)?)));
@@ -153,16 +152,9 @@ fn results_that_are_kept_count() {
 
 #[test]
 fn states_of_other_builds_are_refused_or_replaced() {
-    let (folder, whole, took) = scene();
+    let (folder, whole, _) = scene();
     let resumed = [&BUILD[..], &["--resume"]].concat();
-    let mut child = start(&folder, &BUILD);
-    let begin = Instant::now();
-    while !folder.path(STATE).exists() {
-        assert!(begin.elapsed() < took * 20, "no results");
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    child.kill().unwrap();
-    child.wait().unwrap();
+    killed(&folder);
     let state = folder.read(STATE);
     // Another option, another input.
     let other: Vec<&str> = resumed.iter().map(|arg| if *arg == "3" { "4" } else { *arg }).collect();
@@ -193,7 +185,7 @@ fn states_of_other_builds_are_refused_or_replaced() {
     assert!(run.err.contains("out.pvs.state: there is nothing to go on from; beginning anew"), "{}", run.err);
 }
 
-/// Starts a build and kills it once it has some results in its state.
+/// Starts a build and kills it once it has some results in its state. Nobody else opens a state while a build uses it.
 fn killed(folder: &Folder) {
     let mut child = start(folder, &BUILD);
     while std::fs::metadata(folder.path(STATE)).map_or(0, |state| state.len()) < 2000 {
