@@ -39,6 +39,7 @@ pub mod live;
 pub mod methods;
 mod mirrors;
 mod needs;
+mod object_parts;
 mod objects;
 mod options;
 pub mod places;

@@ -112,6 +112,8 @@ pub struct Recipe {
     pub split: Split,
     /// Scenes: what is around the rest, which is baked without it; every cell sees it.
     pub surroundings: Vec<Surrounding>,
+    /// Scenes: how many triangles an object has at most that is not cut into parts, and each part.
+    pub parts: Option<u32>,
     /// Portal files and Quake maps: only the first, coarse bound.
     pub fast: bool,
 }
@@ -130,9 +132,9 @@ impl Recipe {
     /// All that decides the table but the input, in words: two recipes with the same key make the same table of the same input.
     pub fn key(&self) -> String {
         // A new option does not compile until it is decided whether it is part of the key. `warn` is an address.
-        let Self { subdivide, cut, frame, digest, method, cells, buffers, split, surroundings, fast } = self;
+        let Self { subdivide, cut, frame, digest, method, cells, buffers, split, surroundings, parts, fast } = self;
         let BufferOptions { measure, planes, texels, occluders, carry, sheets, line_space, backend, warn: _ } = buffers;
         let buffers = (measure, planes, texels, occluders, carry, sheets, line_space, backend);
-        format!("{:?}", (subdivide, cut, frame, digest, (method, cells, buffers, split, surroundings, fast)))
+        format!("{:?}", (subdivide, cut, frame, digest, (method, cells, buffers, split, surroundings, parts, fast)))
     }
 }

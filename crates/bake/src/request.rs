@@ -52,6 +52,9 @@ pub struct BakeRequest {
     pub buffers: BufferRequest,
     /// Scenes by a from-region method: when a cell is cut into smaller volumes. None: never.
     pub split: Option<Split>,
+    /// Scenes: objects with more triangles than this are cut into parts of no more, and the table says of each part, too, which cells see it
+    /// ([`ObjectPart`](sightlines_pvs::ObjectPart)). None: none is cut.
+    pub parts: Option<u32>,
     /// Quake maps and portal files: only the first, coarse bound; quick, and shows much that is hidden.
     pub fast: bool,
     /// Whether proofs or stab trees are to be made, which are of sightlines through portals. Cells that are not named are then those of a k-d
@@ -188,12 +191,13 @@ impl BakeRequest {
             buffers: self.buffers.options(),
             split: self.split.unwrap_or_default(),
             surroundings: Vec::new(),
+            parts: self.parts,
             fast: self.fast,
         }
     }
 
     /// Options that mean something for scenes only, and whether each was named.
-    fn of_scenes(&self) -> [(&'static str, bool); 10] {
+    fn of_scenes(&self) -> [(&'static str, bool); 11] {
         let cells = |is: fn(&CellsFrom) -> bool| self.cells.as_ref().is_some_and(is);
         let is_auto = matches!(self.method, None | Some(SceneMethod::Auto));
         [
@@ -207,7 +211,14 @@ impl BakeRequest {
             ("eye_height", cells(|cells| matches!(cells, CellsFrom::EyeLevel(_)))),
             ("n_cells", cells(|cells| matches!(cells, CellsFrom::Places(_)))),
             ("cell_size", self.cell_size.is_some()),
+            ("parts", self.parts.is_some()),
         ]
+    }
+
+    /// Refuses parts of objects where no table has them.
+    pub(crate) fn check_parts(&self, found: &'static str) -> Result<(), Meaningless> {
+        let refused = Meaningless { option: "parts", meant: "tables that are made in memory", found };
+        self.parts.map_or(Ok(()), |_| Err(refused))
     }
 
     /// Refuses what means nothing for an input.
@@ -239,6 +250,16 @@ impl BakeRequest {
             refuse(&self.buffers.named(), SCENES, found)?;
             return refuse(&by, SCENES, found);
         }
+        let parts = [("parts", self.parts.is_some())];
+        if let BakeInput::Scene(scene, _) = input
+            && !scene.mirrors().is_empty()
+        {
+            refuse(&parts, "scenes without mirrors", "a scene with mirrors")?;
+        }
+        if self.for_proofs {
+            refuse(&parts, "tables alone", "a bake with proofs or stab trees")?;
+        }
+        refuse(&[("parts", self.parts == Some(0))], "numbers of triangles from 1 on", "0")?;
         let are_given = matches!(self.cells, Some(CellsFrom::Boxes(_)));
         refuse(&[("view_region", self.view_region.is_some() && are_given)], "cells that are cut", "given boxes")?;
         let are_boxes = are_given || matches!(self.cells, Some(CellsFrom::Grid(_)));

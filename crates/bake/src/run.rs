@@ -1,9 +1,10 @@
 //! Any input to its table, in one call.
 
 use crate::baked::Baked;
-use crate::error::BakeError;
+use crate::error::{BakeError, Meaningless};
 use crate::input::BakeInput;
 use crate::methods::{BufferOptions, MethodError, OcclusionMethodFactory};
+use crate::object_parts::with_parts;
 use crate::options::Recipe;
 use crate::plan::{PlanBakeOptions, bake_plan};
 use crate::quake::{PrtOptions, bake_map, bake_prt};
@@ -16,7 +17,7 @@ use sightlines_cells::Scene;
 use sightlines_formats::SceneInfo;
 use sightlines_packed::PackReport;
 use sightlines_progress::Allowance;
-use sightlines_pvs::TableParts;
+use sightlines_pvs::{BitMatrix, TableParts};
 use sightlines_stabtree::ConvexOptions;
 use std::io::Write;
 
@@ -50,12 +51,14 @@ pub(crate) fn bake_here(input: BakeInput<'_>, recipe: &Recipe, runtime: &Runtime
         BakeInput::Scene(scene, file) => {
             let mut baked = if recipe.takes_regions() {
                 with_regions(scene, recipe, runtime, file, |regions| {
-                    Ok::<_, BakeError>(bake_regions(scene, regions)?.into_any())
+                    let baked = bake_regions(scene, regions)?.into_any();
+                    cut_into_parts(baked, scene, recipe, regions)
                 })?
             } else {
                 let (cut, portals, budget) = (recipe.cut, PortalMode::default(), Allowance::all(budget));
-                bake_scene(scene, &SceneBakeOptions { cut, portals, threads, file, progress, budget, units })?
-                    .into_any()
+                let baked = bake_scene(scene, &SceneBakeOptions { cut, portals, threads, file, progress, budget, units })?;
+                let regions = RegionBakeOptions { threads, file, progress, budget, units, ..RegionBakeOptions::new(&recipe.cells) };
+                cut_into_parts(baked.into_any(), scene, recipe, &regions)?
             };
             let digest = recipe.digest.or(baked.table.digest());
             let n_seen = baked.table.n_cells() as u64 * recipe.surroundings.len() as u64;
@@ -75,6 +78,24 @@ pub(crate) fn bake_here(input: BakeInput<'_>, recipe: &Recipe, runtime: &Runtime
             Ok(bake_map(bsp, prt, PrtOptions { search, progress, units, ..PrtOptions::default() })?.into_any())
         }
     }
+}
+
+/// What was baked, with parts of objects if they are asked for.
+fn cut_into_parts(
+    baked: Baked,
+    scene: &Scene,
+    recipe: &Recipe,
+    options: &RegionBakeOptions<'_>,
+) -> Result<Baked, BakeError> {
+    let Some(most) = recipe.parts else { return Ok(baked) };
+    let mut baked = Baked { table: with_parts(baked.table, scene, most, options)?, ..baked };
+    let n_seen = baked.table.parts().objects_seen.as_ref().map(BitMatrix::count_ones);
+    match (&mut baked.report, n_seen) {
+        (Report::Scene(report), Some(n)) => report.n_objects_seen = n,
+        (Report::Regions(report), Some(n)) => report.n_objects_seen = n,
+        _ => {}
+    }
+    Ok(baked)
 }
 
 /// Calls `then` with the options of a bake by regions.
@@ -122,6 +143,10 @@ pub(crate) fn bake_packed<W: Write + Send>(
         parts.digest = recipe.digest.or(parts.digest);
         surroundings::state(parts, &recipe.surroundings);
     };
+    if recipe.parts.is_some() {
+        let (option, meant) = ("parts", "tables that are made in memory");
+        return Err(BakeError::from(Meaningless { option, meant, found: "a table that is written row by row" }).into());
+    }
     let around: Vec<u32> = recipe.surroundings.iter().map(|of| of.object).collect();
     with_regions(scene, recipe, runtime, file, |regions| pack_regions_around(scene, regions, &around, &stated, out))
 }

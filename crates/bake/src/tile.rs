@@ -77,6 +77,7 @@ pub fn tile_cells(
     runtime: &Runtime<'_>,
 ) -> Result<Vec<ViewCell>, BakeError> {
     request.check(&scene.into())?;
+    request.check_parts("a world of tiles")?;
     threads::on(runtime.threads, || cells_here(scene, viewers, request, runtime))
 }
 
@@ -181,6 +182,7 @@ fn decided(
     runtime: &Runtime<'_>,
 ) -> Result<Decided, BakeError> {
     request.check(&tile.scene.into())?;
+    request.check_parts("a world of tiles")?;
     let scene = merged(tile);
     let cells = CellsFrom::Boxes(ViewCells { cells: tile.cells.to_vec(), axes: None });
     let near: Vec<Aabb<3>> = tile.near.iter().flat_map(|near| near.cells.iter().map(|cell| cell.bounds)).collect();

@@ -23,7 +23,7 @@ pub use convex::{Convex, ConvexCell3};
 pub use graph::{CellGraph, Exit, Portal, PortalId, Space};
 pub use plan::{Joint, LineId, Plan, PlanError, PlanLine, PlanObject};
 pub use planar::{ConvexCell2, Planar, WellFormedError};
-pub use scene::{ANYWHERE, MovingObject, Scene, SceneError, SceneObject};
+pub use scene::{ANYWHERE, MovingObject, Scene, SceneError, SceneObject, places_of_triangles};
 pub use sightlines_geometry::{AxialDoor, Point3, Portal2, Portal3};
 pub use sightlines_pvs::CellId;
 pub use unlike::{Unlike, unlike};

@@ -55,6 +55,25 @@ pub struct Scene {
     sources: Vec<Option<ObjectSource>>,
 }
 
+/// The places that the triangles of an object have among all that its file has of it: for those of the scene, in order, and then for the end of all.
+///
+/// * `left_out`: triangles of the file that the scene does not have, ascending: the object, and the place among its triangles
+/// * `n`: how many triangles the object has in the scene
+pub fn places_of_triangles(left_out: &[[u32; 2]], object: u32, n: usize) -> Vec<u32> {
+    let first = left_out.partition_point(|&[of, _]| of < object);
+    let mut left_out = left_out[first..].iter().take_while(|&&[of, _]| of == object).peekable();
+    let mut places = Vec::with_capacity(n + 1);
+    for place in 0.. {
+        if left_out.next_if(|&&[_, at]| at == place).is_none() {
+            places.push(place);
+        }
+        if places.len() > n {
+            break;
+        }
+    }
+    places
+}
+
 /// An object that moves or changes its shape at run time. It is drawn, even if none of its triangles has an area at rest, and if
 /// it has none there: what is never drawn is not listed.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,7 +1,7 @@
 //! The validation of a table's parts.
 
 use crate::parts::TableParts;
-use crate::records::{CellRecord, MirrorRecord, ObjectRecord, ObjectSource, PortalRecord};
+use crate::records::{CellRecord, MirrorRecord, ObjectPart, ObjectParts, ObjectRecord, ObjectSource, PortalRecord};
 use crate::{
     BitMatrix, CellId, DoorId, FrameError, LocatorError, ObjectId, PlaneError, PortalId, StabError, TableKind, side,
 };
@@ -211,6 +211,43 @@ pub enum TableError {
     /// An object of a node whose number is reserved.
     #[error("object {0} cannot be of node 4294967295")]
     ObjectNode(ObjectId),
+    /// Rows of parts that are not cells by parts.
+    #[error("{n_rows} x {n_cols} bits of parts of objects do not fit {n_cells} cells and {n_parts} parts")]
+    PartsShape {
+        /// Rows of the matrix.
+        n_rows: usize,
+        /// Columns of the matrix.
+        n_cols: usize,
+        /// Number of cells.
+        n_cells: usize,
+        /// Number of parts.
+        n_parts: usize,
+    },
+    /// A row of parts with a one past the last part.
+    #[error("the row of parts of cell {0} has a one past the last part")]
+    PartsTail(CellId),
+    /// A part that does not begin where it has to, or has no triangles.
+    #[error("part {0} does not begin where the one before ends, or has no triangles")]
+    PartOrder(usize),
+    /// A part of an object that does not exist.
+    #[error("part {part} is of object {object}, which does not exist")]
+    PartObject {
+        /// The part.
+        part: usize,
+        /// The object.
+        object: ObjectId,
+    },
+    /// Rows of parts without rows of objects.
+    #[error("rows of parts of objects need rows of objects")]
+    PartsAlone,
+    /// A cell that sees a part of an object, but not the object.
+    #[error("cell {cell} sees a part of object {object}, but not the object")]
+    PartSeen {
+        /// The cell.
+        cell: CellId,
+        /// The object.
+        object: ObjectId,
+    },
     /// A door that is an object that does not exist.
     #[error("door {door} is object {object}, which does not exist")]
     DoorObject {
@@ -280,7 +317,8 @@ impl TableParts {
         self.check_with(|parts| {
             parts.check_rows()?;
             parts.check_objects()?;
-            parts.objects_seen.as_ref().map_or(Ok(()), |seen| parts.check_seen(seen))
+            parts.objects_seen.as_ref().map_or(Ok(()), |seen| parts.check_seen(seen))?;
+            parts.object_parts.as_ref().map_or(Ok(()), |of| parts.check_object_parts(of))
         })
     }
 
@@ -455,6 +493,44 @@ impl TableParts {
         for (cell, list) in (0u32..).map(CellId).zip(&self.cell_objects) {
             if let Some(&object) = list.iter().find(|&&o| !seen.get(cell.idx(), o.idx())) {
                 return Err(TableError::Unseen { cell, object });
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the parts of each object follow each other from its triangle 0 on, and all objects are seen of which a part is.
+    fn check_object_parts(&self, ObjectParts { parts, seen }: &ObjectParts) -> Result<(), TableError> {
+        let (n_cells, n_parts) = (self.cells.len(), parts.len());
+        if (seen.n_rows(), seen.n_cols()) != (n_cells, n_parts) {
+            return Err(TableError::PartsShape { n_rows: seen.n_rows(), n_cols: seen.n_cols(), n_cells, n_parts });
+        }
+        if let Some(row) = seen.first_stray() {
+            return Err(TableError::PartsTail(CellId(row as u32)));
+        }
+        let objects_seen = self.objects_seen.as_ref().ok_or(TableError::PartsAlone)?;
+        let mut before: Option<&ObjectPart> = None;
+        for (index, part) in parts.iter().enumerate() {
+            if part.object.idx() >= self.objects.len() {
+                return Err(TableError::PartObject { part: index, object: part.object });
+            }
+            let start = match before.filter(|before| before.object >= part.object) {
+                Some(before) if before.object == part.object => before.end,
+                Some(_) => return Err(TableError::PartOrder(index)),
+                None => 0,
+            };
+            if part.start != start || part.end <= start {
+                return Err(TableError::PartOrder(index));
+            }
+            before = Some(part);
+        }
+        let mut first = 0;
+        for of in parts.chunk_by(|a, b| a.object == b.object) {
+            let (object, columns) = (of[0].object, first..first + of.len());
+            first = columns.end;
+            let sees_any = |cell: usize| columns.clone().any(|part| seen.get(cell, part));
+            let is_unseen = |&cell: &usize| !objects_seen.get(cell, object.idx()) && sees_any(cell);
+            if let Some(cell) = (0..n_cells).find(is_unseen) {
+                return Err(TableError::PartSeen { cell: CellId(cell as u32), object });
             }
         }
         Ok(())

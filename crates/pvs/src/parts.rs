@@ -1,6 +1,6 @@
 //! The parts of a table.
 
-use crate::records::{CellRecord, DoorRecord, MirrorRecord, ObjectRecord, ObjectSource, PortalRecord};
+use crate::records::{CellRecord, DoorRecord, MirrorRecord, ObjectParts, ObjectRecord, ObjectSource, PortalRecord};
 use crate::{Axis, BitMatrix, Frame, GeometryDigest, Locator, ObjectId, PlaneTree, StabTrees, TableKind};
 
 /// The parts of a [`crate::Table`], not yet checked.
@@ -33,6 +33,8 @@ pub struct TableParts {
     pub objects_seen: Option<BitMatrix>,
     /// Number of polygons of each object, in the order of `objects`. Empty: not known.
     pub object_polygons: Vec<u32>,
+    /// The parts of objects; only beside [`TableParts::objects_seen`]. `None`: no object was cut.
+    pub object_parts: Option<ObjectParts>,
     /// Where each object is in the file that the table was made of, in the order of `objects`; `None`: not in one place, or not known.
     /// Empty: not known of any.
     pub object_sources: Vec<Option<ObjectSource>>,
@@ -68,6 +70,7 @@ impl TableParts {
             cell_objects: Vec::new(),
             objects_seen: None,
             object_polygons: Vec::new(),
+            object_parts: None,
             object_sources: Vec::new(),
             doors: Vec::new(),
             mirrors: Vec::new(),

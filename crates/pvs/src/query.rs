@@ -3,6 +3,7 @@
 use crate::bits::WORD;
 use crate::{BitMatrix, CellId, CellSet, ObjectId, Table};
 use std::borrow::Cow;
+use std::ops::Range;
 
 /// The result of locating a point.
 ///
@@ -193,6 +194,13 @@ impl Inside<'_> {
         let mut objects = Vec::new();
         self.visible_objects_into(&mut objects);
         objects
+    }
+
+    /// What may be seen from the point, by ascending object: the triangles of an object that was cut into parts, as ranges that do not meet, and no
+    /// range for all of an object that was not. Triangles count as for [`ObjectPart`](crate::ObjectPart). Allocates the list.
+    pub fn visible_ranges(&self) -> Vec<(ObjectId, Option<Range<u32>>)> {
+        let parts = self.table.parts().object_parts.iter().flat_map(|of| self.union_of(&of.seen));
+        self.table.ranges(&self.visible_objects(), parts)
     }
 
     /// Puts the objects that may be seen from the point into `out`, which is cleared first; ascending. Allocates nothing but what

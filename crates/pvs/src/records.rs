@@ -1,6 +1,6 @@
 //! Cells, portals, objects and mirrors as a table stores them.
 
-use crate::{CellId, MirrorId, ObjectId, PortalId};
+use crate::{BitMatrix, CellId, MirrorId, ObjectId, PortalId};
 
 /// A convex cell.
 #[derive(Debug, Clone, PartialEq)]
@@ -50,6 +50,27 @@ pub struct ObjectSource {
     pub node: u32,
     /// Index of the primitive in the `primitives` of the node's mesh.
     pub primitive: u32,
+}
+
+/// A part of an object: some of its triangles, one after the other in the order of the file that the table was made of, those without an area among
+/// them. A program that draws lists of triangles draws it by an offset and a count.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ObjectPart {
+    /// The object.
+    pub object: ObjectId,
+    /// Its first triangle.
+    pub start: u32,
+    /// The one behind its last triangle.
+    pub end: u32,
+}
+
+/// The parts of objects, and which cells may see them.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ObjectParts {
+    /// By object, each time all parts of it: they begin at its triangle 0, and each at the end of the one before. Objects that were not cut have none.
+    pub parts: Vec<ObjectPart>,
+    /// Bit `p` of row `i`: cell `i` may see part `p`. Where it sees one, it sees the object.
+    pub seen: BitMatrix,
 }
 
 /// A door, and the portals that nothing is seen through while it is shut.

@@ -1,11 +1,12 @@
 //! The table and its queries.
 
 use crate::parts::TableParts;
-use crate::records::{CellRecord, DoorRecord, MirrorRecord, ObjectRecord, ObjectSource, PortalRecord};
+use crate::records::{CellRecord, DoorRecord, MirrorRecord, ObjectPart, ObjectRecord, ObjectSource, PortalRecord};
 use crate::{
     Axis, CellId, CellSet, Frame, FrameError, GeometryDigest, Locator, NodeIndex, ObjectId, PlaneTree, StabTrees,
     TableError, TableKind, bits, side,
 };
+use std::ops::Range;
 
 /// Which cells of a scene can see each other: checked, and immutable.
 ///
@@ -171,6 +172,11 @@ impl Table {
         self.nodes.objects_of(node)
     }
 
+    /// The parts of objects, by object; objects that were not cut have none. Empty if none was.
+    pub fn object_parts(&self) -> &[ObjectPart] {
+        self.parts.object_parts.as_ref().map_or(&[], |of| &of.parts)
+    }
+
     /// The name of a cell for users; `None` if the cells of the table have no names. O(1).
     ///
     /// # Panics
@@ -255,6 +261,39 @@ impl Table {
             Some(seen) => seen.iter_ones(cell.idx()).map(|o| ObjectId(o as u32)).collect(),
             None => self.objects_in_row(self.row(cell)),
         }
+    }
+
+    /// What `cell` may see, as for [`Inside::visible_ranges`](crate::Inside::visible_ranges).
+    ///
+    /// # Panics
+    /// If the table has no such cell.
+    pub fn visible_ranges(&self, cell: CellId) -> Vec<(ObjectId, Option<Range<u32>>)> {
+        let parts = self.parts.object_parts.iter().flat_map(|of| of.seen.iter_ones(cell.idx()));
+        self.ranges(&self.visible_objects(cell), parts)
+    }
+
+    /// Of these objects the ranges of triangles of these parts, which ascend.
+    pub(crate) fn ranges(
+        &self,
+        objects: &[ObjectId],
+        parts: impl Iterator<Item = usize>,
+    ) -> Vec<(ObjectId, Option<Range<u32>>)> {
+        let all = self.object_parts();
+        let mut parts = parts.map(|part| all[part]).peekable();
+        let mut ranges: Vec<(ObjectId, Option<Range<u32>>)> = Vec::with_capacity(objects.len());
+        for &object in objects {
+            let n = ranges.len();
+            while let Some(part) = parts.next_if(|part| part.object == object) {
+                match ranges[n..].last_mut() {
+                    Some((_, Some(range))) if range.end == part.start => range.end = part.end,
+                    _ => ranges.push((object, Some(part.start..part.end))),
+                }
+            }
+            if ranges.len() == n && all.binary_search_by_key(&object, |part| part.object).is_err() {
+                ranges.push((object, None));
+            }
+        }
+        ranges
     }
 
     /// The objects that touch a cell of the set, ascending.

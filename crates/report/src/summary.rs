@@ -21,6 +21,9 @@ pub struct Summary {
     pub n_portals: usize,
     /// Number of objects.
     pub n_objects: usize,
+    /// Number of parts of objects that were cut, if any was.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub n_parts: Option<usize>,
     /// Number of different groups (Doom sectors) that cells belong to.
     pub n_groups: usize,
     /// Unordered pairs of different cells that may see each other.
@@ -59,6 +62,7 @@ impl Summary {
             has_cell_names: table.has_cell_names(),
             n_portals: table.portals().len(),
             n_objects: table.objects().len(),
+            n_parts: Some(table.object_parts().len()).filter(|&n| n > 0),
             n_groups: groups.len(),
             n_visible_pairs: (ids().map(ones).sum::<u64>() - n_cells as u64) / 2,
             most_visible: ids().map(ones).max().unwrap_or(0),
@@ -79,7 +83,8 @@ impl fmt::Display for Summary {
         writeln!(f, "cells          {}{groups}{names}", self.n_cells)?;
         writeln!(f, "portals        {}", self.n_portals)?;
         if self.n_objects > 0 {
-            writeln!(f, "objects        {}", self.n_objects)?;
+            let parts = self.n_parts.map_or(String::new(), |n| format!(", the large ones in {n} parts"));
+            writeln!(f, "objects        {}{parts}", self.n_objects)?;
         }
         let all = self.n_cells as u64 * (self.n_cells as u64).saturating_sub(1) / 2;
         writeln!(f, "visible pairs  {} of {all}, {}", self.n_visible_pairs, percent(self.visible_share))?;

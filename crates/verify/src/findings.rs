@@ -28,6 +28,15 @@ pub enum Violation {
         /// From the cell to the object, in space to just behind it.
         segment: [Point3; 2],
     },
+    /// A part of an object that a cell sees, hidden from it in the table: as for an object.
+    HiddenPart {
+        /// The cell.
+        cell: CellId,
+        /// The part, by its place among [`Table::object_parts`](sightlines_pvs::Table::object_parts).
+        part: u32,
+        /// From the cell to the part, to just behind it.
+        segment: [Point3; 2],
+    },
     /// Two neighbours, joined by a portal, that are hidden from each other.
     HiddenNeighbour {
         /// The two cells.
@@ -124,6 +133,11 @@ pub enum Violation {
         /// The object.
         object: u32,
     },
+    /// An object with another number of triangles than its parts have together.
+    ObjectParts {
+        /// The object.
+        object: u32,
+    },
     /// A door that is an object which is no door in the scene.
     NoDoor {
         /// The door.
@@ -168,6 +182,7 @@ impl Violation {
         match self {
             Self::HiddenCell { .. } => "hidden-cell",
             Self::HiddenObject { .. } => "hidden-object",
+            Self::HiddenPart { .. } => "hidden-part",
             Self::HiddenNeighbour { .. } => "hidden-neighbour",
             Self::Overlap { .. } => "overlap",
             Self::NotConvex { .. } => "not-convex",
@@ -183,6 +198,7 @@ impl Violation {
             Self::ObjectName { .. } => "object-name",
             Self::ObjectBox { .. } => "object-box",
             Self::ObjectSource { .. } => "object-source",
+            Self::ObjectParts { .. } => "object-parts",
             Self::NoDoor { .. } => "no-door",
             Self::DoorName { .. } => "door-name",
             Self::OpenDoor { .. } => "open-door",
@@ -197,6 +213,7 @@ impl Violation {
                 cells.to_vec()
             }
             Self::HiddenObject { cell, .. }
+            | Self::HiddenPart { cell, .. }
             | Self::NotConvex { cell }
             | Self::OutOfScene { cell }
             | Self::NotFound { cell, .. }
@@ -216,6 +233,7 @@ impl Violation {
             | Self::ObjectName { object }
             | Self::ObjectBox { object }
             | Self::ObjectSource { object }
+            | Self::ObjectParts { object }
             | Self::UnlistedObject { object, .. } => Some(object),
             _ => None,
         }
@@ -226,6 +244,7 @@ impl Violation {
         match *self {
             Self::HiddenCell { segment, .. }
             | Self::HiddenObject { segment, .. }
+            | Self::HiddenPart { segment, .. }
             | Self::MissingPortal { segment, .. }
             | Self::MissingSequence { segment, .. } => Some(segment),
             _ => None,
@@ -260,6 +279,9 @@ impl fmt::Display for Violation {
                     Full(p),
                     Full(q)
                 )
+            }
+            Self::HiddenPart { cell, part, segment: [p, q] } => {
+                write!(f, "part {part} is hidden from cell {cell}, but is seen from {} towards {}", Full(p), Full(q))
             }
             Self::HiddenNeighbour { cells: [a, b], portal } => {
                 write!(f, "cells {a} and {b} are hidden from each other, but joined by portal {portal}")
@@ -302,6 +324,9 @@ impl fmt::Display for Violation {
             Self::ObjectBox { object } => write!(f, "object {object} has another extent in the scene"),
             Self::ObjectSource { object } => {
                 write!(f, "object {object} is another node or primitive in the scene")
+            }
+            Self::ObjectParts { object } => {
+                write!(f, "object {object} has another number of triangles in the scene than its parts")
             }
             Self::NoDoor { door } => write!(f, "door {door} is an object that is no door in the scene"),
             Self::DoorName { door } => write!(f, "door {door} has another name than its object in the scene"),

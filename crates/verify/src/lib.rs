@@ -25,6 +25,7 @@ mod map;
 mod options;
 mod oracle;
 mod own;
+mod parts;
 mod proofs;
 mod rays;
 #[cfg(feature = "serde")]
@@ -49,9 +50,12 @@ pub use truth::{MapChild, MapFace, MapNode, MapTree, Truth, VerifyError};
 pub use walls::{WallFindings, check_walls_in_space, check_walls_of_plan};
 pub use witness::sight_between;
 
+use parts::InParts;
 use sightlines_pvs::Table;
 
 /// Checks a table against what is really there.
+///
+/// A table with [parts of objects](sightlines_pvs::ObjectParts) is checked by its parts: each is looked at as if it were an object.
 ///
 /// First whether the scene is still what the table was made of, by the table's [digest](sightlines_pvs::GeometryDigest) if it has one; then its structure, then random rays, then rays aimed at what the table hides, most suspicious first. Lists the
 /// first [`VerifyOptions::MOST_VIOLATIONS`] violations of each kind, and stops shooting rays once there are that many.
@@ -83,7 +87,21 @@ fn check(table: &Table, truth: &Truth<'_>, options: &VerifyOptions<'_>) -> Resul
         return Ok(findings);
     }
     let mut findings = structure::check(table, truth);
+    let in_parts = match truth {
+        Truth::Scene(scene) => InParts::of(table, scene, options.degenerate, &mut findings),
+        _ => None,
+    };
+    let n = findings.violations.len();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build().expect("threads can be started");
-    pool.install(|| rays::check(table, truth, true, options, &mut findings))?;
+    let shoot = |table: &Table, truth: &Truth<'_>, findings: &mut Findings| {
+        pool.install(|| rays::check(table, truth, true, options, findings))
+    };
+    match in_parts {
+        Some(all) => {
+            shoot(&all.table, &Truth::Scene(&all.scene), &mut findings)?;
+            all.rename(&mut findings, n);
+        }
+        None => shoot(table, truth, &mut findings)?,
+    }
     Ok(findings)
 }

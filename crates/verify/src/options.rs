@@ -14,6 +14,8 @@ pub struct VerifyOptions<'a> {
     /// Random segments between the two of each hidden pair next to visible ones; fewer if there are many pairs ([`Sampled`](crate::Sampled)). With the
     /// default, a pair of which one segment in a hundred is free is missed in one of a hundred runs: 0.99^459 < 0.01.
     pub segments: u32,
+    /// For a table with parts of objects: the triangles of the file that the scene does not have, as the scene's reader lists them.
+    pub degenerate: &'a [[u32; 2]],
     /// What the random numbers begin with.
     pub seed: u64,
     /// Number of threads; 0 for one for each core. Changes nothing but the time.
@@ -29,7 +31,7 @@ impl VerifyOptions<'_> {
 
 impl Default for VerifyOptions<'_> {
     fn default() -> Self {
-        Self { rays: 100_000, pairs: 10_000, tries: 32, segments: 459, seed: 1, threads: 0, progress: None }
+        Self { rays: 100_000, pairs: 10_000, tries: 32, segments: 459, degenerate: &[], seed: 1, threads: 0, progress: None }
     }
 }
 

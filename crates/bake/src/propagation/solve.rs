@@ -87,6 +87,8 @@ pub(crate) struct Memory {
     /// By part of a side: whether it was found blocked.
     is_blocked: Vec<bool>,
     waits: Vec<bool>,
+    /// By cell: whether it was known before that the object is hidden from it.
+    is_known: Vec<bool>,
 }
 
 impl<'a> Propagation<'a> {
@@ -121,6 +123,7 @@ impl<'a> Propagation<'a> {
             is_visible: vec![false; n],
             is_blocked: vec![false; self.tiling.n_parts()],
             waits: vec![false; n],
+            is_known: vec![false; n],
         }
     }
 
@@ -128,10 +131,18 @@ impl<'a> Propagation<'a> {
     ///
     /// * `object`: its index, if it is one of the objects that rays find
     /// * `fronts`: whether only the fronts of its triangles are seen
-    pub(crate) fn solve(&self, memory: &mut Memory, object: Option<u32>, target: &FaceTarget, fronts: bool) -> Solved {
+    /// * `known`: cells from which it is hidden, which is not asked again
+    pub(crate) fn solve(
+        &self,
+        memory: &mut Memory,
+        object: Option<u32>,
+        target: &FaceTarget,
+        fronts: bool,
+        known: &[Range<u32>],
+    ) -> Solved {
         memory.search.forget();
-        memory.is_visible.fill(false);
-        memory.is_blocked.fill(false);
+        [&mut memory.is_visible, &mut memory.is_blocked, &mut memory.is_known].into_iter().for_each(|of| of.fill(false));
+        known.iter().for_each(|run| memory.is_known[run.start as usize..run.end as usize].fill(true));
         let n_cells = memory.search.n_cells();
         let mut one = One {
             of: self,
@@ -185,6 +196,10 @@ impl One<'_> {
         !self.memory.is_visible[cell as usize]
     }
 
+    fn is_open(&self, cell: u32) -> bool {
+        self.is_hidden(cell) && !self.memory.is_known[cell as usize]
+    }
+
     /// Marks what touches the object, what rays find to see it, and from there on neighbours from which it is seen as well.
     fn see(&mut self) {
         let around = self.target.bounds();
@@ -205,8 +220,9 @@ impl One<'_> {
     /// Marks cells from which a point of the box around the object is seen: of what rays do not find, as it stops none.
     fn see_box(&mut self) {
         let (of, around) = (self.of, self.target.bounds());
-        for (is_visible, b) in self.memory.is_visible.iter_mut().zip(of.tiling.boxes()) {
-            let volume = Volume::new(*b).ok().filter(|_| !*is_visible);
+        let marks = self.memory.is_visible.iter_mut().zip(&self.memory.is_known);
+        for ((is_visible, is_known), b) in marks.zip(of.tiling.boxes()) {
+            let volume = Volume::new(*b).ok().filter(|_| !*is_visible && !is_known);
             if volume.is_some_and(|volume| of.rays.sees(&volume, around, AIMED as u32)) {
                 *is_visible = true;
                 self.solved.n_seen += 1;
@@ -215,7 +231,7 @@ impl One<'_> {
     }
 
     fn note(&mut self, sight: Sight, queue: &mut VecDeque<Sight>) {
-        if self.is_hidden(sight.cell) {
+        if self.is_open(sight.cell) {
             self.memory.is_visible[sight.cell as usize] = true;
             self.solved.n_seen += 1;
             self.changed.push(sight.cell);
@@ -228,7 +244,7 @@ impl One<'_> {
         let (of, Some(object)) = (self.of, self.object) else { return };
         while let Some(sight) = queue.pop_front() {
             for near in of.tiling.neighbours(sight.cell) {
-                if !self.is_hidden(near) {
+                if !self.is_open(near) {
                     continue;
                 }
                 let b = &of.tiling.boxes()[near as usize];
@@ -252,12 +268,12 @@ impl One<'_> {
     /// Asks about parts of faces until each is blocked, or has a cell behind it from which the object is hidden, or its cell may see the object.
     fn ask_all(&mut self) {
         let tiling = &self.of.tiling;
-        let mut queue: VecDeque<u32> = (0..tiling.len() as u32).filter(|&cell| self.is_hidden(cell)).collect();
+        let mut queue: VecDeque<u32> = (0..tiling.len() as u32).filter(|&cell| self.is_open(cell)).collect();
         self.memory.waits.fill(false);
         queue.iter().for_each(|&cell| self.memory.waits[cell as usize] = true);
         while let Some(cell) = queue.pop_front() {
             self.memory.waits[cell as usize] = false;
-            if !self.is_hidden(cell) {
+            if !self.is_open(cell) {
                 continue;
             }
             self.changed.clear();
@@ -270,7 +286,7 @@ impl One<'_> {
             // What leaned on them has to be looked at again.
             for k in 0..self.changed.len() {
                 for near in tiling.neighbours(self.changed[k]) {
-                    if self.is_hidden(near) && !std::mem::replace(&mut self.memory.waits[near as usize], true) {
+                    if self.is_open(near) && !std::mem::replace(&mut self.memory.waits[near as usize], true) {
                         queue.push_back(near);
                     }
                 }
@@ -379,7 +395,7 @@ impl One<'_> {
     /// The fixed point, without the solver: see the page of the module.
     fn is_sound(&self) -> bool {
         let (tiling, memory) = (&self.of.tiling, &*self.memory);
-        (0..tiling.len() as u32).filter(|&cell| self.is_hidden(cell)).all(|cell| {
+        (0..tiling.len() as u32).filter(|&cell| self.is_open(cell)).all(|cell| {
             let b = &tiling.boxes()[cell as usize];
             let mut facing = tiling.parts(cell).filter(|(_, part)| self.faces(b, part));
             let is_covered =

@@ -9,7 +9,7 @@
 mod boxes;
 mod limited;
 mod parts;
-mod phase;
+pub(crate) mod phase;
 mod row;
 mod see;
 mod stream;

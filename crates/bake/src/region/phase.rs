@@ -15,7 +15,7 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 ///
 /// # Errors
 /// Those of `decide`, and [`Halt`] as the store and the observer have it.
-pub(super) fn decide<T: Send>(
+pub(crate) fn decide<T: Send>(
     phase: &'static str,
     costs: &[f64],
     options: &RegionBakeOptions<'_>,

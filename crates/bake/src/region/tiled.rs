@@ -60,7 +60,7 @@ pub(super) fn see(
         let is_culled = object.is_some_and(|object| scene.is_single_sided(object));
         let known = memories.lock().ok().and_then(|mut memories: MutexGuard<'_, Vec<_>>| memories.pop());
         let mut memory = known.unwrap_or_else(|| propagation.memory());
-        let solved = propagation.solve(&mut memory, *object, target, is_culled);
+        let solved = propagation.solve(&mut memory, *object, target, is_culled, &[]);
         if let Ok(mut memories) = memories.lock() {
             memories.push(memory);
         }

@@ -55,7 +55,7 @@ pub(super) struct Builder {
     see_through: Vec<u32>,
     moving: Vec<MovingObject>,
     surfaces: Vec<Classified>,
-    n_degenerate: usize,
+    degenerate: Vec<[u32; 2]>,
     n_single_sided: usize,
     n_front_occluding: usize,
     fronts_only: Vec<u32>,
@@ -93,16 +93,19 @@ impl Builder {
         mirrored: bool,
         moves: bool,
     ) {
-        let mut n_all = 0;
-        let counted = triangles.inspect(|_| n_all += 1);
-        let turned = counted.map(|[a, b, c]| if mirrored { [a, c, b] } else { [a, b, c] });
-        let triangles: Vec<_> = turned
-            .filter(|t| match moves {
-                true => t[0] != t[1] && t[1] != t[2] && t[2] != t[0],
-                false => !are_collinear(t.map(|i| vertices[i as usize])),
-            })
-            .collect();
-        self.n_degenerate += n_all - triangles.len();
+        let turned = triangles.map(|[a, b, c]| if mirrored { [a, c, b] } else { [a, b, c] });
+        let has_area = |t: &[u32; 3]| match moves {
+            true => t[0] != t[1] && t[1] != t[2] && t[2] != t[0],
+            false => !are_collinear(t.map(|i| vertices[i as usize])),
+        };
+        let object = self.objects.len() as u32;
+        let (degenerate, mut place) = (&mut self.degenerate, 0u32..);
+        let triangles = turned.filter(|t| {
+            let (place, has_area) = (place.next(), has_area(t));
+            degenerate.extend(place.filter(|_| !has_area).map(|place| [object, place]));
+            has_area
+        });
+        let triangles = triangles.collect();
         self.objects.push(SceneObject { name, vertices, triangles });
     }
 
@@ -214,7 +217,7 @@ impl Builder {
             self.warnings
                 .push(format!("{volumes} flat and ignored, the first is called {name:?}: viewers have no room there"));
         }
-        let (n_objects, n_degenerate, simplified) = (self.objects.len(), self.n_degenerate, self.simplified);
+        let (n_objects, n_degenerate, simplified) = (self.objects.len(), self.degenerate.len(), self.simplified);
         let scene = Scene::new(self.objects)?.with_mirrors(self.mirrors)?;
         let scene = scene.with_see_through(self.see_through)?.with_moving(self.moving)?;
         let scene = scene.with_single_sided(self.fronts_only)?.with_front_occluders(self.front_occluders)?;
@@ -240,7 +243,7 @@ impl Builder {
             n_objects,
             n_objects_without_triangles: scene.objects().iter().filter(|o| o.triangles.is_empty()).count(),
             n_triangles,
-            n_degenerate_triangles: n_degenerate,
+            degenerate_triangles: self.degenerate,
             n_single_sided_triangles: self.n_single_sided,
             n_front_occluding_triangles: self.n_front_occluding,
             simplified,

@@ -5,8 +5,8 @@ use super::error::{DecodeError, DecodeErrorKind as Kind};
 use super::reader::{Reader, read};
 use super::{
     CELL_NAMES, CELL_OBJECTS, CELLS, DIGEST, DOORS, FRAME, INFO, KIND, KIND_LEN, LEAF, LOCATOR, MINOR, MIRRORS,
-    OBJECT_POLYGONS, OBJECTS, PLANES, POLYGONS, PORTALS, ROWS, SEEN, SOURCES, STAB, SectionId, doors, kind_from_bytes,
-    kind_from_info, n_row_words, planes, stab,
+    OBJECT_PARTS, OBJECT_POLYGONS, OBJECTS, PLANES, POLYGONS, PORTALS, ROWS, SEEN, SOURCES, STAB, SectionId, doors, kind_from_bytes,
+    kind_from_info, n_row_words, object_parts, planes, stab,
 };
 use crate::digest::{DIGEST_LEN, GeometryDigest};
 use crate::frame::FRAME_LEN;
@@ -61,6 +61,7 @@ impl Table {
             digest: sections.find(DIGEST).map(|s| read(s, digest)).transpose()?,
             mirrors,
             object_polygons,
+            object_parts: sections.find(OBJECT_PARTS).map(|s| read(s, |r| object_parts::read(r, cells.len()))).transpose()?,
             object_sources,
             doors: sections.find(DOORS).map_or(Ok(Vec::new()), |s| read(s, doors::read))?,
             cell_names,
@@ -133,6 +134,12 @@ fn section_of(error: &TableError) -> SectionId {
         TableError::SeenShape { .. } | TableError::SeenTail(_) | TableError::Unseen { .. } => SEEN,
         TableError::ObjectPolygons { .. } => OBJECT_POLYGONS,
         TableError::ObjectSources { .. } | TableError::ObjectNode(_) => SOURCES,
+        TableError::PartsAlone
+        | TableError::PartsShape { .. }
+        | TableError::PartsTail(_)
+        | TableError::PartOrder(_)
+        | TableError::PartObject { .. }
+        | TableError::PartSeen { .. } => OBJECT_PARTS,
         TableError::DoorObject { .. } | TableError::DoorPortal { .. } | TableError::DoorOrder(_) => DOORS,
         TableError::CellNames { .. } => CELL_NAMES,
         TableError::MirrorCell { .. } | TableError::MirrorPoints { .. } => MIRRORS,
@@ -224,7 +231,7 @@ fn rows(r: &mut Reader<'_>, n: usize) -> Result<BitMatrix, DecodeError> {
     Ok(rows)
 }
 
-fn whole_rows(r: &mut Reader<'_>, n_rows: usize, n_cols: usize) -> Result<BitMatrix, DecodeError> {
+pub(super) fn whole_rows(r: &mut Reader<'_>, n_rows: usize, n_cols: usize) -> Result<BitMatrix, DecodeError> {
     // Both are below 2^32, so the product fits.
     r.expect(n_rows as u64 * n_cols.div_ceil(64) as u64, 8)?;
     let mut rows = BitMatrix::new(n_rows, n_cols);

@@ -3,8 +3,8 @@
 use super::container::{self, Payload};
 use super::writer::Writer;
 use super::{
-    CELL_NAMES, CELL_OBJECTS, CELLS, DIGEST, DOORS, FRAME, INFO, KIND, LEAF, LOCATOR, MIRRORS, OBJECT_POLYGONS,
-    OBJECTS, PLANES, POLYGONS, PORTALS, ROWS, SEEN, SOURCES, STAB, SectionId, doors, kind_section, planes, stab,
+    CELL_NAMES, CELL_OBJECTS, CELLS, DIGEST, DOORS, FRAME, INFO, KIND, LEAF, LOCATOR, MIRRORS, OBJECT_PARTS, OBJECT_POLYGONS,
+    OBJECTS, PLANES, POLYGONS, PORTALS, ROWS, SEEN, SOURCES, STAB, SectionId, doors, kind_section, object_parts, planes, stab,
 };
 use crate::locator::Node;
 use crate::{BitMatrix, CellRecord, MirrorRecord, ObjectId, ObjectRecord, PortalRecord, Table, TableParts};
@@ -59,6 +59,9 @@ impl Table {
         }
         if !parts.doors.is_empty() {
             sections.push(section(DOORS, |out| doors::write(out, &parts.doors)));
+        }
+        if let Some(of_objects) = &parts.object_parts {
+            sections.push(section(OBJECT_PARTS, |out| object_parts::write(out, of_objects)));
         }
         sections.push(section(INFO, |out| info(out, &parts.info)));
         container::write(sections)
@@ -116,7 +119,7 @@ fn rows(out: &mut Writer, rows: &BitMatrix) {
     }
 }
 
-fn whole_rows(out: &mut Writer, rows: &BitMatrix) {
+pub(super) fn whole_rows(out: &mut Writer, rows: &BitMatrix) {
     out.0.reserve_exact((0..rows.n_rows()).map(|i| 8 * rows.row(i).len()).sum());
     (0..rows.n_rows()).flat_map(|i| rows.row(i)).for_each(|word| out.0.extend(word.to_le_bytes()));
 }

@@ -42,6 +42,7 @@
 //! | `DGST`, optional | digests of what hides and of what is seen in what the table was made of, 16 bytes each |
 //! | `OSRC`, optional | for each object its node and its primitive (`u32`), or 2^32 - 1 twice |
 //! | `DOOR`, optional | number of doors; for each: the object plus 1, or 0 (`u32`), number of bytes of the name, the name in UTF-8, number of portals, portals (`u32`) |
+//! | `OPRT`, optional | number of parts of objects; for each: object, first triangle, the one behind its last triangle (`u32`); for each cell, `u64` words of the bits of the parts that it sees |
 //! | `INFO` | number of entries; for each: key, value, each as number of bytes and UTF-8 |
 //!
 //! Half of the rows is enough, because they are symmetric. A missing `POLY` means that the cells are their boxes, a
@@ -54,7 +55,7 @@
 //! not stated. Without a `FRAM` (new in 1.5) all coordinates are along the axes of the scene. Because it changes what coordinates mean,
 //! `FRAM` is not optional for a reader: one that does not have it refuses the file. Files without it are as before. A missing
 //! `DGST` (new in 1.6) means that the digests are unknown, a missing `OSRC` (new in 1.7) that the places of objects in their file are, and a
-//! missing `DOOR` (new in 1.7) that there are no doors.
+//! missing `DOOR` (new in 1.7) that there are no doors, a missing `OPRT` (new in 1.8) that no object was cut into parts.
 //!
 //! # Stab trees
 //!
@@ -88,6 +89,7 @@ mod doors;
 mod encode;
 mod error;
 mod kind;
+mod object_parts;
 mod planes;
 mod reader;
 mod stab;
@@ -105,7 +107,7 @@ pub const MAGIC: [u8; 8] = *b"\x89PVS\r\n\x1a\n";
 pub const MAJOR: u16 = 1;
 /// Largest minor version that this crate writes. It writes the smallest version with all the sections of a table, so
 /// that files without newer sections stay unchanged.
-pub const MINOR: u16 = 7;
+pub const MINOR: u16 = 8;
 
 const CELLS: SectionId = SectionId(*b"CELL");
 const POLYGONS: SectionId = SectionId(*b"POLY");
@@ -125,6 +127,7 @@ const FRAME: SectionId = SectionId(*b"FRAM");
 const DIGEST: SectionId = SectionId(*b"DGST");
 const SOURCES: SectionId = SectionId(*b"OSRC");
 const DOORS: SectionId = SectionId(*b"DOOR");
+const OBJECT_PARTS: SectionId = SectionId(*b"OPRT");
 const INFO: SectionId = SectionId(*b"INFO");
 
 /// The minor version that added rows of objects.
@@ -141,9 +144,11 @@ const SINCE_FRAME: u16 = 5;
 const SINCE_DIGEST: u16 = 6;
 /// The minor version that added sources of objects and doors.
 const SINCE_SOURCES_DOORS: u16 = 7;
+/// The minor version that added parts of objects.
+const SINCE_OBJECT_PARTS: u16 = 8;
 
 /// The sections of this version, whether readers may skip them, and the minor version that added each, which is a constant.
-const KNOWN: [(SectionId, bool, u16); 19] = [
+const KNOWN: [(SectionId, bool, u16); 20] = [
     (CELLS, false, 0),
     (POLYGONS, true, 0),
     (PORTALS, true, 0),
@@ -162,6 +167,7 @@ const KNOWN: [(SectionId, bool, u16); 19] = [
     (DIGEST, true, SINCE_DIGEST),
     (SOURCES, true, SINCE_SOURCES_DOORS),
     (DOORS, true, SINCE_SOURCES_DOORS),
+    (OBJECT_PARTS, true, SINCE_OBJECT_PARTS),
     (INFO, false, 0),
 ];
 

@@ -50,6 +50,10 @@ pub(crate) struct RegionArgs {
     /// axis-aligned walls, from 0 to 2.5 m
     #[arg(long, value_name = "LOW,HIGH", value_parser = heights, conflicts_with_all = ["cells", "grid", "n_cells"])]
     eye_height: Option<[f64; 2]>,
+    /// Scenes in space: cut objects with more than N triangles into parts of no more, and find which cells see each part: ranges of its triangles,
+    /// in the order of the file, for engines that draw a mesh by offsets and counts. What hides is not cut
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    parts: Option<u32>,
     #[command(flatten)]
     buffers: BufferArgs,
     /// Methods that look from whole cells: how often a cell may be halved where much is in doubt [default: 0]
@@ -79,7 +83,7 @@ impl RegionArgs {
     /// # Errors
     /// [`ReadError`] with the file's name and the place in it.
     pub(crate) fn put_into(&self, request: &mut BakeRequest) -> Result<(), ReadError> {
-        let Self { method, cells, grid, n_cells, cell_size, eye_height, buffers, split } = self;
+        let Self { method, cells, grid, n_cells, cell_size, eye_height, parts, buffers, split } = self;
         let eye_level =
             EyeLevelOptions { cell_size: *cell_size, eye_height: *eye_height, ..EyeLevelOptions::default() };
         let places = PlaceOptions { n_cells: *n_cells, cell_size: *cell_size };
@@ -89,6 +93,7 @@ impl RegionArgs {
             (None, None) if eye_height.is_some() => Some(CellsFrom::EyeLevel(eye_level)),
             (None, None) => n_cells.is_some().then_some(CellsFrom::Places(places)),
         };
+        request.parts = *parts;
         request.cell_size = cell_size.filter(|_| request.cells.is_none());
         (request.method, request.buffers, request.split) =
             (*method, buffers.request(), split.map(|depth| Split { depth, ..Split::default() }));

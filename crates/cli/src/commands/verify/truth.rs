@@ -17,12 +17,18 @@ use std::path::Path;
 /// A scene that was read.
 pub(super) enum Real {
     Plan(Plan),
-    Scene(Scene),
+    /// With the triangles of the file that the scene does not have.
+    Scene(Scene, Vec<[u32; 2]>),
     Portals(CellGraph<Convex>),
     Map(CellGraph<Convex>, MapTree),
 }
 
 impl Real {
+    /// The triangles of the file of a scene that the scene does not have.
+    pub(super) fn degenerate(&self) -> &[[u32; 2]] {
+        if let Self::Scene(_, degenerate) = self { degenerate } else { &[] }
+    }
+
     /// Reads a scene of any kind; of a map also its portals.
     pub(super) fn read(
         path: &Path,
@@ -41,7 +47,7 @@ impl Real {
         let (file, portals) = portals.map(|portals| (portals.path, portals.prt)).unzip();
         Ok(match input::bakeable(path, input, map, portals)? {
             Bakeable::Plan { plan, .. } => Self::Plan(plan),
-            Bakeable::Scene(file) => Self::Scene(file.scene),
+            Bakeable::Scene(file) => Self::Scene(file.scene, file.info.degenerate_triangles),
             Bakeable::Portals(prt) => Self::Portals(graph_of_prt(&prt)),
             Bakeable::Map(bsp, portals) => {
                 let file = file.unwrap_or_default();
@@ -94,8 +100,8 @@ impl Real {
     /// The table without its frame, and the scene along its axes; none if the table has none.
     pub(super) fn along(&self, table: &Table) -> Result<Option<(Table, Self)>, VerifyError> {
         match self {
-            Self::Scene(scene) if table.dimension() == 3 => {
-                Ok(along_frame(table, scene)?.map(|(table, scene)| (table, Self::Scene(scene))))
+            Self::Scene(scene, degenerate) if table.dimension() == 3 => {
+                Ok(along_frame(table, scene)?.map(|(table, scene)| (table, Self::Scene(scene, degenerate.clone()))))
             }
             _ => Ok(None),
         }
@@ -104,7 +110,7 @@ impl Real {
     /// How many times what single precision explains in a scene the gap of a table is, if that is much.
     pub(super) fn times_too_wide(&self, gap: f64) -> Option<f64> {
         match self {
-            Self::Scene(scene) => Gap::times_too_wide(scene, gap),
+            Self::Scene(scene, _) => Gap::times_too_wide(scene, gap),
             _ => None,
         }
     }
@@ -112,7 +118,7 @@ impl Real {
     pub(super) fn truth(&self) -> Truth<'_> {
         match self {
             Self::Plan(plan) => Truth::Plan(plan),
-            Self::Scene(scene) => Truth::Scene(scene),
+            Self::Scene(scene, _) => Truth::Scene(scene),
             Self::Portals(graph) => Truth::Portals(graph),
             Self::Map(graph, tree) => Truth::World(graph, tree),
         }
