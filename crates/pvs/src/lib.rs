@@ -44,7 +44,9 @@ pub use locator::{Locator, LocatorError, LocatorNode, LocatorNodeRef};
 pub use parts::TableParts;
 pub use planes::{PlaneChild, PlaneError, PlaneNode, PlaneTree};
 pub use query::{DimensionError, Inside, Place, PlaceBuffer, Query};
-pub use records::{CellRecord, DoorRecord, MirrorRecord, ObjectPart, ObjectParts, ObjectRecord, ObjectSource, PortalRecord};
+pub use records::{
+    CellRecord, DoorRecord, MirrorRecord, ObjectPart, ObjectParts, ObjectRecord, ObjectSource, PortalRecord,
+};
 pub use set::CellSet;
 pub use side::polygon_may_contain;
 pub use sources::NodeIndex;

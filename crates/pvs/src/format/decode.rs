@@ -5,8 +5,8 @@ use super::error::{DecodeError, DecodeErrorKind as Kind};
 use super::reader::{Reader, read};
 use super::{
     CELL_NAMES, CELL_OBJECTS, CELLS, DIGEST, DOORS, FRAME, INFO, KIND, KIND_LEN, LEAF, LOCATOR, MINOR, MIRRORS,
-    OBJECT_PARTS, OBJECT_POLYGONS, OBJECTS, PLANES, POLYGONS, PORTALS, ROWS, SEEN, SOURCES, STAB, SectionId, doors, kind_from_bytes,
-    kind_from_info, n_row_words, object_parts, planes, stab,
+    OBJECT_PARTS, OBJECT_POLYGONS, OBJECTS, PLANES, POLYGONS, PORTALS, ROWS, SEEN, SOURCES, STAB, SectionId, doors,
+    kind_from_bytes, kind_from_info, n_row_words, object_parts, planes, stab,
 };
 use crate::digest::{DIGEST_LEN, GeometryDigest};
 use crate::frame::FRAME_LEN;
@@ -61,7 +61,10 @@ impl Table {
             digest: sections.find(DIGEST).map(|s| read(s, digest)).transpose()?,
             mirrors,
             object_polygons,
-            object_parts: sections.find(OBJECT_PARTS).map(|s| read(s, |r| object_parts::read(r, cells.len()))).transpose()?,
+            object_parts: sections
+                .find(OBJECT_PARTS)
+                .map(|s| read(s, |r| object_parts::read(r, cells.len())))
+                .transpose()?,
             object_sources,
             doors: sections.find(DOORS).map_or(Ok(Vec::new()), |s| read(s, doors::read))?,
             cell_names,

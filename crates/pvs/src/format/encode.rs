@@ -3,8 +3,9 @@
 use super::container::{self, Payload};
 use super::writer::Writer;
 use super::{
-    CELL_NAMES, CELL_OBJECTS, CELLS, DIGEST, DOORS, FRAME, INFO, KIND, LEAF, LOCATOR, MIRRORS, OBJECT_PARTS, OBJECT_POLYGONS,
-    OBJECTS, PLANES, POLYGONS, PORTALS, ROWS, SEEN, SOURCES, STAB, SectionId, doors, kind_section, object_parts, planes, stab,
+    CELL_NAMES, CELL_OBJECTS, CELLS, DIGEST, DOORS, FRAME, INFO, KIND, LEAF, LOCATOR, MIRRORS, OBJECT_PARTS,
+    OBJECT_POLYGONS, OBJECTS, PLANES, POLYGONS, PORTALS, ROWS, SEEN, SOURCES, STAB, SectionId, doors, kind_section,
+    object_parts, planes, stab,
 };
 use crate::locator::Node;
 use crate::{BitMatrix, CellRecord, MirrorRecord, ObjectId, ObjectRecord, PortalRecord, Table, TableParts};

@@ -6,6 +6,7 @@ mod extras;
 mod format;
 mod frame;
 mod kind;
+mod object_parts;
 mod planes;
 mod seen;
 mod stab;
