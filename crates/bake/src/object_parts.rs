@@ -34,9 +34,8 @@ struct Part {
 
 /// Cuts the objects that have more than so many triangles. Those that move, that are doors or that have no triangles stay whole.
 fn cut(scene: &Scene, most: usize) -> Vec<Part> {
-    let moves = |object: u32| {
-        scene.moving().iter().any(|moving| moving.object == object) || scene.doors().contains(&object)
-    };
+    let moves =
+        |object: u32| scene.moving().iter().any(|moving| moving.object == object) || scene.doors().contains(&object);
     let large = (0u32..).zip(scene.objects()).filter(|(object, o)| o.triangles.len() > most && !moves(*object));
     let parts = large.flat_map(|(object, o)| {
         let mut runs = Vec::new();
@@ -94,7 +93,8 @@ pub(crate) fn with_parts(
     }
     let n = table.n_cells();
     let mut parts = table.into_parts();
-    let mut objects = parts.objects_seen.take().unwrap_or_else(|| touched(&parts.rows, &parts.cell_objects, parts.objects.len()));
+    let mut objects =
+        parts.objects_seen.take().unwrap_or_else(|| touched(&parts.rows, &parts.cell_objects, parts.objects.len()));
     let cells: Vec<Aabb<3>> = parts.cells.iter().map(|cell| Aabb { min: cell.min, max: cell.max }).collect();
     let solved = threads::on(options.threads, || solve(&cells, scene, &cut, &objects, options))?;
     let mut seen = BitMatrix::new(n, cut.len());
@@ -167,7 +167,8 @@ fn solve(
     // Rays know the parts, and behind them the other objects.
     let is_cut = |object: &u32| cut.binary_search_by_key(object, |part| part.object).is_ok();
     let others: Vec<u32> = (0..scene.objects().len() as u32).filter(|object| !is_cut(object)).collect();
-    let of = |thing: u32| cut.get(thing as usize).map_or_else(|| others[thing as usize - cut.len()], |part| part.object);
+    let of =
+        |thing: u32| cut.get(thing as usize).map_or_else(|| others[thing as usize - cut.len()], |part| part.object);
     let stops = |object: u32| scene.is_opaque(object) || scene.hides_from_front(object);
     let all = cut.iter().map(triangles).chain(others.iter().map(|&object| scene.covering_triangles(object)));
     let all: Vec<Vec<[Point3; 3]>> =

@@ -56,8 +56,16 @@ pub(crate) fn bake_here(input: BakeInput<'_>, recipe: &Recipe, runtime: &Runtime
                 })?
             } else {
                 let (cut, portals, budget) = (recipe.cut, PortalMode::default(), Allowance::all(budget));
-                let baked = bake_scene(scene, &SceneBakeOptions { cut, portals, threads, file, progress, budget, units })?;
-                let regions = RegionBakeOptions { threads, file, progress, budget, units, ..RegionBakeOptions::new(&recipe.cells) };
+                let baked =
+                    bake_scene(scene, &SceneBakeOptions { cut, portals, threads, file, progress, budget, units })?;
+                let regions = RegionBakeOptions {
+                    threads,
+                    file,
+                    progress,
+                    budget,
+                    units,
+                    ..RegionBakeOptions::new(&recipe.cells)
+                };
                 cut_into_parts(baked.into_any(), scene, recipe, &regions)?
             };
             let digest = recipe.digest.or(baked.table.digest());

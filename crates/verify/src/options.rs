@@ -31,7 +31,16 @@ impl VerifyOptions<'_> {
 
 impl Default for VerifyOptions<'_> {
     fn default() -> Self {
-        Self { rays: 100_000, pairs: 10_000, tries: 32, segments: 459, degenerate: &[], seed: 1, threads: 0, progress: None }
+        Self {
+            rays: 100_000,
+            pairs: 10_000,
+            tries: 32,
+            segments: 459,
+            degenerate: &[],
+            seed: 1,
+            threads: 0,
+            progress: None,
+        }
     }
 }
 

@@ -64,9 +64,10 @@ impl InParts {
             (0u32..).zip(&of).filter(|(_, object)| holds(**object)).map(|(thing, _)| thing).collect()
         };
         let thing_of = |object: u32| of.iter().rposition(|&o| o == object).map(|thing| thing as u32);
-        let moving = scene.moving().iter().filter_map(|moving| {
-            thing_of(moving.object).map(|object| MovingObject { object, ..*moving })
-        });
+        let moving = scene
+            .moving()
+            .iter()
+            .filter_map(|moving| thing_of(moving.object).map(|object| MovingObject { object, ..*moving }));
         let mut moving: Vec<MovingObject> = moving.collect();
         moving.sort_by_key(|moving| moving.object);
         let in_parts = Scene::new(objects)

@@ -141,7 +141,9 @@ impl<'a> Propagation<'a> {
         known: &[Range<u32>],
     ) -> Solved {
         memory.search.forget();
-        [&mut memory.is_visible, &mut memory.is_blocked, &mut memory.is_known].into_iter().for_each(|of| of.fill(false));
+        [&mut memory.is_visible, &mut memory.is_blocked, &mut memory.is_known]
+            .into_iter()
+            .for_each(|of| of.fill(false));
         known.iter().for_each(|run| memory.is_known[run.start as usize..run.end as usize].fill(true));
         let n_cells = memory.search.n_cells();
         let mut one = One {

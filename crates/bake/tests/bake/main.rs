@@ -14,6 +14,7 @@ mod limit;
 mod line_space;
 mod live;
 mod mirrors;
+mod object_parts;
 mod places;
 mod plan;
 mod quake;
