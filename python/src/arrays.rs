@@ -3,7 +3,9 @@
 use crate::error::{error, value_error};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
+use sightlines_pvs::ObjectId;
 use std::fmt::Display;
+use std::ops::Range;
 
 /// An array of ids, as numpy likes indices.
 pub(crate) type Ids<'py> = Bound<'py, PyArray1<i64>>;
@@ -61,4 +63,13 @@ pub(crate) fn bug(panic: &(dyn std::any::Any + Send)) -> PyErr {
         _ => &"no reason was given",
     };
     error(format!("this is a defect of sightlines, please report it: {said}"))
+}
+
+/// Ranges of triangles of objects, three numbers each: the object, its first triangle, and the one behind the last; -1 for all of it.
+pub(crate) fn ranges(py: Python<'_>, ranges: Vec<(ObjectId, Option<Range<u32>>)>) -> Ids<'_> {
+    let of = |(object, range): (ObjectId, Option<Range<u32>>)| {
+        let [start, end] = range.map_or([0, -1], |range| [range.start, range.end].map(i64::from));
+        [i64::from(object.0), start, end]
+    };
+    ranges.into_iter().flat_map(of).collect::<Vec<i64>>().into_pyarray(py)
 }

@@ -42,6 +42,7 @@ pub(crate) struct Options<'py> {
     is_single: bool,
     detail_below: Option<f64>,
     keep_solid: bool,
+    parts: Option<u32>,
     max_cells: Option<u32>,
     time_limit: Option<f64>,
     threads: usize,
@@ -113,6 +114,7 @@ impl Options<'_> {
             },
             detail_below: self.detail_below,
             keep_solid: self.keep_solid,
+            parts: self.parts,
             max_cells: self.max_cells,
             ..BakeRequest::default()
         };

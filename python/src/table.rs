@@ -1,6 +1,6 @@
 //! Tables: read, written, asked.
 
-use crate::arrays::{Ids, cube, guarded, ids, matrix, rows};
+use crate::arrays::{Ids, cube, guarded, ids, ranges, matrix, rows};
 use crate::error::{error, file_failed, read_failed, room, value_error, write_failed};
 use crate::explain::{Explanation, explain};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray2};
@@ -300,6 +300,17 @@ impl Table {
     fn objects_seen_by_cell<'py>(&self, py: Python<'py>, cell: i64) -> PyResult<Ids<'py>> {
         let cell = self.cell(cell)?;
         Ok(ids(py, self.table.visible_objects(cell).into_iter().map(|object| object.0)))
+    }
+
+    /// What a cell may see, as triples of an object, its first triangle, and the one behind the last; -1 for all of it.
+    fn ranges_seen_by_cell<'py>(&self, py: Python<'py>, cell: i64) -> PyResult<Ids<'py>> {
+        Ok(ranges(py, self.table.visible_ranges(self.cell(cell)?)))
+    }
+
+    /// The same of a point; none outside.
+    fn ranges_from<'py>(&self, py: Python<'py>, eye: Vec<f64>) -> PyResult<Option<Ids<'py>>> {
+        let eye = self.eye(&eye)?;
+        Ok(self.table.place_at(eye).inside().map(|here| ranges(py, here.visible_ranges())))
     }
 
     /// The objects that touch a cell.

@@ -403,6 +403,25 @@ typedef struct sl_portal {
 } sl_portal;
 
 /**
+ * Triangles of an object that follow each other in its file: those of a glTF primitive are drawn by an offset of three times `start`
+ * indices and a count of three times the difference.
+ */
+typedef struct SlRange {
+    /**
+     * The object.
+     */
+    uint32_t object;
+    /**
+     * The first triangle.
+     */
+    uint32_t start;
+    /**
+     * The one behind the last triangle; `SL_NONE` for all, as of objects that were not cut into parts.
+     */
+    uint32_t end;
+} SlRange;
+
+/**
  * An eye, and the directions that it looks at. What a kind does not use is ignored, and may be 0.
  */
 typedef struct sl_view {
@@ -640,6 +659,11 @@ typedef struct sl_bake_options {
      * The axis that points upwards, for `SL_CELLS_EYE_LEVEL`: 1, 2 or 3 for x, y or z; 0 for what the file says, or else z.
      */
     uint64_t up;
+    /**
+     * Scenes: objects with more triangles than this are cut into parts of no more, of which the table says as well what cells see
+     * (`sl_table_visible_ranges`); 0 to cut none.
+     */
+    uint64_t parts;
 } sl_bake_options;
 
 /**
@@ -1044,6 +1068,21 @@ sl_status sl_table_visible_objects(const struct sl_table *table,
                                    size_t *count);
 
 /**
+ * What a cell may see, by ascending object: of objects that were cut into parts the ranges of triangles, and all of the others.
+ *
+ * @param cell      Its number, below `cell_count`.
+ * @param ranges    Where the ranges go, or null to ask for how many there are.
+ * @param capacity  Number of ranges that the buffer has room for; 0 if it is null.
+ * @param count     Where their number goes.
+ * @return `SL_OK`, `SL_ERROR_ARGUMENT` if there is no such cell, or `SL_ERROR_BUFFER`.
+ */
+sl_status sl_table_visible_ranges(const struct sl_table *table,
+                                  uint32_t cell,
+                                  struct SlRange *ranges,
+                                  size_t capacity,
+                                  size_t *count);
+
+/**
  * The objects that a cell may see, as bits: bit `j % 64` of word `j / 64` is set for object `j`.
  *
  * @param cell      Its number, below `cell_count`.
@@ -1108,6 +1147,24 @@ sl_status sl_table_cells_touching(const struct sl_table *table,
                                   uint32_t *cells,
                                   size_t capacity,
                                   size_t *count);
+
+/**
+ * What may be seen from a point, by ascending object, as for `sl_table_visible_ranges`: what to draw there. Outside of every cell nothing is known,
+ * and it is all of every object.
+ *
+ * @param point       Three numbers: x, y and z, in scene units; in a table of the plane z does not count.
+ * @param ranges      Where the ranges go, or null to ask for how many there are.
+ * @param capacity    Number of ranges that the buffer has room for; 0 if it is null.
+ * @param count       Where their number goes.
+ * @param is_outside  Where 1 goes if the point is in no cell, else 0; may be null.
+ * @return `SL_OK`, or `SL_ERROR_BUFFER`.
+ */
+sl_status sl_table_visible_ranges_at(const struct sl_table *table,
+                                     const double *point,
+                                     struct SlRange *ranges,
+                                     size_t capacity,
+                                     size_t *count,
+                                     uint32_t *is_outside);
 
 /**
  * Makes a viewer of a table: exact within the work of a frame (`SL_STEPS_FRAME`), with all doors open.

@@ -106,6 +106,9 @@ pub struct SlBakeOptions {
     pub eye_height: [f64; 2],
     /// The axis that points upwards, for `SL_CELLS_EYE_LEVEL`: 1, 2 or 3 for x, y or z; 0 for what the file says, or else z.
     pub up: u64,
+    /// Scenes: objects with more triangles than this are cut into parts of no more, of which the table says as well what cells see
+    /// (`sl_table_visible_ranges`); 0 to cut none.
+    pub parts: u64,
 }
 
 impl Plain for SlBakeOptions {}
@@ -210,6 +213,7 @@ static DEFAULT: Shareable = Shareable(SlBakeOptions {
     cell_size: 0.0,
     eye_height: [0.0; 2],
     up: 0,
+    parts: 0,
 });
 
 struct Shareable(SlBakeOptions);
@@ -252,7 +256,8 @@ impl Given<'_> {
                 "gap, time limit or size of detail is no finite number, or the limit is below 0",
             ));
         }
-        let SlBakeOptions { cell_size, eye_height, up, .. } = *self.options;
+        let SlBakeOptions { cell_size, eye_height, up, parts, .. } = *self.options;
+        let parts = u32::try_from(parts).map_err(|_| Failure::argument(format!("parts of {parts} triangles")))?;
         let axis = match up {
             0 => None,
             1..=3 => Some(Axis::ALL[up as usize - 1]),
@@ -322,6 +327,7 @@ impl Given<'_> {
             detail_below: if detail_below == 0.0 { None } else { Some(detail_below.max(0.0)) },
             max_cells: if max_cells == 0 { None } else { Some(max_cells) },
             keep_solid: keep_solid != 0,
+            parts: if parts == 0 { None } else { Some(parts) },
             ..BakeRequest::default()
         })
     }

@@ -2,9 +2,10 @@
 
 use crate::border;
 use crate::info::cell_of;
-use crate::status::{Failure, Outcome, SlStatus, guard};
+use crate::status::{Failure, Outcome, SL_NONE, SlStatus, guard};
 use crate::table::{SlTable, table};
 use sightlines_pvs::{CellId, ObjectId, Place, Table};
+use std::ops::Range;
 
 /// The cells that contain a point, ascending: several on borders, none outside of all cells.
 ///
@@ -174,6 +175,48 @@ pub unsafe extern "C" fn sl_table_visible_objects(
     })
 }
 
+/// Triangles of an object that follow each other in its file: those of a glTF primitive are drawn by an offset of three times `start`
+/// indices and a count of three times the difference.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct SlRange {
+    /// The object.
+    pub object: u32,
+    /// The first triangle.
+    pub start: u32,
+    /// The one behind the last triangle; `SL_NONE` for all, as of objects that were not cut into parts.
+    pub end: u32,
+}
+
+/// What a cell may see, by ascending object: of objects that were cut into parts the ranges of triangles, and all of the others.
+///
+/// @param cell      Its number, below `cell_count`.
+/// @param ranges    Where the ranges go, or null to ask for how many there are.
+/// @param capacity  Number of ranges that the buffer has room for; 0 if it is null.
+/// @param count     Where their number goes.
+/// @return `SL_OK`, `SL_ERROR_ARGUMENT` if there is no such cell, or `SL_ERROR_BUFFER`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sl_table_visible_ranges(
+    table: *const SlTable,
+    cell: u32,
+    ranges: *mut SlRange,
+    capacity: usize,
+    count: *mut usize,
+) -> SlStatus {
+    guard(|| {
+        // SAFETY: pointers are as the header demands.
+        let table = unsafe { self::table(table)? };
+        let found = table.visible_ranges(cell_of(table, cell)?);
+        // SAFETY: pointers are as the header demands.
+        unsafe { border::put_each(found.len(), found.into_iter().map(range_of), ranges, capacity, count) }
+    })
+}
+
+fn range_of((object, range): (ObjectId, Option<Range<u32>>)) -> SlRange {
+    let Range { start, end } = range.unwrap_or(0..SL_NONE);
+    SlRange { object: object.0, start, end }
+}
+
 /// The objects that a cell may see, as bits: bit `j % 64` of word `j / 64` is set for object `j`.
 ///
 /// @param cell      Its number, below `cell_count`.
@@ -316,5 +359,38 @@ pub unsafe extern "C" fn sl_table_cells_touching(
         found.dedup();
         // SAFETY: pointers are as the header demands.
         unsafe { put_ids(found.iter().map(|cell| cell.0), found.len(), cells, capacity, count) }
+    })
+}
+
+/// What may be seen from a point, by ascending object, as for `sl_table_visible_ranges`: what to draw there. Outside of every cell nothing is known,
+/// and it is all of every object.
+///
+/// @param point       Three numbers: x, y and z, in scene units; in a table of the plane z does not count.
+/// @param ranges      Where the ranges go, or null to ask for how many there are.
+/// @param capacity    Number of ranges that the buffer has room for; 0 if it is null.
+/// @param count       Where their number goes.
+/// @param is_outside  Where 1 goes if the point is in no cell, else 0; may be null.
+/// @return `SL_OK`, or `SL_ERROR_BUFFER`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sl_table_visible_ranges_at(
+    table: *const SlTable,
+    point: *const f64,
+    ranges: *mut SlRange,
+    capacity: usize,
+    count: *mut usize,
+    is_outside: *mut u32,
+) -> SlStatus {
+    guard(|| {
+        // SAFETY: pointers are as the header demands.
+        let (table, point) = unsafe { (self::table(table)?, point_of(point)?) };
+        let (found, outside) = match table.place_at(point) {
+            Place::Inside(here) => (here.visible_ranges(), false),
+            Place::Outside => ((0..table.objects().len() as u32).map(|o| (ObjectId(o), None)).collect(), true),
+        };
+        // SAFETY: pointers are as the header demands.
+        unsafe {
+            put_outside(is_outside, outside)?;
+            border::put_each(found.len(), found.into_iter().map(range_of), ranges, capacity, count)
+        }
     })
 }

@@ -2,7 +2,9 @@
 
 use crate::bytes::Writer;
 use crate::error::{PackError, StreamError};
-use crate::format::{FIXED, LARGE_BLOCK_BYTES, LARGE_ROW_BLOCK_BYTES, MAX_UNPACKED_BLOCK, PLACES, ROWS, SEEN};
+use crate::format::{
+    FIXED, LARGE_BLOCK_BYTES, LARGE_ROW_BLOCK_BYTES, MAX_UNPACKED_BLOCK, PARTS_SEEN, PLACES, ROWS, SEEN,
+};
 use sightlines_pvs::SectionId;
 use std::io::Write;
 
@@ -58,7 +60,8 @@ impl<W: Write> BlockWriter<W> {
         let end = u32::try_from(pending.content.len()).ok();
         pending.ends.push(end.ok_or(PackError::Record { store: id, bytes: record.len() as u64 })?);
         pending.n_records = pending.n_records.checked_add(1).ok_or(PackError::TooMany { store: id })?;
-        let target = if [ROWS, SEEN, PLACES].contains(&id) { LARGE_ROW_BLOCK_BYTES } else { LARGE_BLOCK_BYTES };
+        let target =
+            if [ROWS, SEEN, PARTS_SEEN, PLACES].contains(&id) { LARGE_ROW_BLOCK_BYTES } else { LARGE_BLOCK_BYTES };
         if pending.content.len() + 4 * pending.ends.len() >= target || pending.ends.len() == MAX_RECORDS {
             self.flush(store)?;
         }

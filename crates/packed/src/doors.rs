@@ -1,10 +1,10 @@
-//! The sections with doors, and with where objects are in their file: both are resident.
+//! The sections with doors, with parts of objects, and with where objects are in their file: all are resident.
 
 use crate::bytes::Reader;
 use crate::container::ResidentPart;
 use crate::error::PackedError;
 use crate::format;
-use sightlines_pvs::{DoorRecord, NodeIndex, ObjectId, ObjectSource, PortalId};
+use sightlines_pvs::{DoorRecord, NodeIndex, ObjectId, ObjectPart, ObjectSource, PortalId};
 
 /// The sources of all objects.
 #[derive(Debug)]
@@ -30,6 +30,22 @@ impl Sources {
         }
         Ok(Self { nodes: NodeIndex::new(&of_objects), of_objects })
     }
+}
+
+/// The parts of objects of a table with so many objects.
+pub(crate) fn object_parts(resident: &ResidentPart, n_objects: u32) -> Result<Option<Vec<ObjectPart>>, PackedError> {
+    let Some(section) = resident.find(format::OBJECT_PARTS) else { return Ok(None) };
+    let mut r = Reader::new(section.bytes, section.place);
+    let n = r.count(2)?;
+    let mut parts: Vec<ObjectPart> = Vec::new();
+    for _ in 0..n {
+        let object = ObjectId(r.below(u64::from(n_objects))? as u32);
+        let start = parts.last().filter(|last| last.object == object).map_or(0, |last| last.end);
+        let end = start + r.below(u64::from(u32::MAX - start) + 1)? as u32;
+        parts.push(ObjectPart { object, start, end });
+    }
+    r.finish()?;
+    Ok(Some(parts))
 }
 
 /// The doors of a table with so many objects and portals.

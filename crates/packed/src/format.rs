@@ -35,6 +35,7 @@
 //! | `DGST`, optional | as in a `.pvs` file of version 1.6; new in 1.4 here |
 //! | `OSRC`, optional | for each object a varint: its node plus 1, or 0 if it has no source; and if it has one, its primitive as a varint; new in 1.5 here |
 //! | `DOOR`, optional | varint number; for each: varint object plus 1, or 0; name as varint number of bytes and UTF-8; portals; new in 1.5 here |
+//! | `OPRT`, optional | varint number of parts of objects; for each: varint object, number of triangles; new in 1.6 here |
 //! | `INFO` | varint number; for each: key, value, each as varint number of bytes and UTF-8 |
 //! | `COAR` | pages by pages of cells, a bit if some cell of the one sees some cell of the other, rows of `u64` |
 //! | `CLAS` | classes of cells in `ROWS`, counted by their first members; empty if each is its own, else the unpacked length (`u32`) and, packed by zstd, for each cell a varint: how far its class is below the least that no cell before has |
@@ -47,6 +48,7 @@
 //! | --- | --- | --- |
 //! | `ROWS` | class of cells | bits of the classes that it sees, words of `u64` |
 //! | `SEEN`, optional | class of cells | the same with classes of objects |
+//! | `PSEN`, optional | cell | the parts that it sees, as objects in `SEEN` of the large class; new in 1.6 here |
 //! | `CELL` | cell | varint group + 1 or 0; number of exits, for each: 2 portal + (0 if it leads from the portal's first cell to its second), to-cell; objects; if there are stab trees: varint 1 if the tree is cut at its root, else 0; roots |
 //! | `PORT` | portal | varint both cells, both sides, number of points; points (d each) |
 //! | `OBJS` | object | min (d), max (d); varint polygons (0 if not known); name to the end |
@@ -86,7 +88,7 @@
 //! | `SEEN`, optional | cell | the same with objects |
 //! | `BOXS` | cell | min (d), max (d), then the corners of its polygon |
 //! | `PLAC` | page | numbers of nodes, entries, cells, corners (`u32`); nodes as in `LOCA`, a subtree in preorder; entries (`u32` indices of cells of the page); cells (`u32`); the corners before each cell, and once more (`u32`); boxes as in `BOXS`; corners |
-//! | `CELL`, `PORT`, `OBJS`, `STAB`, `CNAM` | | as above |
+//! | `CELL`, `PORT`, `OBJS`, `STAB`, `CNAM`, `PSEN` | | as above |
 //!
 //! Blocks of all these stores begin with the ends of their records. A page repeats the boxes of its cells, so that a point is
 //! located with one block beside what is resident.
@@ -147,7 +149,7 @@ pub const MAJOR_LARGE: u16 = 2;
 pub const MAX_SMALL_CELLS: usize = 1 << 16;
 /// Largest minor version that this crate writes, of both classes. It writes the smallest version that supports the content of a table,
 /// so that files without newer features stay unchanged.
-pub const MINOR: u16 = 5;
+pub const MINOR: u16 = 6;
 /// Largest unpacked block that a reader accepts, in bytes, so that no file can demand more memory at once. The size of
 /// *written* blocks is [`BLOCK_BYTES`] and [`ROW_BLOCK_BYTES`].
 pub const MAX_UNPACKED_BLOCK: u32 = 1 << 24;
@@ -177,6 +179,7 @@ pub(crate) const FRAME: SectionId = SectionId(*b"FRAM");
 pub(crate) const DIGEST: SectionId = SectionId(*b"DGST");
 pub(crate) const SOURCES: SectionId = SectionId(*b"OSRC");
 pub(crate) const DOORS: SectionId = SectionId(*b"DOOR");
+pub(crate) const OBJECT_PARTS: SectionId = SectionId(*b"OPRT");
 pub(crate) const INFO: SectionId = SectionId(*b"INFO");
 pub(crate) const COARSE: SectionId = SectionId(*b"COAR");
 pub(crate) const CLASSES: SectionId = SectionId(*b"CLAS");
@@ -185,7 +188,7 @@ pub(crate) const SEEN_COLUMNS: SectionId = SectionId(*b"SCLC");
 pub(crate) const BLOCKS: SectionId = SectionId(*b"BLKS");
 
 /// The sections of this version, and whether readers may skip them.
-pub(crate) const SECTIONS: [(SectionId, bool); 18] = [
+pub(crate) const SECTIONS: [(SectionId, bool); 19] = [
     (HEAD, false),
     (BOXES, false),
     (POLYGONS, true),
@@ -198,6 +201,7 @@ pub(crate) const SECTIONS: [(SectionId, bool); 18] = [
     (DIGEST, true),
     (SOURCES, true),
     (DOORS, true),
+    (OBJECT_PARTS, true),
     (INFO, false),
     (COARSE, false),
     (CLASSES, false),
@@ -213,6 +217,7 @@ pub(crate) const PORTALS: SectionId = SectionId(*b"PORT");
 pub(crate) const OBJECTS: SectionId = SectionId(*b"OBJS");
 pub(crate) const STAB: SectionId = SectionId(*b"STAB");
 pub(crate) const CELL_NAMES: SectionId = SectionId(*b"CNAM");
+pub(crate) const PARTS_SEEN: SectionId = SectionId(*b"PSEN");
 pub(crate) const PLACES: SectionId = SectionId(*b"PLAC");
 
 /// The minor version that added names of cells.
@@ -225,6 +230,8 @@ pub(crate) const SINCE_FRAME: u16 = 3;
 pub(crate) const SINCE_DIGEST: u16 = 4;
 /// The minor version that added sources of objects and doors.
 pub(crate) const SINCE_SOURCES_DOORS: u16 = 5;
+/// The minor version that added parts of objects.
+pub(crate) const SINCE_OBJECT_PARTS: u16 = 6;
 
 /// Bytes before the section table.
 pub(crate) const FIXED: usize = 24;

@@ -262,6 +262,9 @@ impl Frame {
         if let Some(stab) = &parts.stab {
             stores.push(Store::of_records(format::STAB, write::nodes(stab))?);
         }
+        if let Some(of_objects) = &parts.object_parts {
+            stores.push(Store::of_records(format::PARTS_SEEN, write::parts_seen(of_objects))?);
+        }
         if !parts.cell_names.is_empty() {
             stores.push(Store::of_records(format::CELL_NAMES, write::cell_names(parts))?);
         }

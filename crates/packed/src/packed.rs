@@ -13,7 +13,9 @@ use crate::masks;
 use crate::pages::Pages;
 use crate::rows::{DenseRows, Rows};
 use crate::source::ByteSource;
-use sightlines_pvs::{Axis, CellId, DoorRecord, Frame, GeometryDigest, MirrorRecord, PlaneTree, SectionId, TableKind};
+use sightlines_pvs::{
+    Axis, CellId, DoorRecord, Frame, GeometryDigest, MirrorRecord, ObjectPart, PlaneTree, SectionId, TableKind,
+};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -40,6 +42,8 @@ pub struct Packed<S: ByteSource> {
     pub(crate) sources: Sources,
     pub(crate) rows: Rows,
     pub(crate) seen: Option<Rows>,
+    /// The parts of objects, with what cells see of them.
+    pub(crate) parts: Option<(Vec<ObjectPart>, Rows)>,
     pub(crate) cells: StoreIndex,
     pub(crate) portals: StoreIndex,
     pub(crate) objects: StoreIndex,
@@ -129,6 +133,11 @@ impl<S: ByteSource> Packed<S> {
             let n = [n_cells, n_objects, n_classes[1], n_classes[2]];
             Some(Rows::read(&resident, &index, (format::SEEN, codings[1]), sections, n)?)
         };
+        let parts = doors::object_parts(&resident, n_objects)?.map(|parts| {
+            let (id, n_items) = (format::PARTS_SEEN, parts.len() as u32);
+            Ok::<_, PackedError>((parts, Rows::Masks { id, store: index.need_records(id, n_cells)?, n_items }))
+        });
+        let parts = parts.transpose()?;
         let n_pages = head.n_pages() as u64;
         resident.need(format::COARSE)?.expect(n_pages * n_pages.div_ceil(64) * 8)?;
         let cache = Cache::new(index.entries.len(), cache_bytes);
@@ -146,6 +155,7 @@ impl<S: ByteSource> Packed<S> {
             sources: Sources::read(&resident, n_objects)?,
             rows,
             seen,
+            parts,
             cells: index.need_records(format::CELLS, n_cells)?,
             portals: index.need_records(format::PORTALS, head.n_portals)?,
             objects: index.need_records(format::OBJECTS, n_objects)?,

@@ -6,8 +6,10 @@ use crate::format::{self, POLYGONS_KNOWN};
 use crate::packed::{Packed, Places};
 use crate::source::ByteSource;
 use sightlines_pvs::{
-    CellId, DimensionError, ObjectId, ObjectRecord, Place, PlaceBuffer, PlaneTree, PortalId, PortalRecord,
+    CellId, DimensionError, ObjectId, ObjectPart, ObjectRecord, Place, PlaceBuffer, PlaneTree, PortalId, PortalRecord,
+    triangle_ranges,
 };
+use std::ops::Range;
 
 /// Called by [`Packed::exits`] with the portal, whether it is crossed from its first cell into its second, the cell
 /// that it leads to, and its corners.
@@ -143,6 +145,30 @@ impl<S: ByteSource> Packed<S> {
             self.for_each_object(cell, |object| set[object.idx() / 64] |= 1 << (object.0 % 64))?;
         }
         out.extend(sightlines_pvs::bits::ones(&set).map(|object| ObjectId(object as u32)));
+        Ok(())
+    }
+
+    /// The parts of objects, as [`sightlines_pvs::Table::object_parts`].
+    pub fn object_parts(&self) -> &[ObjectPart] {
+        self.parts.as_ref().map_or(&[], |(parts, _)| parts)
+    }
+
+    /// Puts the triangles that `cell` may see into `out`, which is cleared: as [`sightlines_pvs::Table::visible_ranges`].
+    ///
+    /// # Errors
+    /// As [`Packed::objects_seen`].
+    pub fn visible_ranges(
+        &self,
+        cell: CellId,
+        out: &mut Vec<(ObjectId, Option<Range<u32>>)>,
+    ) -> Result<(), PackedError> {
+        out.clear();
+        let (mut objects, mut parts): (Vec<ObjectId>, Vec<usize>) = (Vec::new(), Vec::new());
+        self.objects_seen(cell, &mut objects)?;
+        if let Some((_, rows)) = &self.parts {
+            self.items(rows, cell, &mut parts, |part| part as usize)?;
+        }
+        *out = triangle_ranges(self.object_parts(), &objects, parts);
         Ok(())
     }
 

@@ -1,6 +1,8 @@
 //! The sections that both size classes have.
 
-use crate::format::{self, SINCE_CELL_NAMES, SINCE_DIGEST, SINCE_FRAME, SINCE_KIND, SINCE_SOURCES_DOORS};
+use crate::format::{
+    self, SINCE_CELL_NAMES, SINCE_DIGEST, SINCE_FRAME, SINCE_KIND, SINCE_OBJECT_PARTS, SINCE_SOURCES_DOORS,
+};
 use crate::write;
 use sightlines_pvs::format::kind_section;
 use sightlines_pvs::{SectionId, TableParts};
@@ -29,6 +31,9 @@ pub(crate) fn frame_sections(parts: &TableParts) -> Vec<(SectionId, Vec<u8>)> {
     if !parts.doors.is_empty() {
         sections.push((format::DOORS, write::doors(&parts.doors)));
     }
+    if let Some(of_objects) = &parts.object_parts {
+        sections.push((format::OBJECT_PARTS, write::object_parts(&of_objects.parts)));
+    }
     sections.push((format::INFO, write::info(&parts.info)));
     sections
 }
@@ -42,6 +47,7 @@ pub(crate) fn minor(parts: &TableParts, sections: &[(SectionId, Vec<u8>)]) -> u1
         (has(format::FRAME), SINCE_FRAME),
         (has(format::DIGEST), SINCE_DIGEST),
         (has(format::SOURCES) || has(format::DOORS), SINCE_SOURCES_DOORS),
+        (has(format::OBJECT_PARTS), SINCE_OBJECT_PARTS),
     ];
     needed.into_iter().filter(|(there, _)| *there).map(|(_, since)| since).max().unwrap_or(0)
 }

@@ -16,7 +16,7 @@ pub struct PartSize {
 }
 
 /// What the parts are, by their names.
-const PARTS: [(&str, &str); 26] = [
+const PARTS: [(&str, &str); 28] = [
     ("HEAD", "numbers"),
     ("BOXS", "boxes of cells"),
     ("POLY", "corners of cells"),
@@ -34,9 +34,11 @@ const PARTS: [(&str, &str); 26] = [
     ("DGST", "digests of the scene"),
     ("OSRC", "objects in their file"),
     ("DOOR", "doors"),
+    ("OPRT", "parts of objects"),
     ("BLKS", "index of blocks"),
     ("ROWS", "cells seen"),
     ("SEEN", "objects seen"),
+    ("PSEN", "parts seen"),
     ("CELL", "exits, objects in cells"),
     ("PORT", "portals"),
     ("OBJS", "objects"),

@@ -135,6 +135,9 @@ impl<W: Write> PackWriter<W> {
         if let Some(stab) = &parts.stab {
             blocks.all(format::STAB, write::nodes(stab))?;
         }
+        if let Some(of_objects) = &parts.object_parts {
+            blocks.all(format::PARTS_SEEN, write::parts_seen(of_objects))?;
+        }
         if !parts.cell_names.is_empty() {
             blocks.all(format::CELL_NAMES, write::cell_names(parts))?;
         }

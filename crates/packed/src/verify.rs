@@ -38,6 +38,7 @@ impl<S: ByteSource> Packed<S> {
             self.check_exits(&parts)?;
             self.check_pages(pages)?;
             self.check_rows_of_objects(&parts)?;
+            self.check_parts_seen()?;
             drop(parts);
             self.check_rows_and_coarse(store)?;
             return self.check_symmetry(store, bytes / 4);
@@ -89,6 +90,24 @@ impl<S: ByteSource> Packed<S> {
             unseen.is_none()
         })?;
         unseen.map_or(Ok(()), |error| Err(self.table_error(*id)(error)))
+    }
+
+    /// Whether each cell sees the objects of which it sees a part.
+    fn check_parts_seen(&self) -> Result<(), PackedError> {
+        let Some((parts, rows)) = &self.parts else { return Ok(()) };
+        let wrong = self.table_error(format::PARTS_SEEN);
+        if self.seen.is_none() {
+            return Err(wrong(TableError::PartsAlone));
+        }
+        let (mut seen, mut objects) = (Vec::new(), Vec::new());
+        for cell in (0..self.head.n_cells).map(CellId) {
+            self.items(rows, cell, &mut seen, |part| parts[part as usize].object)?;
+            self.objects_seen(cell, &mut objects)?;
+            if let Some(&object) = seen.iter().find(|object| objects.binary_search(object).is_err()) {
+                return Err(wrong(TableError::PartSeen { cell, object }));
+            }
+        }
+        Ok(())
     }
 
     /// Whether each cell sees itself, and the coarse table is that of the rows.

@@ -5,8 +5,8 @@ use crate::format::{self, MAX_TABLE, POLYGONS_KNOWN};
 use crate::packed::{Packed, Places};
 use crate::source::ByteSource;
 use sightlines_pvs::{
-    BitMatrix, CellId, CellRecord, Locator, ObjectId, PortalId, SectionId, StabParts, StabTrees, Table, TableError,
-    TableParts,
+    BitMatrix, CellId, CellRecord, Locator, ObjectId, ObjectParts, PortalId, SectionId, StabParts, StabTrees, Table,
+    TableError, TableParts,
 };
 
 impl<S: ByteSource> Packed<S> {
@@ -23,6 +23,10 @@ impl<S: ByteSource> Packed<S> {
         if let Some(seen) = &self.seen {
             parts.objects_seen =
                 Some(self.matrix(format::SEEN, n_objects, |cell, out| self.items(seen, cell, out, |o| o))?);
+        }
+        if let (Some(of_objects), Some((all, rows))) = (&mut parts.object_parts, &self.parts) {
+            of_objects.seen =
+                self.matrix(format::PARTS_SEEN, all.len(), |cell, out| self.items(rows, cell, out, |p| p))?;
         }
         Table::new(parts).map_err(self.table_error(format::HEAD))
     }
@@ -50,6 +54,10 @@ impl<S: ByteSource> Packed<S> {
         let mut parts = TableParts {
             info: self.info().to_vec(),
             mirrors: self.mirrors().to_vec(),
+            object_parts: self
+                .parts
+                .as_ref()
+                .map(|(parts, _)| ObjectParts { parts: parts.clone(), seen: BitMatrix::default() }),
             object_sources: self.sources.of_objects.clone(),
             doors: self.doors().to_vec(),
             planes: self.planes().cloned(),

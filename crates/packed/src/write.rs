@@ -4,10 +4,11 @@ use crate::bytes::{Writer, bytes_of};
 use crate::classes::{Classes, Distinct};
 use crate::error::PackError;
 use crate::format::{HAS_SEEN, MAX_UNPACKED_BLOCK, NONE, POLYGONS_KNOWN, page_size};
+use crate::masks::encode;
 use crate::store::LEVEL;
 use sightlines_pvs::{
-    BitMatrix, CellRecord, DoorRecord, Locator, LocatorNode, ObjectSource, PlaneChild, PlaneTree, SectionId, StabTrees,
-    TableParts,
+    BitMatrix, CellRecord, DoorRecord, Locator, LocatorNode, ObjectPart, ObjectParts, ObjectSource, PlaneChild,
+    PlaneTree, SectionId, StabTrees, TableParts,
 };
 
 /// Numbers of cells, objects, portals and nodes, and the flags of `HEAD`. A checked table counts with 32 bits.
@@ -103,6 +104,26 @@ pub(crate) fn sources(sources: &[Option<ObjectSource>]) -> Vec<u8> {
         source.iter().for_each(|source| out.varint(u64::from(source.primitive)));
     }
     out.0
+}
+
+pub(crate) fn object_parts(parts: &[ObjectPart]) -> Vec<u8> {
+    let mut out = Writer::default();
+    out.varint(parts.len() as u64);
+    for ObjectPart { object, start, end } in parts {
+        out.varint(u64::from(object.0));
+        out.varint(u64::from(end - start));
+    }
+    out.0
+}
+
+/// The parts that each cell sees.
+pub(crate) fn parts_seen(ObjectParts { parts, seen }: &ObjectParts) -> impl Iterator<Item = Vec<u8>> + '_ {
+    (0..seen.n_rows()).map(|row| {
+        let mut out = Vec::new();
+        let ascending = seen.iter_ones(row).map(|part| part as u32);
+        encode(ascending, parts.len() as u32, &mut out).expect("the ones of a row ascend");
+        out
+    })
 }
 
 pub(crate) fn doors(doors: &[DoorRecord]) -> Vec<u8> {

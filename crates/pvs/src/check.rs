@@ -318,7 +318,7 @@ impl TableParts {
             parts.check_rows()?;
             parts.check_objects()?;
             parts.objects_seen.as_ref().map_or(Ok(()), |seen| parts.check_seen(seen))?;
-            parts.object_parts.as_ref().map_or(Ok(()), |of| parts.check_object_parts(of))
+            parts.check_parts_seen()
         })
     }
 
@@ -498,16 +498,9 @@ impl TableParts {
         Ok(())
     }
 
-    /// Whether the parts of each object follow each other from its triangle 0 on, and all objects are seen of which a part is.
-    fn check_object_parts(&self, ObjectParts { parts, seen }: &ObjectParts) -> Result<(), TableError> {
-        let (n_cells, n_parts) = (self.cells.len(), parts.len());
-        if (seen.n_rows(), seen.n_cols()) != (n_cells, n_parts) {
-            return Err(TableError::PartsShape { n_rows: seen.n_rows(), n_cols: seen.n_cols(), n_cells, n_parts });
-        }
-        if let Some(row) = seen.first_stray() {
-            return Err(TableError::PartsTail(CellId(row as u32)));
-        }
-        let objects_seen = self.objects_seen.as_ref().ok_or(TableError::PartsAlone)?;
+    /// Whether the parts of each object follow each other from its triangle 0 on.
+    fn check_object_parts(&self) -> Result<(), TableError> {
+        let Some(ObjectParts { parts, .. }) = &self.object_parts else { return Ok(()) };
         let mut before: Option<&ObjectPart> = None;
         for (index, part) in parts.iter().enumerate() {
             if part.object.idx() >= self.objects.len() {
@@ -523,14 +516,24 @@ impl TableParts {
             }
             before = Some(part);
         }
-        let mut first = 0;
-        for of in parts.chunk_by(|a, b| a.object == b.object) {
-            let (object, columns) = (of[0].object, first..first + of.len());
-            first = columns.end;
-            let sees_any = |cell: usize| columns.clone().any(|part| seen.get(cell, part));
-            let is_unseen = |&cell: &usize| !objects_seen.get(cell, object.idx()) && sees_any(cell);
-            if let Some(cell) = (0..n_cells).find(is_unseen) {
-                return Err(TableError::PartSeen { cell: CellId(cell as u32), object });
+        Ok(())
+    }
+
+    /// Whether all objects are seen of which a part is.
+    fn check_parts_seen(&self) -> Result<(), TableError> {
+        let Some(ObjectParts { parts, seen }) = &self.object_parts else { return Ok(()) };
+        let (n_cells, n_parts) = (self.cells.len(), parts.len());
+        if (seen.n_rows(), seen.n_cols()) != (n_cells, n_parts) {
+            return Err(TableError::PartsShape { n_rows: seen.n_rows(), n_cols: seen.n_cols(), n_cells, n_parts });
+        }
+        if let Some(row) = seen.first_stray() {
+            return Err(TableError::PartsTail(CellId(row as u32)));
+        }
+        let objects_seen = self.objects_seen.as_ref().ok_or(TableError::PartsAlone)?;
+        for (cell, row) in (0u32..).map(CellId).zip(0..n_cells) {
+            let objects = seen.iter_ones(row).map(|part| parts[part].object);
+            if let Some(object) = objects.into_iter().find(|object| !objects_seen.get(row, object.idx())) {
+                return Err(TableError::PartSeen { cell, object });
             }
         }
         Ok(())
@@ -564,6 +567,6 @@ impl TableParts {
                 return Err(TableError::UnknownObject { cell, object });
             }
         }
-        Ok(())
+        self.check_object_parts()
     }
 }

@@ -1,7 +1,7 @@
 //! What is visible from a point.
 
 use crate::bits::WORD;
-use crate::{BitMatrix, CellId, CellSet, ObjectId, Table};
+use crate::{BitMatrix, CellId, CellSet, ObjectId, Table, triangle_ranges};
 use std::borrow::Cow;
 use std::ops::Range;
 
@@ -200,7 +200,7 @@ impl Inside<'_> {
     /// range for all of an object that was not. Triangles count as for [`ObjectPart`](crate::ObjectPart). Allocates the list.
     pub fn visible_ranges(&self) -> Vec<(ObjectId, Option<Range<u32>>)> {
         let parts = self.table.parts().object_parts.iter().flat_map(|of| self.union_of(&of.seen));
-        self.table.ranges(&self.visible_objects(), parts)
+        triangle_ranges(self.table.object_parts(), &self.visible_objects(), parts)
     }
 
     /// Puts the objects that may be seen from the point into `out`, which is cleared first; ascending. Allocates nothing but what

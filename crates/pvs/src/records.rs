@@ -1,6 +1,7 @@
 //! Cells, portals, objects and mirrors as a table stores them.
 
 use crate::{BitMatrix, CellId, MirrorId, ObjectId, PortalId};
+use std::ops::Range;
 
 /// A convex cell.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,6 +72,33 @@ pub struct ObjectParts {
     pub parts: Vec<ObjectPart>,
     /// Bit `p` of row `i`: cell `i` may see part `p`. Where it sees one, it sees the object.
     pub seen: BitMatrix,
+}
+
+/// Of objects the ranges of triangles that are seen, which do not meet; no range for all of an object that was not cut.
+///
+/// * `all`: the parts of all objects
+/// * `objects`: those that are seen, ascending
+/// * `parts`: those that are seen, by their places in `all`, ascending
+pub fn triangle_ranges(
+    all: &[ObjectPart],
+    objects: &[ObjectId],
+    parts: impl IntoIterator<Item = usize>,
+) -> Vec<(ObjectId, Option<Range<u32>>)> {
+    let mut parts = parts.into_iter().map(|part| all[part]).peekable();
+    let mut ranges: Vec<(ObjectId, Option<Range<u32>>)> = Vec::with_capacity(objects.len());
+    for &object in objects {
+        let n = ranges.len();
+        while let Some(part) = parts.next_if(|part| part.object == object) {
+            match ranges[n..].last_mut() {
+                Some((_, Some(range))) if range.end == part.start => range.end = part.end,
+                _ => ranges.push((object, Some(part.start..part.end))),
+            }
+        }
+        if ranges.len() == n && all.binary_search_by_key(&object, |part| part.object).is_err() {
+            ranges.push((object, None));
+        }
+    }
+    ranges
 }
 
 /// A door, and the portals that nothing is seen through while it is shut.

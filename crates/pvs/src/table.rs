@@ -4,7 +4,7 @@ use crate::parts::TableParts;
 use crate::records::{CellRecord, DoorRecord, MirrorRecord, ObjectPart, ObjectRecord, ObjectSource, PortalRecord};
 use crate::{
     Axis, CellId, CellSet, Frame, FrameError, GeometryDigest, Locator, NodeIndex, ObjectId, PlaneTree, StabTrees,
-    TableError, TableKind, bits, side,
+    TableError, TableKind, bits, side, triangle_ranges,
 };
 use std::ops::Range;
 
@@ -269,31 +269,7 @@ impl Table {
     /// If the table has no such cell.
     pub fn visible_ranges(&self, cell: CellId) -> Vec<(ObjectId, Option<Range<u32>>)> {
         let parts = self.parts.object_parts.iter().flat_map(|of| of.seen.iter_ones(cell.idx()));
-        self.ranges(&self.visible_objects(cell), parts)
-    }
-
-    /// Of these objects the ranges of triangles of these parts, which ascend.
-    pub(crate) fn ranges(
-        &self,
-        objects: &[ObjectId],
-        parts: impl Iterator<Item = usize>,
-    ) -> Vec<(ObjectId, Option<Range<u32>>)> {
-        let all = self.object_parts();
-        let mut parts = parts.map(|part| all[part]).peekable();
-        let mut ranges: Vec<(ObjectId, Option<Range<u32>>)> = Vec::with_capacity(objects.len());
-        for &object in objects {
-            let n = ranges.len();
-            while let Some(part) = parts.next_if(|part| part.object == object) {
-                match ranges[n..].last_mut() {
-                    Some((_, Some(range))) if range.end == part.start => range.end = part.end,
-                    _ => ranges.push((object, Some(part.start..part.end))),
-                }
-            }
-            if ranges.len() == n && all.binary_search_by_key(&object, |part| part.object).is_err() {
-                ranges.push((object, None));
-            }
-        }
-        ranges
+        triangle_ranges(self.object_parts(), &self.visible_objects(cell), parts)
     }
 
     /// The objects that touch a cell of the set, ascending.

@@ -29,6 +29,7 @@ def bake(
     gap: float | None = None,
     detail_below: float | None = None,
     keep_solid: bool = False,
+    parts: int | None = None,
     see_through: Sequence[str] = (),
     max_cells: int | None = None,
     time_limit: float | None = None,
@@ -58,6 +59,8 @@ def bake(
         the file's format; meshes whose coordinates single precision holds are as precise as that, others are taken exactly
     :param detail_below: objects smaller than this in every direction hide nothing; None for what suits the scene
     :param keep_solid: whether the insides of solid things are cells too
+    :param parts: objects with more triangles than this are cut into parts of no more, and the table says which of these are seen, too
+        (:meth:`Table.visible_ranges`); None to cut none
     :param see_through: names of meshes that are seen and hide nothing; only for trimesh and meshes by name
     :param max_cells: the most cells
     :param time_limit: of scenes, seconds, after which what is not decided counts as visible; the table then depends on the machine
@@ -70,7 +73,8 @@ def bake(
     :raises Error: for a damaged file, or a scene that cannot be baked
     """
     eyes = (cell_size, eye_height, up)
-    options = _options(cells, eyes, method, view_region, gap, detail_below, keep_solid, max_cells, time_limit, threads)
+    kept = (bool(keep_solid), count(parts, "parts"))
+    options = _options(cells, eyes, method, view_region, gap, detail_below, kept, max_cells, time_limit, threads)
     if map is not None and not isinstance(map, str):
         raise TypeError("map is the name of a map")
     with Reporter(progress) as report:
@@ -91,7 +95,7 @@ def _options(
     view_region: ArrayLike | None,
     gap: float | None,
     detail_below: float | None,
-    keep_solid: bool,
+    kept: tuple[bool, int | None],
     max_cells: int | None,
     time_limit: float | None,
     threads: int | None,
@@ -144,7 +148,8 @@ def _options(
         "gap": gap,
         "is_single": False,
         "detail_below": detail_below,
-        "keep_solid": bool(keep_solid),
+        "keep_solid": kept[0],
+        "parts": kept[1],
         "max_cells": count(max_cells, "max_cells"),
         "time_limit": time_limit,
         "threads": threads_of(threads),

@@ -238,6 +238,26 @@ class Table:
         one, many = self._inner.objects_from, self._inner.objects_from_many
         return self._seen(eye, outside, self.n_objects, one, many)
 
+    def visible_ranges(self, eye: Any, *, outside: Outside = "all") -> NDArray[np.int64]:
+        """What may be seen from a point, by triangles: of objects that were cut into parts (``bake(parts=)``) only the parts that may be seen.
+
+        :param eye: a point
+        :param outside: as for :meth:`visible_cells`
+        :returns: an array (n, 3), by ascending object: the object, its first triangle in the order of its file, and the one behind the last;
+            0 and -1 for all triangles of an object
+        """
+        at = self._eye(eye)
+        found = self._inner.ranges_from(at)
+        if found is not None:
+            return found.reshape(-1, 3)
+        self._seen(at, outside, self.n_objects, self._inner.objects_from, None)
+        whole = range(self.n_objects if outside == "all" else 0)
+        return np.array([(item, 0, -1) for item in whole], np.int64).reshape(-1, 3)
+
+    def ranges_seen_by(self, cell: int) -> NDArray[np.int64]:
+        """What a cell may see, by triangles: as :meth:`visible_ranges`."""
+        return self._inner.ranges_seen_by_cell(index(cell, "cell")).reshape(-1, 3)
+
     def _eye(self, eye: Any) -> list[float]:
         found, single = points(eye, self.dimension, "eye")
         if not single:

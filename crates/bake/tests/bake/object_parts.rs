@@ -117,7 +117,7 @@ fn threads_and_other_cells_change_nothing_or_little() {
     });
     assert!(tables[0] == tables[1]);
     // Cells of other kinds: boxes anywhere, and those of a building by sightlines alone.
-    let grid = BakeRequest { cells: Some(CellsFrom::Grid([6, 10, 6])), ..request(Some(12)) };
+    let grid = BakeRequest { cells: Some(CellsFrom::Grid([4, 8, 4])), ..request(Some(12)) };
     let table = baked(&scene, &grid);
     assert!(found(&table, &scene, &[]).is_true());
     assert!(shares(&table, ObjectId(1))[0] < 0.95);

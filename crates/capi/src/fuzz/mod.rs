@@ -283,6 +283,7 @@ impl Driver<'_> {
                 progress: if self.bytes.below(2) == 0 { Some(progress) } else { None },
                 user: ptr::from_mut(&mut left).cast(),
                 cell_size: if self.bytes.below(8) == 0 { self.bytes.real() } else { 0.0 },
+                parts: if self.bytes.below(8) == 0 { u64::from(self.bytes.number()) } else { 0 },
                 eye_height: if cells == SL_CELLS_EYE_LEVEL && self.bytes.below(4) == 0 {
                     [self.bytes.real(), self.bytes.real()]
                 } else {
@@ -343,7 +344,7 @@ impl Driver<'_> {
         let mut answer = 7;
         // SAFETY: a live handle or none; results go to places of this function, or to null.
         let status = unsafe {
-            match self.bytes.below(10) {
+            match self.bytes.below(11) {
                 0 => {
                     let mut info = std::mem::zeroed::<SlTableInfo>();
                     info.struct_size = size_of::<SlTableInfo>() + self.bytes.below(16) / 15;
@@ -357,10 +358,23 @@ impl Driver<'_> {
                 6 => sl_table_find_object(table, name, self.out(&mut answer)),
                 7 => sl_table_sees(table, number, self.bytes.number(), self.out(&mut answer)),
                 8 => self.ask_row(table, number),
+                9 => self.ask_ranges(table, number),
                 _ => self.ask_points(table),
             }
         };
         self.heed(status);
+    }
+
+    /// Ranges of the triangles of objects are within those of the parts.
+    fn ask_ranges(&mut self, table: *mut SlTable, number: u32) -> SlStatus {
+        let (mut ranges, mut n) = ([SlRange { object: 0, start: 0, end: 0 }; 16], 0);
+        let capacity = self.bytes.below(17);
+        // SAFETY: a live handle or none, places of this function.
+        let status = unsafe { sl_table_visible_ranges(table, number, ranges.as_mut_ptr(), capacity, &mut n) };
+        if status == SL_OK {
+            assert!(ranges[..n].iter().all(|range| range.start < range.end));
+        }
+        status
     }
 
     fn ask_row(&mut self, table: *mut SlTable, number: u32) -> SlStatus {

@@ -51,6 +51,14 @@ fn bakes_are_those_of_rust() {
                 sl_table_free(table);
                 n += 1;
             }
+            let mut given = std::mem::zeroed::<SlBakeOptions>();
+            (given.struct_size, given.parts) = (size_of::<SlBakeOptions>(), 6);
+            let mut table = ptr::null_mut();
+            assert_eq!(sl_bake(handle, &given, &mut table, ptr::null_mut()), SL_OK);
+            let expected = bake(&scene, &BakeRequest { parts: Some(6), ..options.clone() }).expect("a scene").table;
+            assert!(!expected.object_parts().is_empty());
+            assert_eq!(list(|to, size, n| sl_table_bytes(table, SL_FORM_PLAIN, to, size, n)), expected.to_bytes());
+            assert_eq!(compare_content(&expected, &Handle(table))[1], 0);
             sl_scene_free(handle);
         }
     }

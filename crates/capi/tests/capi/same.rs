@@ -9,6 +9,7 @@ use sightlines_eye_to_cell::{
 use sightlines_pvs::{CellId, DoorRecord, ObjectId, Place, PlaceBuffer, PortalId, Table};
 use std::collections::BTreeSet;
 use std::ffi::CString;
+use std::ops::Range;
 use std::ptr;
 use std::sync::Arc;
 
@@ -57,6 +58,7 @@ pub(crate) fn compare_content(table: &Table, c: &Handle) -> [usize; 2] {
             );
             let objects = object_ids(table.visible_objects(cell));
             same(list(|to, size, n| sl_table_visible_objects(c, id, to, size, n)) == objects);
+            same(list(|to, size, n| sl_table_visible_ranges(c, id, to, size, n)) == ranges(table.visible_ranges(cell)));
             let bits = list(|to, size, n| sl_table_visible_object_bits(c, id, to, size, n));
             let is_set = |o: &u32| bits[*o as usize / 64] >> (o % 64) & 1 == 1;
             same((0..info.object_count).filter(is_set).collect::<Vec<_>>() == objects);
@@ -108,6 +110,14 @@ pub(crate) fn compare_content(table: &Table, c: &Handle) -> [usize; 2] {
     [n, n_wrong]
 }
 
+fn ranges(of: Vec<(ObjectId, Option<Range<u32>>)>) -> Vec<SlRange> {
+    let range = |(object, range): (ObjectId, Option<Range<u32>>)| match range {
+        Some(Range { start, end }) => SlRange { object: object.0, start, end },
+        None => SlRange { object: object.0, start: 0, end: SL_NONE },
+    };
+    of.into_iter().map(range).collect()
+}
+
 /// Compares answers for random points and boxes in and around a table.
 fn compare_points(table: &Table, c: &Handle, random: &mut Random, n_points: usize) -> [usize; 2] {
     let (mut n_inside, mut n_wrong) = (0, 0);
@@ -116,6 +126,9 @@ fn compare_points(table: &Table, c: &Handle, random: &mut Random, n_points: usiz
         let p: [f64; 3] = std::array::from_fn(|k| random.between(bounds.0[k] - 0.5, bounds.1[k] + 0.5));
         let q = p.map(|x| x + random.share());
         let (all_cells, all_objects) = (0..table.n_cells() as u32, 0..table.objects().len() as u32);
+        let whole = |object: u32| (ObjectId(object), None);
+        let found = table.place_at(p).inside().map(|here| here.visible_ranges());
+        let found = ranges(found.unwrap_or_else(|| all_objects.clone().map(whole).collect()));
         let (at, cells, objects, outside) = match table.place_at(p) {
             Place::Outside => (vec![], all_cells.collect(), all_objects.collect(), 1),
             Place::Inside(here) => {
@@ -141,6 +154,7 @@ fn compare_points(table: &Table, c: &Handle, random: &mut Random, n_points: usiz
                 && list(|to, size, n| sl_table_visible_cells_at(c, p.as_ptr(), to, size, n, ptr::null_mut())) == cells
                 && list(|to, size, n| sl_table_visible_objects_at(c, p.as_ptr(), to, size, n, ptr::null_mut()))
                     == objects
+                && list(|to, size, n| sl_table_visible_ranges_at(c, p.as_ptr(), to, size, n, ptr::null_mut())) == found
                 && list(|to, size, n| sl_table_cells_touching(c, &bounds, to, size, n)) == touching
                 && list(|to, size, n| sl_table_portals_within(c, &bounds, to, size, n)) == within
                 && sl_table_cells_at(c, p.as_ptr(), ptr::null_mut(), 0, &mut 0) == SL_OK

@@ -2,9 +2,9 @@
 
 use proptest::prelude::*;
 use sightlines_pvs::{
-    Axis, BitMatrix, CellId, CellRecord, DoorRecord, Locator, MirrorId, MirrorRecord, ObjectId, ObjectRecord,
-    ObjectSource, PlaneChild, PlaneNode, PlaneTree, PortalId, PortalRecord, SceneMethods, StabParts, StabTrees, Table,
-    TableKind, TableParts,
+    Axis, BitMatrix, CellId, CellRecord, DoorRecord, Locator, MirrorId, MirrorRecord, ObjectId, ObjectPart,
+    ObjectParts, ObjectRecord, ObjectSource, PlaneChild, PlaneNode, PlaneTree, PortalId, PortalRecord, SceneMethods,
+    StabParts, StabTrees, Table, TableKind, TableParts,
 };
 
 /// What a table is made from: dimension, columns, rows, seed (cells have names if it is odd, and there are doors and sources of
@@ -98,6 +98,24 @@ pub(crate) fn table((dimension, width, height, seed, parts): Recipe) -> Table {
         out.doors = (0..dice.below(5)).map(door).collect();
         let of = |o: u32| (o % 5 != 3).then_some(ObjectSource { node: o * o % 7 * 60, primitive: o % 3 });
         out.object_sources = (0..n_objects).map(of).collect();
+    }
+    if let (Some(seen), true) = (&out.objects_seen, seed % 5 < 2) {
+        let mut parts = Vec::new();
+        for object in (0..n_objects).filter(|o| o % 3 != 1) {
+            let mut end = 0;
+            for _ in 0..1 + dice.below(4) {
+                let start = end;
+                end += 1 + dice.below(300);
+                parts.push(ObjectPart { object: ObjectId(object), start, end });
+            }
+        }
+        let mut of_parts = BitMatrix::new(n, parts.len());
+        for (cell, part) in (0..n).flat_map(|cell| (0..parts.len()).map(move |part| (cell, part))) {
+            if seen.get(cell, parts[part].object.idx()) && dice.below(3) > 0 {
+                of_parts.set(cell, part, true);
+            }
+        }
+        out.object_parts = Some(ObjectParts { parts, seen: of_parts });
     }
     Table::new(out).expect("a table")
 }

@@ -13,6 +13,7 @@ pub(crate) fn ask_all(packed: &Packed<Vec<u8>>) -> usize {
         count(packed.coarse(cell, &mut cells));
         count(packed.objects_of(cell, &mut numbers));
         count(packed.objects_seen(cell, &mut numbers));
+        count(packed.visible_ranges(cell, &mut Vec::new()));
         count(packed.exits(cell, &mut |_, _, _, _| {}));
         count(packed.stab_roots(cell, &mut nodes).map(drop));
         count(packed.group(cell).map(drop));

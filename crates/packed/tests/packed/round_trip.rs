@@ -11,7 +11,8 @@ use sightlines_pvs::{
 /// Compares all queries of the packed table with the table; returns the number of comparisons.
 pub(crate) fn compare(packed: &Packed<Vec<u8>>, table: &Table) -> usize {
     let (mut cells, mut numbers, mut n, mut buffer) = (Vec::new(), Vec::new(), 0, PlaceBuffer::new());
-    let mut nodes = Vec::new();
+    let (mut nodes, mut ranges) = (Vec::new(), Vec::new());
+    assert_eq!(packed.object_parts(), table.object_parts());
     assert_eq!((packed.n_cells(), packed.dimension()), (table.n_cells(), table.dimension()));
     assert_eq!((packed.kind(), packed.up()), (table.kind(), table.up()));
     assert_eq!((packed.info(), packed.mirrors(), packed.planes()), (table.info(), table.mirrors(), table.planes()));
@@ -34,6 +35,8 @@ pub(crate) fn compare(packed: &Packed<Vec<u8>>, table: &Table) -> usize {
         assert_eq!(numbers, table.objects_of(cell));
         packed.objects_seen(cell, &mut numbers).unwrap();
         assert_eq!(numbers, table.visible_objects(cell));
+        packed.visible_ranges(cell, &mut ranges).unwrap();
+        assert_eq!(ranges, table.visible_ranges(cell));
         assert_eq!(packed.cell_box(cell).unwrap(), (record.min, record.max));
         let mut polygon = Vec::new();
         packed.cell_polygon(cell, &mut polygon).unwrap();
