@@ -4,6 +4,7 @@ use sightlines_eye_to_cell::{CellSource, TableCells};
 use sightlines_pvs::{Axis, CellId, DoorRecord, ObjectId, ObjectSource, Table};
 use std::borrow::Borrow;
 use std::convert::Infallible;
+use std::ops::Range;
 
 /// What a table stores of itself, of its cells and of its objects, whether it is in memory or read on demand. Ids are below the numbers of
 /// [`CellSource`].
@@ -31,6 +32,12 @@ pub trait TableFacts: CellSource {
     /// # Errors
     /// As [`TableFacts::object_name`].
     fn source_of(&self, object: ObjectId) -> Result<Option<ObjectSource>, Self::Error>;
+
+    /// What a cell may see: ranges of the triangles of objects that were cut into parts, and no range for all of an object that was not.
+    ///
+    /// # Errors
+    /// As [`TableFacts::object_name`].
+    fn visible_ranges(&self, cell: CellId) -> Result<Vec<(ObjectId, Option<Range<u32>>)>, Self::Error>;
 
     /// The name of a cell; `None` if the cells of the table have no names.
     ///
@@ -71,6 +78,10 @@ impl<T: Borrow<Table>> TableFacts for TableCells<T> {
 
     fn source_of(&self, object: ObjectId) -> Result<Option<ObjectSource>, Infallible> {
         Ok(self.table().source_of(object))
+    }
+
+    fn visible_ranges(&self, cell: CellId) -> Result<Vec<(ObjectId, Option<Range<u32>>)>, Infallible> {
+        Ok(self.table().visible_ranges(cell))
     }
 
     fn cell_name(&self, cell: CellId) -> Result<Option<String>, Infallible> {

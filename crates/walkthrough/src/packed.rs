@@ -6,6 +6,7 @@ use sightlines_eye_to_cell::{CellSource, MirrorPiece, PortalEdge, StabStep};
 use sightlines_geometry::Aabb;
 use sightlines_packed::{ByteSource, Packed, PackedError};
 use sightlines_pvs::{Axis, CellId, DoorRecord, Frame, ObjectId, ObjectSource, Place, PlaceBuffer};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// A packed table, shared by the frames and the thread that reads ahead.
@@ -150,6 +151,12 @@ impl<S: ByteSource> TableFacts for PackedCells<S> {
 
     fn source_of(&self, object: ObjectId) -> Result<Option<ObjectSource>, PackedError> {
         self.0.source_of(object)
+    }
+
+    fn visible_ranges(&self, cell: CellId) -> Result<Vec<(ObjectId, Option<Range<u32>>)>, PackedError> {
+        let mut ranges = Vec::new();
+        self.0.visible_ranges(cell, &mut ranges)?;
+        Ok(ranges)
     }
 
     fn cell_name(&self, cell: CellId) -> Result<Option<String>, PackedError> {

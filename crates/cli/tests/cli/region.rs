@@ -116,3 +116,34 @@ fn real_scenes_hide_nothing_that_was_seen() {
     }
     assert!(n > 20, "{n} cells");
 }
+
+/// Parts of objects, from the build to the query, packed or not; the impostor is a table that does not have them.
+#[test]
+fn parts_of_objects_go_from_build_to_query() {
+    let folder = Folder::new();
+    city(&folder);
+    let build = ["build", "scene.glb", "--grid", "3,1,3", "-o", "t.pvs"];
+    let whole = folder.run(&[&build[..], &["--json"]].concat()).expect(0).json();
+    let reply = folder.run(&[&build[..], &["--parts", "5", "--json"]].concat()).expect(0).json();
+    let share = |of: &Value| of["viewer"]["polygons"].as_f64().unwrap();
+    assert!(whole["n_parts"].is_null() && reply["n_parts"].as_u64().unwrap() > 10, "{reply}");
+    assert!(share(&reply) < 0.95 * share(&whole), "{} of {}", share(&reply), share(&whole));
+    let text = folder.run(&["info", "t.pvs"]).expect(0).out;
+    assert!(text.contains(&format!(", the large ones in {} parts\n", reply["n_parts"])), "{text}");
+    folder.run(&["verify", "t.pvs", "scene.glb", "--rays", "2000", "--pairs", "200"]).expect(0);
+    folder.run(&["pack", "t.pvs", "-o", "t.pvz"]).expect(0);
+    folder.run(&["unpack", "t.pvz", "-o", "again.pvs"]).expect(0);
+    assert!(folder.read("again.pvs") == folder.read("t.pvs"));
+    let eye = ["--eye", "1.2,1,1.2", "--json"];
+    let [plain, packed] =
+        ["t.pvs", "t.pvz"].map(|table| folder.run(&[&["query", table], &eye[..]].concat()).expect(0).json());
+    assert_eq!(plain, packed);
+    let objects = plain["objects"].as_array().unwrap();
+    let n_ranges = objects.iter().filter_map(|o| o["triangles"].as_array()).map(Vec::len).sum::<usize>();
+    assert!(n_ranges >= objects.iter().filter(|o| !o["triangles"].is_null()).count() && n_ranges > 0, "{plain}");
+    let refused = |args: &[&str], what: &str| {
+        let run = folder.run(&[&["build", "scene.glb", "--parts", "5"], args, &["-o", "no.pvs"]].concat()).expect(2);
+        assert!(run.err.contains(what), "{}", run.err);
+    };
+    refused(&["--certify"], "--parts is for tables alone, and this is a bake with proofs or stab trees");
+}

@@ -13,6 +13,7 @@ use sightlines::pvs::{CellId, ObjectId, PlaceBuffer};
 use sightlines::report::ObjectPlace;
 use std::collections::BTreeSet;
 use std::fmt;
+use std::ops::Range;
 use std::path::PathBuf;
 
 /// Arguments of `query`.
@@ -67,16 +68,29 @@ fn rows<C: Cells>(cells: &C, eye: &[f64], at: &[CellId]) -> Result<Found> {
     Ok(Found {
         place: Place::new(cells, eye, at)?,
         visible: visible.into_iter().collect(),
-        objects: named(cells, objects)?,
+        objects: named(cells, objects, at)?,
         all: cells.counts(),
     })
 }
 
-/// Objects with their names.
-fn named<C: Cells>(cells: &C, objects: impl IntoIterator<Item = ObjectId>) -> Result<Vec<Object>> {
+/// Objects with their names, and with what is seen of them from cells.
+fn named<C: Cells>(cells: &C, objects: impl IntoIterator<Item = ObjectId>, at: &[CellId]) -> Result<Vec<Object>> {
+    let mut seen = Vec::new();
+    for &cell in at {
+        seen.extend(cells.visible_ranges(cell)?.into_iter().filter_map(|(object, range)| Some((object, range?))));
+    }
+    seen.sort_unstable_by_key(|(object, range)| (*object, range.start));
     let object = |id: ObjectId| {
         let source = cells.source_of(id)?.map(ObjectPlace::from);
-        Ok(Object { id: id.0, name: cells.object_name(id)?, source })
+        let mut triangles: Vec<[u32; 2]> = Vec::new();
+        let first = seen.partition_point(|(object, _)| *object < id);
+        for (_, Range { start, end }) in seen[first..].iter().take_while(|(object, _)| *object == id) {
+            match triangles.last_mut().filter(|last| *start <= last[1]) {
+                Some(last) => last[1] = last[1].max(*end),
+                None => triangles.push([*start, *end]),
+            }
+        }
+        Ok(Object { id: id.0, name: cells.object_name(id)?, source, triangles })
     };
     objects.into_iter().map(object).collect()
 }
@@ -139,6 +153,10 @@ struct Object {
     /// If it is known.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     source: Option<ObjectPlace>,
+    /// If the object was cut into parts: what may be seen of it from these cells, as ranges of its triangles in the order of the file, the first
+    /// and the one behind the last of each.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    triangles: Vec<[u32; 2]>,
 }
 
 /// Without an option that describes the view. Exit code 1 outside every cell.
@@ -180,6 +198,10 @@ fn write_seen(
     objects.iter().try_for_each(|object| {
         write!(f, "  {:>5} {}", object.id, object.name)?;
         object.source.iter().try_for_each(|source| write!(f, ", {source}"))?;
+        if !object.triangles.is_empty() {
+            let ranges: Vec<String> = object.triangles.iter().map(|[start, end]| format!("{start}..{end}")).collect();
+            write!(f, ", triangles {}", ranges.join(" "))?;
+        }
         writeln!(f)
     })
 }

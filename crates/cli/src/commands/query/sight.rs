@@ -47,7 +47,7 @@ pub(super) fn look<C: Cells>(cells: &C, path: &Path, eye: &[f64], at: &[CellId],
     *viewer.doors_mut() = args.doors(cells, path)?;
     let all = args.method == Some(Methods::All);
     let methods = args.method.unwrap_or(Methods::One(Method::Exact)).list();
-    let answers = methods.into_iter().map(|method| answer(&mut viewer, method, &view, bounces.unwrap_or(0)));
+    let answers = methods.into_iter().map(|method| answer(&mut viewer, method, &view, bounces.unwrap_or(0), at));
     let mut answers = answers.collect::<Result<Vec<_>, _>>().in_file(path)?;
     let one = if all { None } else { answers.pop() };
     let (dir, fov) = looks.unzip();
@@ -57,7 +57,13 @@ pub(super) fn look<C: Cells>(cells: &C, path: &Path, eye: &[f64], at: &[CellId],
 }
 
 /// Answers by one method.
-fn answer<C: Cells>(viewer: &mut Viewer<C>, method: Method, view: &View, bounces: usize) -> Result<Answered> {
+fn answer<C: Cells>(
+    viewer: &mut Viewer<C>,
+    method: Method,
+    view: &View,
+    bounces: usize,
+    at: &[CellId],
+) -> Result<Answered> {
     viewer.set_method(method);
     // The first look is not warm.
     viewer.try_look(view)?;
@@ -78,7 +84,7 @@ fn answer<C: Cells>(viewer: &mut Viewer<C>, method: Method, view: &View, bounces
     Ok(Answered {
         method: method.name(),
         visible: seen.cells().iter().map(|cell| cell.0).collect(),
-        objects: named(&**viewer.cells(), seen.objects().iter().copied())?,
+        objects: named(&**viewer.cells(), seen.objects().iter().copied(), at)?,
         images,
         microseconds: times[RUNS / 2].as_secs_f64() * 1e6,
     })

@@ -211,6 +211,9 @@ fn scenes(all: &mut Results) {
         "build least.glb -o r.pvs --method shafts --grid 2,1,2 --door all=-9,-9,-9,9,9,9",
     );
     add("verify", "verify r.pvs least.glb --rays 100 --pairs 10");
+    add("build of a scene by regions", "build least.glb -o parts.pvs --grid 2,1,2 --parts 4");
+    add("query of a point", "query parts.pvs --eye 2,1,2");
+    add("query of a view", "query parts.pvs --eye 2,1,2 --method all");
     let row_by_row = "build of a scene row by row";
     add(row_by_row, "build least.glb -o r.pvz --class large --method shafts --grid 2,1,2");
     add(row_by_row, "build turned.obj -o t.pvz --class large --gap 1e-5 --method shafts --grid 2,1,1");
