@@ -1,6 +1,6 @@
 //! Tables: read, written, asked.
 
-use crate::arrays::{Ids, cube, guarded, ids, ranges, matrix, rows};
+use crate::arrays::{Ids, cube, guarded, ids, matrix, ranges, rows};
 use crate::error::{error, file_failed, read_failed, room, value_error, write_failed};
 use crate::explain::{Explanation, explain};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray2};

@@ -105,6 +105,28 @@ def test_cells_may_be_chosen():
     assert len(region.cells_at(EYE)) and not len(region.cells_at((15, 2, 2)))
 
 
+def test_parts_of_meshes_are_ranges_of_triangles():
+    table = sl.bake(HALLS, cells=(4, 1, 1), parts=4, progress=False)
+    whole = sl.bake(HALLS, cells=(4, 1, 1), progress=False)
+    for eye in (EYE, (18.0, 4.0, 2.0)):
+        ranges = table.visible_ranges(eye)
+        assert set(ranges[:, 0]) <= set(whole.visible_objects(eye))
+        # Every mesh has twelve triangles.
+        assert (ranges[:, 1] < ranges[:, 2]).all() and ranges[:, 2].max() == 12
+        assert (ranges[:, 2] - ranges[:, 1]).sum() < 0.9 * 12 * len(whole.visible_objects(eye))
+        cell = table.cells_at(eye)[0]
+        assert (table.ranges_seen_by(cell) == ranges).all()
+        untouched = whole.visible_ranges(eye)
+        assert (untouched[:, 1:] == (0, -1)).all() and (untouched[:, 0] == whole.visible_objects(eye)).all()
+    far = (99.0, 0.0, 0.0)
+    assert (table.visible_ranges(far)[:, 0] == np.arange(len(HALLS))).all()
+    assert table.visible_ranges(far, outside="none").shape == (0, 3)
+    with pytest.raises(ValueError, match="is in no cell"):
+        table.visible_ranges(far, outside="error")
+    with pytest.raises(ValueError, match="parts"):
+        sl.bake(HALLS, parts=0, progress=False)
+
+
 def test_meshes_in_single_precision_are_as_precise_as_that():
     turn = np.array([[0.8, 0.0, -0.6], [0.0, 1.0, 0.0], [0.6, 0.0, 0.8]])
     # Halls that stand on their z axis, turned around y.

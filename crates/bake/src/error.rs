@@ -29,6 +29,16 @@ pub enum BakeError {
     /// The lines of a map do not make a plan.
     #[error(transparent)]
     Plan(#[from] PlanError),
+    /// More parts of objects than there is room for.
+    #[error(
+        "{n_parts} parts of objects and {n_cells} cells are too many pairs: cut objects into larger parts, or take fewer cells"
+    )]
+    TooManyParts {
+        /// Parts.
+        n_parts: usize,
+        /// Cells.
+        n_cells: usize,
+    },
     /// The scene cannot be taken to be as imprecise as was stated.
     #[error(transparent)]
     Move(#[from] MoveError),

@@ -20,7 +20,7 @@ pub struct LimitReport {
     // An upper bound, where a from-region method was stopped: it includes pairs that the method would have left visible.
     /// Pairs of cells that count as visible for that reason, at most.
     pub n_cell_pairs: u64,
-    /// Pairs of a cell and an object that count as visible for that reason, at most.
+    /// Pairs of a cell and an object, or a part of one, that count as visible for that reason, at most.
     pub n_object_pairs: u64,
 }
 
@@ -50,6 +50,13 @@ impl LimitReport {
         }
         report.n_cell_pairs /= 2;
         report
+    }
+
+    /// With so many pairs of a cell and a part of an object that were not decided, of all cells.
+    pub(crate) fn with_parts(&mut self, n_cells: usize, n_pairs: u64) -> &Self {
+        (self.n_cells_decided, self.n_cells_in_part) = (0, n_cells - self.n_cells_undecided);
+        self.n_object_pairs += n_pairs;
+        self
     }
 
     /// Whether the table is looser than it would be without a limit.

@@ -15,7 +15,7 @@ use sightlines_geometry::{Aabb, Point3};
 use sightlines_line_space::{FaceTarget, Surface};
 use sightlines_multifocal::RaySampler;
 use sightlines_pvs::runs::runs_of;
-use sightlines_pvs::{BitMatrix, ObjectId, ObjectPart, ObjectParts, Table};
+use sightlines_pvs::{BitMatrix, ObjectId, ObjectPart, ObjectParts, Table, TableKind};
 use std::ops::Range;
 use std::sync::{Arc, Mutex, MutexGuard};
 
@@ -34,8 +34,10 @@ struct Part {
 
 /// Cuts the objects that have more than so many triangles. Those that move, that are doors or that have no triangles stay whole.
 fn cut(scene: &Scene, most: usize) -> Vec<Part> {
-    let moves =
-        |object: u32| scene.moving().iter().any(|moving| moving.object == object) || scene.doors().contains(&object);
+    let moves = |object: u32| {
+        scene.moving().binary_search_by_key(&object, |moving| moving.object).is_ok()
+            || scene.doors().binary_search(&object).is_ok()
+    };
     let large = (0u32..).zip(scene.objects()).filter(|(object, o)| o.triangles.len() > most && !moves(*object));
     let parts = large.flat_map(|(object, o)| {
         let mut runs = Vec::new();
@@ -78,58 +80,67 @@ fn cut_run(boxes: &[Aabb<3>], first: usize, most: usize, runs: &mut Vec<Range<us
     cut_run(&boxes[at..], first + at, most, runs);
 }
 
-/// The table with the parts of objects that have more than `most` triangles.
+/// The most bits of cells by parts: a gigabyte for each of the matrices of them that there are at once.
+const MOST_BITS: u64 = 1 << 33;
+
+/// The table with the parts of objects that have more than `most` triangles, and how many pairs of a cell and a part count as visible because the
+/// budget was spent.
 ///
-/// An object of which every part is hidden from a cell is hidden from it as well, unless its box touches the cell.
+/// If a from-region method took part, an object of which every part is hidden from a cell is hidden from it as well, unless its box touches the cell.
 pub(crate) fn with_parts(
     table: Table,
     scene: &Scene,
     most: u32,
     options: &RegionBakeOptions<'_>,
-) -> Result<Table, BakeError> {
+) -> Result<(Table, u64), BakeError> {
     let cut = cut(scene, most as usize);
     if cut.is_empty() {
-        return Ok(table);
+        return Ok((table, 0));
     }
     let n = table.n_cells();
+    let n_things = cut.len() + scene.objects().len();
+    if (n as u64).saturating_mul(n_things as u64) > MOST_BITS {
+        return Err(BakeError::TooManyParts { n_parts: cut.len(), n_cells: n });
+    }
     let mut parts = table.into_parts();
-    let mut objects =
-        parts.objects_seen.take().unwrap_or_else(|| touched(&parts.rows, &parts.cell_objects, parts.objects.len()));
+    let mut objects = parts.objects_seen.take().expect("tables of scenes have rows of objects");
     let cells: Vec<Aabb<3>> = parts.cells.iter().map(|cell| Aabb { min: cell.min, max: cell.max }).collect();
     let solved = threads::on(options.threads, || solve(&cells, scene, &cut, &objects, options))?;
-    let mut seen = BitMatrix::new(n, cut.len());
+    let (mut seen, mut n_undecided) = (BitMatrix::new(n, cut.len()), 0);
     for (column, (part, solved)) in cut.iter().zip(&solved).enumerate() {
-        (0..n).filter(|&cell| objects.get(cell, part.object as usize)).for_each(|cell| seen.set(cell, column, true));
-        let hidden = solved.iter().flat_map(|solved| &solved.hidden).cloned().flatten();
-        hidden.for_each(|cell| seen.set(cell as usize, column, false));
-    }
-    let mut first = 0;
-    for of in cut.chunk_by(|a, b| a.object == b.object) {
-        let columns = first..first + of.len();
-        first = columns.end;
-        let object = of[0].object;
-        for cell in 0..n {
-            let touches = parts.cell_objects[cell].binary_search(&ObjectId(object)).is_ok();
-            if !touches && !columns.clone().any(|column| seen.get(cell, column)) {
-                objects.set(cell, object as usize, false);
-            }
+        let sees = |cell: &usize| objects.get(*cell, part.object as usize);
+        (0..n).filter(sees).for_each(|cell| seen.set(cell, column, true));
+        match solved {
+            Some(of) => of.hidden.iter().cloned().flatten().for_each(|cell| seen.set(cell as usize, column, false)),
+            None => n_undecided += (0..n).filter(sees).count() as u64,
         }
+    }
+    let (TableKind::SceneKdTree { hidden_by } | TableKind::SceneGivenCells { hidden_by }) = parts.kind else {
+        unreachable!("the table is one of a scene")
+    };
+    if hidden_by.from_region {
+        hide_objects(&parts.cell_objects, &cut, &seen, &mut objects);
     }
     parts.objects_seen = Some(objects);
     parts.object_parts = Some(ObjectParts { parts: records(scene, options.file, &cut), seen });
     parts.info.push((PARTS.to_owned(), most.to_string()));
     parts.info.sort();
-    Ok(Table::new(parts)?)
+    Ok((Table::new(parts)?, n_undecided))
 }
 
-/// The objects that touch cells that a cell sees.
-fn touched(rows: &BitMatrix, cell_objects: &[Vec<ObjectId>], n_objects: usize) -> BitMatrix {
-    let mut objects = BitMatrix::new(rows.n_rows(), n_objects);
-    for row in 0..rows.n_rows() {
-        let seen: Vec<usize> = rows.iter_ones(row).flat_map(|cell| &cell_objects[cell]).map(|o| o.idx()).collect();
-        seen.into_iter().for_each(|object| objects.set(row, object, true));
+/// Hides objects from the cells that see no part of them, and that they do not touch.
+fn hide_objects(cell_objects: &[Vec<ObjectId>], cut: &[Part], seen: &BitMatrix, objects: &mut BitMatrix) {
+    let mut first = 0;
+    for of in cut.chunk_by(|a, b| a.object == b.object) {
+        let (object, columns) = (of[0].object, first..first + of.len());
+        first = columns.end;
+        for (cell, touching) in cell_objects.iter().enumerate() {
+            let touches = touching.binary_search(&ObjectId(object)).is_ok();
+            if !touches && !columns.clone().any(|column| seen.get(cell, column)) {
+                objects.set(cell, object as usize, false);
+            }
+        }
     }
-    objects
 }
 
 /// The parts by the triangles of the file.
@@ -138,7 +149,7 @@ fn records(scene: &Scene, file: Option<&SceneInfo>, cut: &[Part]) -> Vec<ObjectP
     for of in cut.chunk_by(|a, b| a.object == b.object) {
         let object = of[0].object;
         let n = scene.objects()[object as usize].triangles.len();
-        let places = places_of_triangles(file.map_or(&[], |file| &file.degenerate_triangles), object, n);
+        let places = places_of_triangles(file.map_or(&[], |file| &file.left_out_triangles), object, n);
         let mut start = 0;
         records.extend(of.iter().map(|part| {
             let part = ObjectPart { object: ObjectId(object), start, end: places[part.triangles.end] };
@@ -157,6 +168,9 @@ fn solve(
     objects: &BitMatrix,
     options: &RegionBakeOptions<'_>,
 ) -> Result<Vec<Option<Solved>>, BakeError> {
+    if options.budget.is_over() {
+        return Ok(vec![None; cut.len()]);
+    }
     let surface = match options.surface {
         Some(surface) => Arc::clone(surface),
         None => surface_of_scene(scene)?,

@@ -3,6 +3,7 @@
 use crate::baked::Baked;
 use crate::error::{BakeError, Meaningless};
 use crate::input::BakeInput;
+use crate::limit::{LimitReport, state_limit};
 use crate::methods::{BufferOptions, MethodError, OcclusionMethodFactory};
 use crate::object_parts::with_parts;
 use crate::options::Recipe;
@@ -12,14 +13,16 @@ use crate::region::{PackRegionsError, RegionBakeOptions, bake_regions, pack_regi
 use crate::reports::{RegionReport, Report};
 use crate::request::{BakeRequest, Runtime};
 use crate::scene::{PortalMode, SceneBakeOptions, bake_scene};
+use crate::stated::TIME_LIMIT;
 use crate::surroundings::{self, seen_around};
 use sightlines_cells::Scene;
 use sightlines_formats::SceneInfo;
 use sightlines_packed::PackReport;
 use sightlines_progress::Allowance;
-use sightlines_pvs::{BitMatrix, TableParts};
+use sightlines_pvs::{BitMatrix, Table, TableParts};
 use sightlines_stabtree::ConvexOptions;
 use std::io::Write;
+use std::time::Instant;
 
 /// Bakes an input as a request says: cuts it into cells where it has none, decides what they see, and makes the table.
 ///
@@ -51,13 +54,15 @@ pub(crate) fn bake_here(input: BakeInput<'_>, recipe: &Recipe, runtime: &Runtime
         BakeInput::Scene(scene, file) => {
             let mut baked = if recipe.takes_regions() {
                 with_regions(scene, recipe, runtime, file, |regions| {
-                    let baked = bake_regions(scene, regions)?.into_any();
+                    let of_objects = RegionBakeOptions { budget: of_objects(recipe, regions.budget), ..*regions };
+                    let baked = bake_regions(scene, &of_objects)?.into_any();
                     cut_into_parts(baked, scene, recipe, regions)
                 })?
             } else {
                 let (cut, portals, budget) = (recipe.cut, PortalMode::default(), Allowance::all(budget));
-                let baked =
-                    bake_scene(scene, &SceneBakeOptions { cut, portals, threads, file, progress, budget, units })?;
+                let of_objects = of_objects(recipe, budget);
+                let how = SceneBakeOptions { cut, portals, threads, file, progress, budget: of_objects, units };
+                let baked = bake_scene(scene, &how)?;
                 let regions = RegionBakeOptions {
                     threads,
                     file,
@@ -88,6 +93,11 @@ pub(crate) fn bake_here(input: BakeInput<'_>, recipe: &Recipe, runtime: &Runtime
     }
 }
 
+/// What of an allowance is for whole objects: half of it, if there are parts as well.
+fn of_objects<'a>(recipe: &Recipe, all: Allowance<'a>) -> Allowance<'a> {
+    if recipe.parts.is_some() { all.part(0.5) } else { all }
+}
+
 /// What was baked, with parts of objects if they are asked for.
 fn cut_into_parts(
     baked: Baked,
@@ -96,14 +106,32 @@ fn cut_into_parts(
     options: &RegionBakeOptions<'_>,
 ) -> Result<Baked, BakeError> {
     let Some(most) = recipe.parts else { return Ok(baked) };
-    let mut baked = Baked { table: with_parts(baked.table, scene, most, options)?, ..baked };
-    let n_seen = baked.table.parts().objects_seen.as_ref().map(BitMatrix::count_ones);
-    match (&mut baked.report, n_seen) {
-        (Report::Scene(report), Some(n)) => report.n_objects_seen = n,
-        (Report::Regions(report), Some(n)) => report.n_objects_seen = n,
-        _ => {}
+    let begin = Instant::now();
+    let Baked { graph, table, mut report } = baked;
+    let (mut table, n_undecided) = with_parts(table, scene, most, options)?;
+    let took = begin.elapsed();
+    let n_seen = table.parts().objects_seen.as_ref().map_or(0, BitMatrix::count_ones);
+    let limit = match &mut report {
+        Report::Scene(report) => {
+            report.n_objects_seen = n_seen;
+            report.see_time += took;
+            &mut report.limit
+        }
+        Report::Regions(report) => {
+            report.n_objects_seen = n_seen;
+            report.time += took;
+            &mut report.limit
+        }
+        _ => return Ok(Baked { graph, table, report }),
+    };
+    if n_undecided > 0 {
+        let limit = limit.get_or_insert_with(LimitReport::default).with_parts(table.n_cells(), n_undecided);
+        let mut parts = table.into_parts();
+        parts.info.retain(|(key, _)| key != TIME_LIMIT);
+        state_limit(&mut parts, limit);
+        table = Table::new(parts)?;
     }
-    Ok(baked)
+    Ok(Baked { graph, table, report })
 }
 
 /// Calls `then` with the options of a bake by regions.

@@ -175,8 +175,8 @@ pub unsafe extern "C" fn sl_table_visible_objects(
     })
 }
 
-/// Triangles of an object that follow each other in its file: those of a glTF primitive are drawn by an offset of three times `start`
-/// indices and a count of three times the difference.
+/// Triangles of an object that follow each other in its file. Those of a primitive that is a list of triangles are drawn by an offset of three times
+/// `start` indices and a count of three times the difference.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct SlRange {

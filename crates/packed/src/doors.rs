@@ -2,7 +2,7 @@
 
 use crate::bytes::Reader;
 use crate::container::ResidentPart;
-use crate::error::PackedError;
+use crate::error::{PackedError, PackedErrorKind as Kind};
 use crate::format;
 use sightlines_pvs::{DoorRecord, NodeIndex, ObjectId, ObjectPart, ObjectSource, PortalId};
 
@@ -40,8 +40,12 @@ pub(crate) fn object_parts(resident: &ResidentPart, n_objects: u32) -> Result<Op
     let mut parts: Vec<ObjectPart> = Vec::new();
     for _ in 0..n {
         let object = ObjectId(r.below(u64::from(n_objects))? as u32);
-        let start = parts.last().filter(|last| last.object == object).map_or(0, |last| last.end);
+        let last = parts.last();
+        let start = last.filter(|last| last.object == object).map_or(0, |last| last.end);
         let end = start + r.below(u64::from(u32::MAX - start) + 1)? as u32;
+        if end == start || last.is_some_and(|last| last.object > object) {
+            return Err(r.fail(Kind::Value { value: u64::from(object.0) }));
+        }
         parts.push(ObjectPart { object, start, end });
     }
     r.finish()?;

@@ -8,7 +8,7 @@ use crate::masks::{RowDefect, encode};
 use crate::sections::{frame_sections, minor};
 use crate::write;
 use crate::write_pages::write_pages;
-use sightlines_pvs::{BitMatrix, CellId, ObjectId, SectionId, TableParts};
+use sightlines_pvs::{BitMatrix, CellId, ObjectId, SectionId, TableError, TableParts};
 use std::io::Write;
 
 /// The result of packing.
@@ -101,6 +101,10 @@ impl<W: Write> PackWriter<W> {
     /// [`StreamError`] if the parts are not valid, cannot be packed, or cannot be written.
     pub fn new(out: W, parts: &TableParts, options: &StreamOptions) -> Result<Self, StreamError> {
         parts.check_without_rows()?;
+        parts.check_rows_of_parts()?;
+        if parts.object_parts.is_some() && !options.objects_seen {
+            return Err(TableError::PartsAlone.into());
+        }
         Self::unchecked(out, parts, options)
     }
 

@@ -519,18 +519,25 @@ impl TableParts {
         Ok(())
     }
 
-    /// Whether all objects are seen of which a part is.
-    fn check_parts_seen(&self) -> Result<(), TableError> {
+    /// Checks that rows of parts, if there are any, have the shape that they need: for those who write other rows one by one. O(size of the rows).
+    ///
+    /// # Errors
+    /// [`TableError::PartsShape`], [`TableError::PartsTail`].
+    pub fn check_rows_of_parts(&self) -> Result<(), TableError> {
         let Some(ObjectParts { parts, seen }) = &self.object_parts else { return Ok(()) };
         let (n_cells, n_parts) = (self.cells.len(), parts.len());
         if (seen.n_rows(), seen.n_cols()) != (n_cells, n_parts) {
             return Err(TableError::PartsShape { n_rows: seen.n_rows(), n_cols: seen.n_cols(), n_cells, n_parts });
         }
-        if let Some(row) = seen.first_stray() {
-            return Err(TableError::PartsTail(CellId(row as u32)));
-        }
+        seen.first_stray().map_or(Ok(()), |row| Err(TableError::PartsTail(CellId(row as u32))))
+    }
+
+    /// Whether all objects are seen of which a part is.
+    fn check_parts_seen(&self) -> Result<(), TableError> {
+        self.check_rows_of_parts()?;
+        let Some(ObjectParts { parts, seen }) = &self.object_parts else { return Ok(()) };
         let objects_seen = self.objects_seen.as_ref().ok_or(TableError::PartsAlone)?;
-        for (cell, row) in (0u32..).map(CellId).zip(0..n_cells) {
+        for (cell, row) in (0u32..).map(CellId).zip(0..self.cells.len()) {
             let objects = seen.iter_ones(row).map(|part| parts[part].object);
             if let Some(object) = objects.into_iter().find(|object| !objects_seen.get(row, object.idx())) {
                 return Err(TableError::PartSeen { cell, object });

@@ -54,7 +54,8 @@ pub struct ObjectSource {
 }
 
 /// A part of an object: some of its triangles, one after the other in the order of the file that the table was made of, those without an area among
-/// them. A program that draws lists of triangles draws it by an offset and a count.
+/// them. A program that draws lists of triangles draws it by an offset and a count. In an OBJ file the faces of an object, as it is in the table, are counted as
+/// the triangles that they are cut into.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ObjectPart {
     /// The object.
@@ -88,6 +89,7 @@ pub fn triangle_ranges(
     let mut ranges: Vec<(ObjectId, Option<Range<u32>>)> = Vec::with_capacity(objects.len());
     for &object in objects {
         let n = ranges.len();
+        while parts.next_if(|part| part.object < object).is_some() {}
         while let Some(part) = parts.next_if(|part| part.object == object) {
             match ranges[n..].last_mut() {
                 Some((_, Some(range))) if range.end == part.start => range.end = part.end,

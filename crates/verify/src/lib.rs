@@ -88,7 +88,7 @@ fn check(table: &Table, truth: &Truth<'_>, options: &VerifyOptions<'_>) -> Resul
     }
     let mut findings = structure::check(table, truth);
     let in_parts = match truth {
-        Truth::Scene(scene) => InParts::of(table, scene, options.degenerate, &mut findings),
+        Truth::Scene(scene) => InParts::of(table, scene, options.left_out, &mut findings),
         _ => None,
     };
     let n = findings.violations.len();

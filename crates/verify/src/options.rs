@@ -15,7 +15,7 @@ pub struct VerifyOptions<'a> {
     /// default, a pair of which one segment in a hundred is free is missed in one of a hundred runs: 0.99^459 < 0.01.
     pub segments: u32,
     /// For a table with parts of objects: the triangles of the file that the scene does not have, as the scene's reader lists them.
-    pub degenerate: &'a [[u32; 2]],
+    pub left_out: &'a [[u32; 2]],
     /// What the random numbers begin with.
     pub seed: u64,
     /// Number of threads; 0 for one for each core. Changes nothing but the time.
@@ -36,7 +36,7 @@ impl Default for VerifyOptions<'_> {
             pairs: 10_000,
             tries: 32,
             segments: 459,
-            degenerate: &[],
+            left_out: &[],
             seed: 1,
             threads: 0,
             progress: None,

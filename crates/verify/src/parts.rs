@@ -26,8 +26,8 @@ enum Thing {
 impl InParts {
     /// None for a table without parts, and with a violation for one whose parts are not those of the scene.
     ///
-    /// * `degenerate`: triangles of the file that the scene does not have
-    pub(crate) fn of(table: &Table, scene: &Scene, degenerate: &[[u32; 2]], findings: &mut Findings) -> Option<Self> {
+    /// * `left_out`: triangles of the file that the scene does not have
+    pub(crate) fn of(table: &Table, scene: &Scene, left_out: &[[u32; 2]], findings: &mut Findings) -> Option<Self> {
         let parts = table.object_parts();
         if parts.is_empty() || scene.objects().len() != table.objects().len() {
             return None;
@@ -45,7 +45,7 @@ impl InParts {
         let mut n = 0;
         for list in parts.chunk_by(|a, b| a.object == b.object) {
             let object = list[0].object.0;
-            let places = places_of_triangles(degenerate, object, scene.objects()[object as usize].triangles.len());
+            let places = places_of_triangles(left_out, object, scene.objects()[object as usize].triangles.len());
             if list.last().map(|part| part.end) != places.last().copied() {
                 findings.add(Violation::ObjectParts { object });
                 return None;
@@ -63,20 +63,19 @@ impl InParts {
         let those = |holds: &dyn Fn(u32) -> bool| -> Vec<u32> {
             (0u32..).zip(&of).filter(|(_, object)| holds(**object)).map(|(thing, _)| thing).collect()
         };
-        let thing_of = |object: u32| of.iter().rposition(|&o| o == object).map(|thing| thing as u32);
-        let moving = scene
-            .moving()
-            .iter()
-            .filter_map(|moving| thing_of(moving.object).map(|object| MovingObject { object, ..*moving }));
-        let mut moving: Vec<MovingObject> = moving.collect();
-        moving.sort_by_key(|moving| moving.object);
+        // What moves is not cut, and comes in the order of the objects.
+        let moves = |object: &u32| scene.moving().binary_search_by_key(object, |moving| moving.object).ok();
+        let moving = (0u32..)
+            .zip(&of)
+            .filter_map(|(thing, object)| moves(object).map(|k| MovingObject { object: thing, ..scene.moving()[k] }));
+        let moving: Vec<MovingObject> = moving.collect();
         let in_parts = Scene::new(objects)
             .and_then(|all| all.with_moving(moving))
             .and_then(|all| all.with_see_through(those(&|o| !scene.is_opaque(o))))
             .and_then(|all| all.with_single_sided(those(&|o| scene.is_single_sided(o))))
             .and_then(|all| all.with_front_occluders(those(&|o| scene.hides_from_front(o))));
-        let table = table_of(table, &things, in_parts.as_ref().ok()?)?;
-        Some(Self { table, scene: in_parts.ok()?, things })
+        let in_parts = in_parts.expect("the parts of a scene are a scene");
+        Some(Self { table: table_of(table, &things, &in_parts), scene: in_parts, things })
     }
 
     /// Has violations speak of the objects and parts of the table as it is.
@@ -98,10 +97,9 @@ impl InParts {
 }
 
 /// The table whose objects are these.
-fn table_of(table: &Table, things: &[Thing], scene: &Scene) -> Option<Table> {
+fn table_of(table: &Table, things: &[Thing], scene: &Scene) -> Table {
     let mut parts = table.parts().clone();
-    let of_objects = parts.object_parts.take()?;
-    let seen = parts.objects_seen.take()?;
+    let (of_objects, seen) = parts.object_parts.take().zip(parts.objects_seen.take()).expect("rows of both kinds");
     let mut all = BitMatrix::new(parts.cells.len(), things.len());
     let mut records = Vec::with_capacity(things.len());
     let mut ids = vec![None; parts.objects.len()];
@@ -128,5 +126,5 @@ fn table_of(table: &Table, things: &[Thing], scene: &Scene) -> Option<Table> {
     parts.cell_objects.iter_mut().for_each(|list| *list = list.iter().filter_map(|o| ids[o.idx()]).collect());
     (parts.objects, parts.objects_seen) = (records, Some(all));
     (parts.object_polygons, parts.object_sources, parts.doors) = (Vec::new(), Vec::new(), Vec::new());
-    Table::new(parts).ok()
+    Table::new(parts).expect("the parts of a table are a table")
 }

@@ -1,6 +1,7 @@
 //! Boxes that share faces, and what lies behind which part of a face.
 
 use sightlines_geometry::{Aabb, BoxTree, Point3, ray_box};
+use std::collections::BTreeMap;
 
 /// Where a box ends on a side.
 fn end_of(b: &Aabb<3>, side: usize) -> f64 {
@@ -147,42 +148,47 @@ fn wide(mut part: Aabb<3>, whole: &Aabb<3>) -> Aabb<3> {
     part
 }
 
-/// What rectangles across an axis leave of another one, as rectangles. Exact: between two of their coordinates nothing changes.
+/// What rectangles across an axis leave of another one, as rectangles. Exact: between two of their coordinates nothing changes. O(n² log n) at worst.
 fn uncovered(whole: &Aabb<3>, covered: &[Aabb<3>], axis: usize) -> Vec<Aabb<3>> {
     let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
-    let lines = |k: usize| {
-        let ends = covered.iter().flat_map(|b| [b.min[k], b.max[k]]).chain([whole.min[k], whole.max[k]]);
-        let mut at: Vec<f64> = ends.collect();
-        at.sort_by(f64::total_cmp);
-        at.dedup();
-        at
-    };
-    let (us, vs) = (lines(u), lines(v));
+    let mut us: Vec<f64> =
+        covered.iter().flat_map(|b| [b.min[u], b.max[u]]).chain([whole.min[u], whole.max[u]]).collect();
+    us.sort_by(f64::total_cmp);
+    us.dedup();
+    let mut sorted: Vec<&Aabb<3>> = covered.iter().collect();
+    sorted.sort_by(|a, b| a.min[v].total_cmp(&b.min[v]));
     let mut open: Vec<Aabb<3>> = Vec::new();
+    // Those that reach to the next strip, by their ends in it.
+    let mut before: BTreeMap<[u64; 2], usize> = BTreeMap::new();
     for u2 in us.windows(2) {
-        let mut strip: Vec<Aabb<3>> = Vec::new();
-        for v2 in vs.windows(2) {
-            let holds = |b: &Aabb<3>| b.min[u] <= u2[0] && u2[1] <= b.max[u] && b.min[v] <= v2[0] && v2[1] <= b.max[v];
-            if covered.iter().any(holds) {
-                continue;
-            }
-            match strip.last_mut().filter(|last| last.max[v] == v2[0]) {
-                Some(last) => last.max[v] = v2[1],
+        let mut now = BTreeMap::new();
+        let mut add = |low: f64, high: f64| {
+            let ends = [low, high].map(f64::to_bits);
+            let at = match before.get(&ends) {
+                Some(&at) => {
+                    open[at].max[u] = u2[1];
+                    at
+                }
                 None => {
                     let mut b = *whole;
-                    (b.min[u], b.max[u], b.min[v], b.max[v]) = (u2[0], u2[1], v2[0], v2[1]);
-                    strip.push(b);
+                    (b.min[u], b.max[u], b.min[v], b.max[v]) = (u2[0], u2[1], low, high);
+                    open.push(b);
+                    open.len() - 1
                 }
+            };
+            now.insert(ends, at);
+        };
+        let mut from = whole.min[v];
+        for b in sorted.iter().filter(|b| b.min[u] <= u2[0] && u2[1] <= b.max[u]) {
+            if b.min[v] > from {
+                add(from, b.min[v]);
             }
+            from = from.max(b.max[v]);
         }
-        for b in strip {
-            let fits =
-                |last: &&mut Aabb<3>| last.max[u] == b.min[u] && (last.min[v], last.max[v]) == (b.min[v], b.max[v]);
-            match open.iter_mut().find(fits) {
-                Some(last) => last.max[u] = b.max[u],
-                None => open.push(b),
-            }
+        if from < whole.max[v] {
+            add(from, whole.max[v]);
         }
+        before = now;
     }
     open
 }
@@ -190,6 +196,7 @@ fn uncovered(whole: &Aabb<3>, covered: &[Aabb<3>], axis: usize) -> Vec<Aabb<3>> 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     fn block(min: [f64; 3], max: [f64; 3]) -> Aabb<3> {
         Aabb { min, max }
@@ -221,6 +228,24 @@ mod tests {
         let around = open(vec![cell, middle]);
         assert_eq!((around.len(), around.iter().map(area).sum::<f64>()), (4, 3.0));
         assert_eq!(Tiling::new(vec![cell]).parts(0).count(), 6);
+    }
+
+    proptest! {
+        /// Invariant: what is open and what is covered are all of the side, by the middles of its finest pieces; no two open parts overlap.
+        #[test]
+        fn open_parts_are_what_nothing_covers(boxes in prop::collection::vec((0u8..8, 1u8..5, 0u8..8, 1u8..5), 0..12)) {
+            let flat = |x: u8, dx: u8, y: u8, dy: u8| {
+                let [x, y] = [x, y].map(f64::from);
+                block([x, y, 1.0], [(x + f64::from(dx)).min(8.0), (y + f64::from(dy)).min(8.0), 1.0])
+            };
+            let covered: Vec<Aabb<3>> = boxes.into_iter().map(|(x, dx, y, dy)| flat(x, dx, y, dy)).collect();
+            let open = uncovered(&block([0.0, 0.0, 1.0], [8.0, 8.0, 1.0]), &covered, 2);
+            for (x, y) in (0..8).flat_map(|x| (0..8).map(move |y| (x, y))) {
+                let p = [f64::from(x) + 0.5, f64::from(y) + 0.5, 1.0];
+                let is_covered = covered.iter().any(|b| b.contains(p));
+                prop_assert_eq!(open.iter().filter(|b| b.contains(p)).count(), usize::from(!is_covered), "{:?}", p);
+            }
+        }
     }
 
     #[test]

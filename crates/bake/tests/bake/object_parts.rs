@@ -3,9 +3,10 @@
 use crate::places::{city_of_boxes, scene};
 use sightlines_bake::eye_level::EyeLevelOptions;
 use sightlines_bake::tile::{Tile, bake_tile};
-use sightlines_bake::{BakeError, BakeInput, BakeRequest, Bakeable, CellsFrom, Runtime, SceneMethod, bake};
+use sightlines_bake::{BakeError, BakeInput, BakeRequest, Bakeable, CellsFrom, Report, Runtime, SceneMethod, bake};
 use sightlines_cells::{Scene, SceneObject, places_of_triangles};
 use sightlines_formats::Source;
+use sightlines_formats::scene::{SceneFile, parse_glb, write_glb};
 use sightlines_geometry::Aabb;
 use sightlines_pvs::{Axis, CellId, ObjectId, ObjectParts, Table};
 use sightlines_scenes::{TowerOptions, tower};
@@ -54,8 +55,8 @@ fn baked(scene: &Scene, request: &BakeRequest) -> Table {
     bake(scene, request).expect("a table").table
 }
 
-fn found(table: &Table, scene: &Scene, degenerate: &[[u32; 2]]) -> Findings {
-    let options = VerifyOptions { rays: 40_000, pairs: 4_000, tries: 32, degenerate, ..VerifyOptions::default() };
+fn found(table: &Table, scene: &Scene, left_out: &[[u32; 2]]) -> Findings {
+    let options = VerifyOptions { rays: 40_000, pairs: 4_000, tries: 32, left_out, ..VerifyOptions::default() };
     verify(table, &Truth::Scene(scene), &options).expect("verified")
 }
 
@@ -156,7 +157,7 @@ fn ranges_count_triangles_as_the_file_does() {
     degenerate.extend([0, 1].map(|_| [0, add([0, 0, 1])]));
     let source = Source::Memory { name: Path::new("city.obj"), bytes: text.as_bytes(), beside: None };
     let Bakeable::Scene(file) = Bakeable::read(&source, None).expect("a scene") else { panic!("a scene") };
-    assert_eq!(file.info.degenerate_triangles, degenerate);
+    assert_eq!(file.info.left_out_triangles, degenerate);
     let request = BakeRequest { parts: Some(30), cells: Some(CellsFrom::Grid([3, 1, 3])), ..BakeRequest::default() };
     let table = bake(BakeInput::from(&file), &request).expect("a table").table;
     let parts = table.object_parts();
@@ -168,6 +169,52 @@ fn ranges_count_triangles_as_the_file_does() {
     assert!(found(&table, scene, &degenerate).is_true());
     // Who does not know of them finds that the parts are not those of the scene.
     assert_eq!(found(&table, scene, &[]).violations, [Violation::ObjectParts { object: 0 }]);
+}
+
+/// A limit of time that is over before it begins: every part counts as visible where its object does, and the table says so.
+#[test]
+fn parts_that_are_not_decided_in_time_are_seen() {
+    let scene = city();
+    let spent = || 1.0;
+    let runtime = Runtime { budget: Some(&spent), ..Runtime::default() };
+    let baked = runtime.bake(&scene, &request(Some(12))).expect("a table");
+    let table = baked.table;
+    let [by_parts, by_object] = shares(&table, ObjectId(1));
+    assert!(by_parts == by_object && !table.object_parts().is_empty());
+    let said = table.info_value("time-limit").expect("the table says so");
+    let Report::Regions(report) = baked.report else { panic!("a scene by regions") };
+    let n_pairs = (table.n_cells() * table.object_parts().len()) as u64;
+    let limit = report.limit.expect("there is one");
+    assert!(limit.n_object_pairs >= n_pairs && said == limit.to_string(), "{said}");
+}
+
+/// A triangle whose corner is not there is left out, and counted: those behind it keep their places.
+#[test]
+fn ranges_count_triangles_that_were_left_out() {
+    let city = merged(&city_of_boxes([2, 2]));
+    let glb = write_glb(&crate::places::scene(vec![city.clone()])).expect("a file");
+    let mut spoiled = glb.clone();
+    // Indices are the last numbers of 32 bits in the file that are 0, 1, 2 in a row, or the triangle as it is written.
+    let first: Vec<u8> = city.triangles[1].iter().flat_map(|i| (*i as u16).to_le_bytes()).collect();
+    let wide: Vec<u8> = city.triangles[1].iter().flat_map(|i| i.to_le_bytes()).collect();
+    let found = |bytes: &[u8]| glb.windows(bytes.len()).rposition(|w| w == bytes);
+    match (found(&wide), found(&first)) {
+        (Some(at), _) => spoiled[at..at + 4].copy_from_slice(&60_000u32.to_le_bytes()),
+        (None, Some(at)) => spoiled[at..at + 2].copy_from_slice(&60_000u16.to_le_bytes()),
+        (None, None) => panic!("the triangle is in the file"),
+    }
+    let files = [&glb, &spoiled].map(|bytes| parse_glb(bytes, None).expect("a scene"));
+    let [places, others] = files.each_ref().map(|file| file.info.left_out_triangles.clone());
+    let n = city.triangles.len() as u32;
+    assert_eq!((places, others.len(), files[1].scene.n_triangles() as u32), (vec![], 1, n - 1));
+    let request = BakeRequest { parts: Some(30), cells: Some(CellsFrom::Grid([3, 1, 3])), ..BakeRequest::default() };
+    let tables = files.each_ref().map(|file| bake(BakeInput::from(file), &request).expect("a table").table);
+    assert!(tables.iter().all(|table| table.object_parts().last().map(|part| part.end) == Some(n)));
+    assert!(found_in(&tables[1], &files[1]).is_true());
+}
+
+fn found_in(table: &Table, file: &SceneFile) -> Findings {
+    found(table, &file.scene, &file.info.left_out_triangles)
 }
 
 #[test]

@@ -55,7 +55,9 @@ pub(super) struct Builder {
     see_through: Vec<u32>,
     moving: Vec<MovingObject>,
     surfaces: Vec<Classified>,
-    degenerate: Vec<[u32; 2]>,
+    n_degenerate: usize,
+    /// The object and the place of each triangle that was left out.
+    left_out_triangles: Vec<[u32; 2]>,
     n_single_sided: usize,
     n_front_occluding: usize,
     fronts_only: Vec<u32>,
@@ -84,12 +86,13 @@ impl Builder {
     /// Adds an object, without those of its triangles that have no area. Of what moves, only those that have a corner twice are
     /// left out: others may have an area elsewhere.
     ///
-    /// `mirrored` turns every triangle round, so that fronts stay fronts.
+    /// * `triangles`: and the places, among all that the file has, of those that are not among them
+    /// * `mirrored`: turns every triangle round, so that fronts stay fronts
     pub(super) fn add(
         &mut self,
         name: String,
         vertices: Vec<Point3>,
-        triangles: impl Iterator<Item = [u32; 3]>,
+        (triangles, missing): (impl Iterator<Item = [u32; 3]>, &[u32]),
         mirrored: bool,
         moves: bool,
     ) {
@@ -99,13 +102,26 @@ impl Builder {
             false => !are_collinear(t.map(|i| vertices[i as usize])),
         };
         let object = self.objects.len() as u32;
-        let (degenerate, mut place) = (&mut self.degenerate, 0u32..);
+        let (left_out, n_degenerate) = (&mut self.left_out_triangles, &mut self.n_degenerate);
+        let (mut place, mut missing) = (0u32, missing.iter().peekable());
+        let mut skip = |place: &mut u32, left_out: &mut Vec<[u32; 2]>| {
+            while missing.next_if(|missing| **missing == *place).is_some() {
+                left_out.push([object, *place]);
+                *place += 1;
+            }
+        };
         let triangles = turned.filter(|t| {
-            let (place, has_area) = (place.next(), has_area(t));
-            degenerate.extend(place.filter(|_| !has_area).map(|place| [object, place]));
+            skip(&mut place, left_out);
+            let has_area = has_area(t);
+            if !has_area {
+                left_out.push([object, place]);
+                *n_degenerate += 1;
+            }
+            place += 1;
             has_area
         });
         let triangles = triangles.collect();
+        skip(&mut place, left_out);
         self.objects.push(SceneObject { name, vertices, triangles });
     }
 
@@ -217,7 +233,7 @@ impl Builder {
             self.warnings
                 .push(format!("{volumes} flat and ignored, the first is called {name:?}: viewers have no room there"));
         }
-        let (n_objects, n_degenerate, simplified) = (self.objects.len(), self.degenerate.len(), self.simplified);
+        let (n_objects, n_degenerate, simplified) = (self.objects.len(), self.n_degenerate, self.simplified);
         let scene = Scene::new(self.objects)?.with_mirrors(self.mirrors)?;
         let scene = scene.with_see_through(self.see_through)?.with_moving(self.moving)?;
         let scene = scene.with_single_sided(self.fronts_only)?.with_front_occluders(self.front_occluders)?;
@@ -243,7 +259,8 @@ impl Builder {
             n_objects,
             n_objects_without_triangles: scene.objects().iter().filter(|o| o.triangles.is_empty()).count(),
             n_triangles,
-            degenerate_triangles: self.degenerate,
+            n_degenerate_triangles: n_degenerate,
+            left_out_triangles: self.left_out_triangles,
             n_single_sided_triangles: self.n_single_sided,
             n_front_occluding_triangles: self.n_front_occluding,
             simplified,

@@ -246,7 +246,8 @@ fn build(
                 Some(class) if class.opens => Some(Moved { at_rest: None, within: opened(&vertices) }),
                 _ => moved,
             };
-            builder.add(name, vertices, local.mesh.triangles.iter().copied(), at.world.mirrors(), moved.is_some());
+            let triangles = local.mesh.triangles.iter().copied();
+            builder.add(name, vertices, (triangles, &local.places_left_out), at.world.mirrors(), moved.is_some());
             builder.note_source(at.index, k);
             builder.note_stored_size(stored_size);
             if at.is_mirror(document, primitive) {

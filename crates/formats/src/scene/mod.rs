@@ -97,9 +97,11 @@ pub struct SceneInfo {
     pub n_objects_without_triangles: usize,
     /// Number of triangles of all objects.
     pub n_triangles: usize,
-    /// The triangles that were left out because they have no area: their corners lie on a line, exactly. The object of each, and its place
-    /// among all triangles of that object in the file; ascending.
-    pub degenerate_triangles: Vec<[u32; 2]>,
+    /// Number of triangles that were left out because they have no area: their corners lie on a line, exactly.
+    pub n_degenerate_triangles: usize,
+    /// The triangles that were left out, for that reason or because corners are not there: the object of each, and its place among all triangles
+    /// that the file has of that object; ascending. In an OBJ file, faces are counted as the triangles that they are cut into, and those that were left out are not.
+    pub left_out_triangles: Vec<[u32; 2]>,
     /// Number of triangles that hide, of which engines draw the fronts only (glTF: materials that are not `doubleSided`).
     pub n_single_sided_triangles: usize,
     /// Those of them that hide from their front only, as they are not of a closed object.

@@ -107,7 +107,13 @@ pub fn parse_obj_with(
                 continue;
             }
             let vertices = mesh.corners.iter().map(|&v| obj.positions[v]).collect();
-            builder.add(format!("{}{suffix}", group.name), vertices, mesh.triangles.iter().copied(), false, false);
+            builder.add(
+                format!("{}{suffix}", group.name),
+                vertices,
+                (mesh.triangles.iter().copied(), &[]),
+                false,
+                false,
+            );
             if matches!(role_of_name(&group.name), Some((Role::Mirror, _))) {
                 builder.mark_mirror();
             }

@@ -19,6 +19,8 @@ pub(super) struct LocalMesh {
     pub(super) positions: Vec<[f64; 3]>,
     /// How many triangles have corners that are not there, and the first of these.
     pub(super) left_out: Option<(usize, Malformed)>,
+    /// Their places among all triangles, ascending.
+    pub(super) places_left_out: Vec<u32>,
 }
 
 impl LocalMesh {
@@ -37,10 +39,15 @@ impl LocalMesh {
         }
         check_mode(primitive.mode, corners.len())?;
         let n_triangles = n_triangles_of(primitive.mode, corners.len());
-        let triangles = (0..n_triangles).filter_map(|k| {
+        let triangle = |k: usize| {
             let [a, b, c] = triangle_of(primitive.mode, k).map(|place| corners[place]);
             Some([a?, b?, c?])
-        });
+        };
+        let mut places_left_out = Vec::new();
+        if wrong.is_some() {
+            places_left_out.extend((0..n_triangles).filter(|&k| triangle(k).is_none()).map(|k| k as u32));
+        }
+        let triangles = (0..n_triangles).filter_map(triangle);
         let mut used: Vec<usize> = corners.iter().flatten().copied().collect();
         if used.is_empty() {
             // Without triangles, but somewhere.
@@ -48,8 +55,9 @@ impl LocalMesh {
         }
         let mesh = Compact::new(used, triangles);
         let positions = mesh.corners.iter().map(|&k| positions.position(k)).collect();
-        let n_left_out = n_triangles - mesh.triangles.len();
-        Ok(Self { mesh, positions, left_out: wrong.filter(|_| n_left_out > 0).map(|what| (n_left_out, what)) })
+        let n_left_out = places_left_out.len();
+        let left_out = wrong.filter(|_| n_left_out > 0).map(|what| (n_left_out, what));
+        Ok(Self { mesh, positions, left_out, places_left_out })
     }
 }
 

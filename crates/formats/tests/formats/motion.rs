@@ -360,7 +360,7 @@ fn what_is_flat_at_rest_is_seen_where_it_is_not() {
     // The same without animation is nowhere.
     doc.json["animations"] = json!([]);
     let file = read(&doc);
-    assert!(file.scene.extent(0).is_empty() && file.info.degenerate_triangles.len() == 1);
+    assert!(file.scene.extent(0).is_empty() && file.info.n_degenerate_triangles == 1);
     // By a node above it, by a target, and by joints.
     let mut doc = Doc::new(json!([{"children": [1], "scale": [1, 0, 0]}, {"mesh": 0}]));
     doc.triangle();

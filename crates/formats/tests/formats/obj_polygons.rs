@@ -12,7 +12,7 @@ fn triangulate(polygon: &[Point3]) -> Result<(Vec<[usize; 3]>, usize), String> {
     let object = &file.scene.objects()[0];
     assert_eq!(object.vertices, polygon);
     let triangles: Vec<[usize; 3]> = object.triangles.iter().map(|t| t.map(|k| k as usize)).collect();
-    let n = triangles.len() + file.info.degenerate_triangles.len();
+    let n = triangles.len() + file.info.n_degenerate_triangles;
     Ok((triangles, n))
 }
 

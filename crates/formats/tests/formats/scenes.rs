@@ -46,7 +46,7 @@ fn one_triangle_with_all_that_is_said_about_it() {
         (SceneFormat::Gltf, Axis::Y, false, LengthUnit::Metre)
     );
     assert_eq!((info.n_objects, info.n_objects_without_triangles, info.n_triangles), (1, 0, 1));
-    assert_eq!(info.degenerate_triangles, [[0; 2]; 0]);
+    assert_eq!(info.left_out_triangles, [[0; 2]; 0]);
 }
 
 #[test]
@@ -139,7 +139,7 @@ fn quantised_interleaved_and_sparse_positions() {
     let at = |p: [f64; 3]| [10. - 2. * p[0], 2. * p[1], 2. * p[2] - 3.];
     // A fan, and mirrored.
     assert_eq!(corners(&file, 0), [[at(X), at(O), at([0., 1., half])]]);
-    assert_eq!((file.info.n_triangles, file.info.degenerate_triangles.len()), (5, 1));
+    assert_eq!((file.info.n_triangles, file.info.n_degenerate_triangles), (5, 1));
 
     let component = |code: u32, bytes: &[u8], normalized: bool| {
         let mut doc = Doc::new(json!([{"mesh": 0}]));
@@ -185,7 +185,7 @@ fn triangles_without_area_are_counted_and_left_out() {
     doc.mesh(json!([{"attributes": {"POSITION": p}, "indices": i}]));
     let file = read(&doc);
     let counts: Vec<usize> = file.scene.objects().iter().map(|o| o.triangles.len()).collect();
-    assert_eq!((counts, file.info.degenerate_triangles.len()), (vec![2, 1, 0], 3 + 4 + 5));
+    assert_eq!((counts, file.info.n_degenerate_triangles), (vec![2, 1, 0], 3 + 4 + 5));
     assert!(file.scene.objects().iter().all(|o| o.vertices.len() == 6));
 }
 

@@ -114,7 +114,7 @@ impl Outcome {
             n_triangles: file.info.n_triangles,
             n_axial_triangles: cut.n_axial_triangles,
             n_other_triangles: cut.n_other_triangles,
-            n_degenerate_triangles: file.info.degenerate_triangles.len(),
+            n_degenerate_triangles: file.info.n_degenerate_triangles,
             n_detail_triangles: n_detail_triangles(&file.scene, cut.detail_below),
             n_detail_objects: cut.n_detail_objects,
             detail_below: cut.detail_below,

@@ -85,7 +85,7 @@ impl SceneInfo {
             n_objects: file.info.n_objects,
             n_objects_without_triangles: file.info.n_objects_without_triangles,
             n_triangles: file.info.n_triangles,
-            n_degenerate_triangles: file.info.degenerate_triangles.len(),
+            n_degenerate_triangles: file.info.n_degenerate_triangles,
             min: bounds.min,
             max: bounds.max,
             movers: movers(&file.scene),

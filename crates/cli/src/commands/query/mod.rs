@@ -154,7 +154,7 @@ struct Object {
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     source: Option<ObjectPlace>,
     /// If the object was cut into parts: what may be seen of it from these cells, as ranges of its triangles in the order of the file, the first
-    /// and the one behind the last of each.
+    /// and the one behind the last of each. Absent as well if no part of it is, though its box touches the cells.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     triangles: Vec<[u32; 2]>,
 }

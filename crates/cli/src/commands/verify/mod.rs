@@ -96,8 +96,8 @@ pub(crate) fn run(args: &VerifyArgs, Verbosity { show_progress, .. }: Verbosity)
     let VerifyArgs { rays, pairs, tries, segments, seed, threads, .. } = *args;
     let start = Instant::now();
     let bar = Bar::new("rays", show_progress);
-    let degenerate = scene.degenerate();
-    let options = VerifyOptions { rays, pairs, tries, segments, degenerate, seed, threads, progress: Some(&bar) };
+    let left_out = scene.left_out();
+    let options = VerifyOptions { rays, pairs, tries, segments, left_out, seed, threads, progress: Some(&bar) };
     let findings = verify(table, &scene.truth(), &options);
     drop(bar);
     let findings = findings.map_err(failed)?;

@@ -25,8 +25,8 @@ pub(super) enum Real {
 
 impl Real {
     /// The triangles of the file of a scene that the scene does not have.
-    pub(super) fn degenerate(&self) -> &[[u32; 2]] {
-        if let Self::Scene(_, degenerate) = self { degenerate } else { &[] }
+    pub(super) fn left_out(&self) -> &[[u32; 2]] {
+        if let Self::Scene(_, left_out) = self { left_out } else { &[] }
     }
 
     /// Reads a scene of any kind; of a map also its portals.
@@ -47,7 +47,7 @@ impl Real {
         let (file, portals) = portals.map(|portals| (portals.path, portals.prt)).unzip();
         Ok(match input::bakeable(path, input, map, portals)? {
             Bakeable::Plan { plan, .. } => Self::Plan(plan),
-            Bakeable::Scene(file) => Self::Scene(file.scene, file.info.degenerate_triangles),
+            Bakeable::Scene(file) => Self::Scene(file.scene, file.info.left_out_triangles),
             Bakeable::Portals(prt) => Self::Portals(graph_of_prt(&prt)),
             Bakeable::Map(bsp, portals) => {
                 let file = file.unwrap_or_default();
@@ -100,8 +100,8 @@ impl Real {
     /// The table without its frame, and the scene along its axes; none if the table has none.
     pub(super) fn along(&self, table: &Table) -> Result<Option<(Table, Self)>, VerifyError> {
         match self {
-            Self::Scene(scene, degenerate) if table.dimension() == 3 => {
-                Ok(along_frame(table, scene)?.map(|(table, scene)| (table, Self::Scene(scene, degenerate.clone()))))
+            Self::Scene(scene, left_out) if table.dimension() == 3 => {
+                Ok(along_frame(table, scene)?.map(|(table, scene)| (table, Self::Scene(scene, left_out.clone()))))
             }
             _ => Ok(None),
         }
