@@ -403,10 +403,10 @@ typedef struct sl_portal {
 } sl_portal;
 
 /**
- * Triangles of an object that follow each other in its file: those of a glTF primitive are drawn by an offset of three times `start`
- * indices and a count of three times the difference.
+ * Triangles of an object that follow each other in its file. Those of a primitive that is a list of triangles are drawn by an offset of three times
+ * `start` indices and a count of three times the difference.
  */
-typedef struct SlRange {
+typedef struct sl_range {
     /**
      * The object.
      */
@@ -419,7 +419,7 @@ typedef struct SlRange {
      * The one behind the last triangle; `SL_NONE` for all, as of objects that were not cut into parts.
      */
     uint32_t end;
-} SlRange;
+} sl_range;
 
 /**
  * An eye, and the directions that it looks at. What a kind does not use is ignored, and may be 0.
@@ -1078,7 +1078,7 @@ sl_status sl_table_visible_objects(const struct sl_table *table,
  */
 sl_status sl_table_visible_ranges(const struct sl_table *table,
                                   uint32_t cell,
-                                  struct SlRange *ranges,
+                                  struct sl_range *ranges,
                                   size_t capacity,
                                   size_t *count);
 
@@ -1161,7 +1161,7 @@ sl_status sl_table_cells_touching(const struct sl_table *table,
  */
 sl_status sl_table_visible_ranges_at(const struct sl_table *table,
                                      const double *point,
-                                     struct SlRange *ranges,
+                                     struct sl_range *ranges,
                                      size_t capacity,
                                      size_t *count,
                                      uint32_t *is_outside);
