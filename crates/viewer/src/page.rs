@@ -4,7 +4,7 @@ use crate::figure::Figure;
 use crate::payload::{harmless_json, hash_source, packed};
 use crate::reasons::Reasons;
 use serde::Serialize;
-use sightlines_pvs::{Table, TableParts};
+use sightlines_pvs::Table;
 use std::fmt::Write as _;
 
 /// The scripts, in the order in which they are read. Together they are one script.
@@ -266,10 +266,11 @@ impl<'a> Page<'a> {
     }
 }
 
-/// The bytes of what the page asks a table for: all but the stab trees, the mirrors and the doors.
+/// The bytes of what the page asks a table for: all but the stab trees, the mirrors, the doors and the parts of objects.
 fn lookup_bytes(table: &Table) -> Vec<u8> {
-    let parts = table.parts().clone();
-    let less = TableParts { stab: None, mirrors: Vec::new(), doors: Vec::new(), object_sources: Vec::new(), ..parts };
+    let mut less = table.parts().clone();
+    (less.stab, less.object_parts) = (None, None);
+    (less.mirrors, less.doors, less.object_sources) = (Vec::new(), Vec::new(), Vec::new());
     // A table stays one without these parts.
     Table::new(less).map_or_else(|_| table.to_bytes(), |less| less.to_bytes())
 }
