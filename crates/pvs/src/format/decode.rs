@@ -36,7 +36,7 @@ impl Table {
         }
         let portals = sections.find(PORTALS).map_or(Ok(Vec::new()), |s| read(s, |r| portals(r, d)))?;
         let objects = read(sections.need(OBJECTS)?, |r| objects(r, d))?;
-        let seen = sections.find(SEEN).map(|s| read(s, |r| whole_rows(r, cells.len(), objects.len())));
+        let seen = sections.find(SEEN).map(|s| read(s, |r| r.rows(cells.len(), objects.len())));
         let mirrors = sections.find(MIRRORS).map_or(Ok(Vec::new()), |s| read(s, |r| mirrors(r, d)))?;
         let polygons_of = |s| read(s, |r: &mut Reader<'_>| r.u32s(objects.len() as u64));
         let object_polygons = sections.find(OBJECT_POLYGONS).map_or(Ok(Vec::new()), polygons_of)?;
@@ -231,18 +231,6 @@ fn rows(r: &mut Reader<'_>, n: usize) -> Result<BitMatrix, DecodeError> {
         }
     }
     rows.mirror_lower();
-    Ok(rows)
-}
-
-pub(super) fn whole_rows(r: &mut Reader<'_>, n_rows: usize, n_cols: usize) -> Result<BitMatrix, DecodeError> {
-    // Both are below 2^32, so the product fits.
-    r.expect(n_rows as u64 * n_cols.div_ceil(64) as u64, 8)?;
-    let mut rows = BitMatrix::new(n_rows, n_cols);
-    for i in 0..n_rows {
-        for word in rows.row_mut(i) {
-            *word = r.u64()?;
-        }
-    }
     Ok(rows)
 }
 

@@ -29,7 +29,7 @@ impl Table {
         sections.push(section(OBJECTS, move |out| objects(out, &parts.objects, d)));
         sections.push(section(CELL_OBJECTS, |out| cell_objects(out, &parts.cell_objects)));
         if let Some(seen) = &parts.objects_seen {
-            sections.push(section(SEEN, |out| whole_rows(out, seen)));
+            sections.push(section(SEEN, |out| out.rows(seen)));
         }
         if !parts.mirrors.is_empty() {
             sections.push(section(MIRRORS, move |out| mirrors(out, &parts.mirrors, d)));
@@ -118,11 +118,6 @@ fn rows(out: &mut Writer, rows: &BitMatrix) {
             out.0.extend((word & kept).to_le_bytes());
         }
     }
-}
-
-pub(super) fn whole_rows(out: &mut Writer, rows: &BitMatrix) {
-    out.0.reserve_exact((0..rows.n_rows()).map(|i| 8 * rows.row(i).len()).sum());
-    (0..rows.n_rows()).flat_map(|i| rows.row(i)).for_each(|word| out.0.extend(word.to_le_bytes()));
 }
 
 fn locator(out: &mut Writer, parts: &TableParts) {

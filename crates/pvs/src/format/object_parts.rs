@@ -3,7 +3,6 @@
 use super::error::DecodeError;
 use super::reader::Reader;
 use super::writer::Writer;
-use super::{decode, encode};
 use crate::{ObjectId, ObjectPart, ObjectParts};
 
 pub(super) fn write(out: &mut Writer, ObjectParts { parts, seen }: &ObjectParts) {
@@ -11,12 +10,12 @@ pub(super) fn write(out: &mut Writer, ObjectParts { parts, seen }: &ObjectParts)
     for ObjectPart { object, start, end } in parts {
         [object.0, *start, *end].into_iter().for_each(|x| out.u32(x));
     }
-    encode::whole_rows(out, seen);
+    out.rows(seen);
 }
 
 pub(super) fn read(r: &mut Reader<'_>, n_cells: usize) -> Result<ObjectParts, DecodeError> {
     let n = r.count(12)?;
     let mut part = || Ok(ObjectPart { object: ObjectId(r.u32()?), start: r.u32()?, end: r.u32()? });
     let parts = (0..n).map(|_| part()).collect::<Result<Vec<_>, DecodeError>>()?;
-    Ok(ObjectParts { parts, seen: decode::whole_rows(r, n_cells, n)? })
+    Ok(ObjectParts { parts, seen: r.rows(n_cells, n)? })
 }

@@ -2,6 +2,7 @@
 
 use super::container::{Section, array};
 use super::error::{DecodeError, DecodeErrorKind as Kind};
+use crate::BitMatrix;
 
 /// A position in a section.
 pub(super) struct Reader<'a> {
@@ -71,6 +72,18 @@ impl<'a> Reader<'a> {
         self.expect(u64::from(n), size)?;
         // It fits: no slice has more than `usize::MAX` bytes, and `size` is at least 1.
         Ok(n as usize)
+    }
+
+    /// All words of a matrix, row by row; both numbers are below 2^32.
+    pub(super) fn rows(&mut self, n_rows: usize, n_cols: usize) -> Result<BitMatrix, DecodeError> {
+        self.expect(n_rows as u64 * n_cols.div_ceil(64) as u64, 8)?;
+        let mut rows = BitMatrix::new(n_rows, n_cols);
+        for i in 0..n_rows {
+            for word in rows.row_mut(i) {
+                *word = self.u64()?;
+            }
+        }
+        Ok(rows)
     }
 
     /// `n` numbers; memory is allocated after a check.

@@ -1,5 +1,7 @@
 //! Numbers and texts as bytes.
 
+use crate::BitMatrix;
+
 /// The bytes of a section under construction.
 #[derive(Default)]
 pub(super) struct Writer(pub(super) Vec<u8>);
@@ -30,5 +32,11 @@ impl Writer {
     pub(super) fn text(&mut self, text: &str) {
         self.count(text.len());
         self.0.extend_from_slice(text.as_bytes());
+    }
+
+    /// All words of a matrix, row by row.
+    pub(super) fn rows(&mut self, rows: &BitMatrix) {
+        self.0.reserve_exact((0..rows.n_rows()).map(|i| 8 * rows.row(i).len()).sum());
+        (0..rows.n_rows()).flat_map(|i| rows.row(i)).for_each(|word| self.0.extend(word.to_le_bytes()));
     }
 }
