@@ -3,9 +3,8 @@
 use crate::error::{error, value_error};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
-use sightlines_pvs::ObjectId;
+use sightlines_pvs::TriangleRange;
 use std::fmt::Display;
-use std::ops::Range;
 
 /// An array of ids, as numpy likes indices.
 pub(crate) type Ids<'py> = Bound<'py, PyArray1<i64>>;
@@ -66,8 +65,8 @@ pub(crate) fn bug(panic: &(dyn std::any::Any + Send)) -> PyErr {
 }
 
 /// Ranges of triangles of objects, three numbers each: the object, its first triangle, and the one behind the last; -1 for all of it.
-pub(crate) fn ranges(py: Python<'_>, ranges: Vec<(ObjectId, Option<Range<u32>>)>) -> Ids<'_> {
-    let of = |(object, range): (ObjectId, Option<Range<u32>>)| {
+pub(crate) fn ranges(py: Python<'_>, ranges: Vec<TriangleRange>) -> Ids<'_> {
+    let of = |(object, range): TriangleRange| {
         let [start, end] = range.map_or([0, -1], |range| [range.start, range.end].map(i64::from));
         [i64::from(object.0), start, end]
     };

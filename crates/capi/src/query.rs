@@ -4,7 +4,7 @@ use crate::border;
 use crate::info::cell_of;
 use crate::status::{Failure, Outcome, SL_NONE, SlStatus, guard};
 use crate::table::{SlTable, table};
-use sightlines_pvs::{CellId, ObjectId, Place, Table};
+use sightlines_pvs::{CellId, ObjectId, Place, Table, TriangleRange};
 use std::ops::Range;
 
 /// The cells that contain a point, ascending: several on borders, none outside of all cells.
@@ -212,7 +212,7 @@ pub unsafe extern "C" fn sl_table_visible_ranges(
     })
 }
 
-fn range_of((object, range): (ObjectId, Option<Range<u32>>)) -> SlRange {
+fn range_of((object, range): TriangleRange) -> SlRange {
     let Range { start, end } = range.unwrap_or(0..SL_NONE);
     SlRange { object: object.0, start, end }
 }

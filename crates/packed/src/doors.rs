@@ -39,10 +39,10 @@ pub(crate) fn object_parts(resident: &ResidentPart, n_objects: u32) -> Result<Op
     let n = r.count(2)?;
     let mut parts: Vec<ObjectPart> = Vec::new();
     for _ in 0..n {
-        let object = ObjectId(r.below(u64::from(n_objects))? as u32);
+        let object = ObjectId(r.below(u64::from(n_objects))?);
         let last = parts.last();
         let start = last.filter(|last| last.object == object).map_or(0, |last| last.end);
-        let end = start + r.below(u64::from(u32::MAX - start) + 1)? as u32;
+        let end = start + r.below(u64::from(u32::MAX - start) + 1)?;
         if end == start || last.is_some_and(|last| last.object > object) {
             return Err(r.fail(Kind::Value { value: u64::from(object.0) }));
         }

@@ -7,9 +7,8 @@ use crate::packed::{Packed, Places};
 use crate::source::ByteSource;
 use sightlines_pvs::{
     CellId, DimensionError, ObjectId, ObjectPart, ObjectRecord, Place, PlaceBuffer, PlaneTree, PortalId, PortalRecord,
-    triangle_ranges,
+    TriangleRange, triangle_ranges,
 };
-use std::ops::Range;
 
 /// Called by [`Packed::exits`] with the portal, whether it is crossed from its first cell into its second, the cell
 /// that it leads to, and its corners.
@@ -157,11 +156,7 @@ impl<S: ByteSource> Packed<S> {
     ///
     /// # Errors
     /// As [`Packed::objects_seen`].
-    pub fn visible_ranges(
-        &self,
-        cell: CellId,
-        out: &mut Vec<(ObjectId, Option<Range<u32>>)>,
-    ) -> Result<(), PackedError> {
+    pub fn visible_ranges(&self, cell: CellId, out: &mut Vec<TriangleRange>) -> Result<(), PackedError> {
         out.clear();
         let (mut objects, mut parts): (Vec<ObjectId>, Vec<usize>) = (Vec::new(), Vec::new());
         self.objects_seen(cell, &mut objects)?;

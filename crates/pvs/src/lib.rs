@@ -46,7 +46,7 @@ pub use planes::{PlaneChild, PlaneError, PlaneNode, PlaneTree};
 pub use query::{DimensionError, Inside, Place, PlaceBuffer, Query};
 pub use records::{
     CellRecord, DoorRecord, MirrorRecord, ObjectPart, ObjectParts, ObjectRecord, ObjectSource, PortalRecord,
-    triangle_ranges,
+    TriangleRange, triangle_ranges,
 };
 pub use set::CellSet;
 pub use side::polygon_may_contain;

@@ -1,9 +1,8 @@
 //! What is visible from a point.
 
 use crate::bits::WORD;
-use crate::{BitMatrix, CellId, CellSet, ObjectId, Table, triangle_ranges};
+use crate::{BitMatrix, CellId, CellSet, ObjectId, Table, TriangleRange, triangle_ranges};
 use std::borrow::Cow;
-use std::ops::Range;
 
 /// The result of locating a point.
 ///
@@ -198,7 +197,7 @@ impl Inside<'_> {
 
     /// What may be seen from the point, by ascending object: the triangles of an object that was cut into parts, as ranges that do not meet, and no
     /// range for all of an object that was not. Triangles count as for [`ObjectPart`](crate::ObjectPart). Allocates the list.
-    pub fn visible_ranges(&self) -> Vec<(ObjectId, Option<Range<u32>>)> {
+    pub fn visible_ranges(&self) -> Vec<TriangleRange> {
         let parts = self.table.parts().object_parts.iter().flat_map(|of| self.union_of(&of.seen));
         triangle_ranges(self.table.object_parts(), &self.visible_objects(), parts)
     }

@@ -75,6 +75,9 @@ pub struct ObjectParts {
     pub seen: BitMatrix,
 }
 
+/// Triangles of an object, counted as for [`ObjectPart`]; none for all of them, as of an object that was not cut.
+pub type TriangleRange = (ObjectId, Option<Range<u32>>);
+
 /// Of objects the ranges of triangles that are seen, which do not meet; no range for all of an object that was not cut.
 ///
 /// * `all`: the parts of all objects
@@ -84,9 +87,9 @@ pub fn triangle_ranges(
     all: &[ObjectPart],
     objects: &[ObjectId],
     parts: impl IntoIterator<Item = usize>,
-) -> Vec<(ObjectId, Option<Range<u32>>)> {
+) -> Vec<TriangleRange> {
     let mut parts = parts.into_iter().map(|part| all[part]).peekable();
-    let mut ranges: Vec<(ObjectId, Option<Range<u32>>)> = Vec::with_capacity(objects.len());
+    let mut ranges: Vec<TriangleRange> = Vec::with_capacity(objects.len());
     for &object in objects {
         let n = ranges.len();
         while parts.next_if(|part| part.object < object).is_some() {}

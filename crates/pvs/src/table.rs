@@ -4,9 +4,8 @@ use crate::parts::TableParts;
 use crate::records::{CellRecord, DoorRecord, MirrorRecord, ObjectPart, ObjectRecord, ObjectSource, PortalRecord};
 use crate::{
     Axis, CellId, CellSet, Frame, FrameError, GeometryDigest, Locator, NodeIndex, ObjectId, PlaneTree, StabTrees,
-    TableError, TableKind, bits, side, triangle_ranges,
+    TableError, TableKind, TriangleRange, bits, side, triangle_ranges,
 };
-use std::ops::Range;
 
 /// Which cells of a scene can see each other: checked, and immutable.
 ///
@@ -267,7 +266,7 @@ impl Table {
     ///
     /// # Panics
     /// If the table has no such cell.
-    pub fn visible_ranges(&self, cell: CellId) -> Vec<(ObjectId, Option<Range<u32>>)> {
+    pub fn visible_ranges(&self, cell: CellId) -> Vec<TriangleRange> {
         let parts = self.parts.object_parts.iter().flat_map(|of| of.seen.iter_ones(cell.idx()));
         triangle_ranges(self.object_parts(), &self.visible_objects(cell), parts)
     }

@@ -1,10 +1,9 @@
 //! What programs ask of tables of either kind besides visibility.
 
 use sightlines_eye_to_cell::{CellSource, TableCells};
-use sightlines_pvs::{Axis, CellId, DoorRecord, ObjectId, ObjectSource, Table};
+use sightlines_pvs::{Axis, CellId, DoorRecord, ObjectId, ObjectSource, Table, TriangleRange};
 use std::borrow::Borrow;
 use std::convert::Infallible;
-use std::ops::Range;
 
 /// What a table stores of itself, of its cells and of its objects, whether it is in memory or read on demand. Ids are below the numbers of
 /// [`CellSource`].
@@ -37,7 +36,7 @@ pub trait TableFacts: CellSource {
     ///
     /// # Errors
     /// As [`TableFacts::object_name`].
-    fn visible_ranges(&self, cell: CellId) -> Result<Vec<(ObjectId, Option<Range<u32>>)>, Self::Error>;
+    fn visible_ranges(&self, cell: CellId) -> Result<Vec<TriangleRange>, Self::Error>;
 
     /// The name of a cell; `None` if the cells of the table have no names.
     ///
@@ -80,7 +79,7 @@ impl<T: Borrow<Table>> TableFacts for TableCells<T> {
         Ok(self.table().source_of(object))
     }
 
-    fn visible_ranges(&self, cell: CellId) -> Result<Vec<(ObjectId, Option<Range<u32>>)>, Infallible> {
+    fn visible_ranges(&self, cell: CellId) -> Result<Vec<TriangleRange>, Infallible> {
         Ok(self.table().visible_ranges(cell))
     }
 

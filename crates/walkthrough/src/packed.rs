@@ -5,8 +5,7 @@ use crate::facts::TableFacts;
 use sightlines_eye_to_cell::{CellSource, MirrorPiece, PortalEdge, StabStep};
 use sightlines_geometry::Aabb;
 use sightlines_packed::{ByteSource, Packed, PackedError};
-use sightlines_pvs::{Axis, CellId, DoorRecord, Frame, ObjectId, ObjectSource, Place, PlaceBuffer};
-use std::ops::Range;
+use sightlines_pvs::{Axis, CellId, DoorRecord, Frame, ObjectId, ObjectSource, Place, PlaceBuffer, TriangleRange};
 use std::sync::Arc;
 
 /// A packed table, shared by the frames and the thread that reads ahead.
@@ -153,7 +152,7 @@ impl<S: ByteSource> TableFacts for PackedCells<S> {
         self.0.source_of(object)
     }
 
-    fn visible_ranges(&self, cell: CellId) -> Result<Vec<(ObjectId, Option<Range<u32>>)>, PackedError> {
+    fn visible_ranges(&self, cell: CellId) -> Result<Vec<TriangleRange>, PackedError> {
         let mut ranges = Vec::new();
         self.0.visible_ranges(cell, &mut ranges)?;
         Ok(ranges)

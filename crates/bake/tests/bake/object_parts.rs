@@ -44,7 +44,6 @@ fn request(parts: Option<u32>) -> BakeRequest {
         eye_height: Some([0.0, 2.5]),
         units_per_metre: Some(1.0),
         up: Some(Axis::Y),
-        ..EyeLevelOptions::default()
     };
     let cells = Some(CellsFrom::EyeLevel(how));
     let method = Some("line-space".parse().expect("a method"));

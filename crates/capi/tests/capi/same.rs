@@ -6,7 +6,7 @@ use sightlines_capi::*;
 use sightlines_eye_to_cell::{
     Doors, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph, follow_reflections,
 };
-use sightlines_pvs::{CellId, DoorRecord, ObjectId, Place, PlaceBuffer, PortalId, Table};
+use sightlines_pvs::{CellId, DoorRecord, ObjectId, Place, PlaceBuffer, PortalId, Table, TriangleRange};
 use std::collections::BTreeSet;
 use std::ffi::CString;
 use std::ops::Range;
@@ -110,8 +110,8 @@ pub(crate) fn compare_content(table: &Table, c: &Handle) -> [usize; 2] {
     [n, n_wrong]
 }
 
-fn ranges(of: Vec<(ObjectId, Option<Range<u32>>)>) -> Vec<SlRange> {
-    let range = |(object, range): (ObjectId, Option<Range<u32>>)| match range {
+fn ranges(of: Vec<TriangleRange>) -> Vec<SlRange> {
+    let range = |(object, range): TriangleRange| match range {
         Some(Range { start, end }) => SlRange { object: object.0, start, end },
         None => SlRange { object: object.0, start: 0, end: SL_NONE },
     };

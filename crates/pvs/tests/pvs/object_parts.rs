@@ -8,6 +8,7 @@ use proptest::prelude::*;
 use proptest::sample::Index;
 use sightlines_pvs::{
     BitMatrix, CellId, DecodeErrorKind as Kind, ObjectId, ObjectPart, ObjectParts, Table, TableError, TableParts,
+    TriangleRange,
 };
 use std::collections::BTreeSet;
 
@@ -86,7 +87,7 @@ fn assert_answers(table: &Table) {
         let all: Vec<_> = all.collect();
         let found: BTreeSet<_> = all.iter().copied().collect();
         assert_eq!((found.len(), found), (all.len(), triangles(table, &[cell])), "each once");
-        let meet = |w: &[(ObjectId, Option<std::ops::Range<u32>>)]| match (&w[0], &w[1]) {
+        let meet = |w: &[TriangleRange]| match (&w[0], &w[1]) {
             ((a, Some(x)), (b, Some(y))) => a == b && x.end >= y.start,
             (a, b) => a.0 >= b.0,
         };
