@@ -1,23 +1,22 @@
 //! Parts of objects: what of a large object a cell sees.
 //!
-//! A table is made of objects; of many a cell sees only a corner. So objects with many triangles are cut into runs of their list of triangles, where
-//! that makes the boxes around the runs small, and it is decided for each from which of the cells that may see the object it is hidden: by shadows that are
-//! propagated from cell to cell, for cells of every kind. What hides is never cut.
+//! Of a large object a cell often sees only a corner. So the list of triangles of such an object is cut into runs with small bounding boxes, and for each
+//! run it is decided which of the cells that may see the object may see the run: by shadows that are propagated from cell to cell, for cells of every
+//! kind. Occluders are never cut.
 
 use crate::error::BakeError;
 use crate::methods::{BufferOptions, OcclusionMethod, OcclusionMethodFactory};
 use crate::propagation::{Propagation, Solved};
-use crate::region::{RegionBakeOptions, phase};
+use crate::region::{RegionBakeOptions, phase, rays_of, stops_rays};
 use crate::threads;
-use sightlines_cells::{Scene, SceneObject, places_of_triangles};
+use sightlines_cells::{Scene, places_of_triangles};
 use sightlines_formats::SceneInfo;
 use sightlines_geometry::{Aabb, Point3};
 use sightlines_line_space::{FaceTarget, Surface};
-use sightlines_multifocal::RaySampler;
 use sightlines_pvs::runs::runs_of;
 use sightlines_pvs::{BitMatrix, ObjectId, ObjectPart, ObjectParts, Table, TableKind};
 use std::ops::Range;
-use std::sync::{Arc, Mutex, MutexGuard};
+use std::sync::Arc;
 
 /// The phase of units of work: one for each part.
 const PHASE: &str = "parts";
@@ -41,14 +40,10 @@ fn cut(scene: &Scene, most: usize) -> Vec<Part> {
     let large = (0u32..).zip(scene.objects()).filter(|(object, o)| o.triangles.len() > most && !moves(*object));
     let parts = large.flat_map(|(object, o)| {
         let mut runs = Vec::new();
-        cut_run(&boxes_of(o), 0, most.max(1), &mut runs);
+        cut_run(&o.corners().map(Aabb::around).collect::<Vec<_>>(), 0, most.max(1), &mut runs);
         runs.into_iter().map(move |triangles| Part { object, triangles })
     });
     parts.collect()
-}
-
-fn boxes_of(object: &SceneObject) -> Vec<Aabb<3>> {
-    object.corners().map(Aabb::around).collect()
 }
 
 /// Half the surface of a box.
@@ -176,37 +171,27 @@ fn solve(
         None => surface_of_scene(scene)?,
     };
     let triangles = |part: &Part| -> Vec<[Point3; 3]> {
-        scene.objects()[part.object as usize].corners().skip(part.triangles.start).take(part.triangles.len()).collect()
+        scene.objects()[part.object as usize].corners_of(part.triangles.clone()).collect()
     };
     // Rays know the parts, and behind them the other objects.
     let is_cut = |object: &u32| cut.binary_search_by_key(object, |part| part.object).is_ok();
     let others: Vec<u32> = (0..scene.objects().len() as u32).filter(|object| !is_cut(object)).collect();
     let of =
         |thing: u32| cut.get(thing as usize).map_or_else(|| others[thing as usize - cut.len()], |part| part.object);
-    let stops = |object: u32| scene.is_opaque(object) || scene.hides_from_front(object);
     let all = cut.iter().map(triangles).chain(others.iter().map(|&object| scene.covering_triangles(object)));
-    let all: Vec<Vec<[Point3; 3]>> =
-        (0u32..).zip(all).map(|(thing, of_it)| if stops(of(thing)) { of_it } else { Vec::new() }).collect();
-    let rays = RaySampler::new(all.iter().map(|of_it| &of_it[..]));
-    let rays = rays.with_single_sided(|thing| scene.is_single_sided(of(thing)));
-    let rays = rays.with_front_occluders(|thing| scene.hides_from_front(of(thing)));
+    let all: Vec<Vec<[Point3; 3]>> = all.collect();
+    let stops = |thing: usize| stops_rays(scene, of(thing as u32));
+    let rays = rays_of(scene, &all, of);
     let propagation = Propagation::new(cells.to_vec(), &rays, surface, all.len(), options.progress)?;
     let costs: Vec<f64> = cut.iter().map(|part| 100.0 + part.triangles.len() as f64).collect();
-    let memories = Mutex::new(Vec::new());
     let from_bytes = |bytes: &[u8]| Solved::from_bytes(bytes, cells.len() as u32);
     let found = phase::decide(PHASE, &costs, options, (Solved::to_bytes, from_bytes), |unit| {
         let part = &cut[unit];
         let object = part.object as usize;
         let Some(target) = FaceTarget::new(&triangles(part)) else { return Ok(Solved::default()) };
         let known = runs_of((0..cells.len() as u32).filter(|&cell| !objects.get(cell as usize, object)));
-        let kept = memories.lock().ok().and_then(|mut memories: MutexGuard<'_, Vec<_>>| memories.pop());
-        let mut memory = kept.unwrap_or_else(|| propagation.memory());
-        let thing = (!all[unit].is_empty()).then_some(unit as u32);
-        let solved = propagation.solve(&mut memory, thing, &target, scene.is_single_sided(part.object), &known);
-        if let Ok(mut memories) = memories.lock() {
-            memories.push(memory);
-        }
-        Ok(solved)
+        let thing = stops(unit).then_some(unit as u32);
+        Ok(propagation.solve(thing, &target, scene.is_single_sided(part.object), &known))
     })?;
     let mut solved: Vec<Option<Solved>> = vec![None; cut.len()];
     found.into_iter().for_each(|(unit, of)| solved[unit] = of);

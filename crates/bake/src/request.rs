@@ -215,12 +215,6 @@ impl BakeRequest {
         ]
     }
 
-    /// Refuses parts of objects where no table has them.
-    pub(crate) fn check_parts(&self, found: &'static str) -> Result<(), Meaningless> {
-        let refused = Meaningless { option: "parts", meant: "tables that are made in memory", found };
-        self.parts.map_or(Ok(()), |_| Err(refused))
-    }
-
     /// Refuses what means nothing for an input.
     pub(crate) fn check(&self, input: &BakeInput<'_>) -> Result<(), Meaningless> {
         let refuse = |named: &[(&'static str, bool)], meant, found| match named.iter().find(|(_, is_named)| *is_named) {
@@ -285,4 +279,10 @@ impl BakeRequest {
         }
         Ok(())
     }
+}
+
+/// Refuses parts of objects where tables cannot have them.
+pub(crate) fn refuse_parts(parts: Option<u32>, found: &'static str) -> Result<(), Meaningless> {
+    let refused = Meaningless { option: "parts", meant: "tables that are made in memory", found };
+    parts.map_or(Ok(()), |_| Err(refused))
 }

@@ -1,7 +1,7 @@
 //! Any input to its table, in one call.
 
 use crate::baked::Baked;
-use crate::error::{BakeError, Meaningless};
+use crate::error::BakeError;
 use crate::input::BakeInput;
 use crate::limit::{LimitReport, state_limit};
 use crate::methods::{BufferOptions, MethodError, OcclusionMethodFactory};
@@ -11,7 +11,7 @@ use crate::plan::{PlanBakeOptions, bake_plan};
 use crate::quake::{PrtOptions, bake_map, bake_prt};
 use crate::region::{PackRegionsError, RegionBakeOptions, bake_regions, pack_regions_around};
 use crate::reports::{RegionReport, Report};
-use crate::request::{BakeRequest, Runtime};
+use crate::request::{BakeRequest, Runtime, refuse_parts};
 use crate::scene::{PortalMode, SceneBakeOptions, bake_scene};
 use crate::stated::TIME_LIMIT;
 use crate::surroundings::{self, seen_around};
@@ -179,10 +179,7 @@ pub(crate) fn bake_packed<W: Write + Send>(
         parts.digest = recipe.digest.or(parts.digest);
         surroundings::state(parts, &recipe.surroundings);
     };
-    if recipe.parts.is_some() {
-        let (option, meant) = ("parts", "tables that are made in memory");
-        return Err(BakeError::from(Meaningless { option, meant, found: "a table that is written row by row" }).into());
-    }
+    refuse_parts(recipe.parts, "a table that is written row by row").map_err(BakeError::from)?;
     let around: Vec<u32> = recipe.surroundings.iter().map(|of| of.object).collect();
     with_regions(scene, recipe, runtime, file, |regions| pack_regions_around(scene, regions, &around, &stated, out))
 }

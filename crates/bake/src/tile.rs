@@ -13,7 +13,7 @@ use crate::places::{PlaceOptions, PlacesError, observed_places};
 use crate::prepared::recipe_of_tile;
 use crate::region::{CellsFrom, Decided, Wanted, decide, upright};
 use crate::reports::RegionReport;
-use crate::request::{BakeRequest, Runtime};
+use crate::request::{BakeRequest, Runtime, refuse_parts};
 use crate::run::with_regions;
 use crate::scene::extents;
 use crate::threads;
@@ -77,7 +77,7 @@ pub fn tile_cells(
     runtime: &Runtime<'_>,
 ) -> Result<Vec<ViewCell>, BakeError> {
     request.check(&scene.into())?;
-    request.check_parts("a world of tiles")?;
+    refuse_parts(request.parts, "a world of tiles")?;
     threads::on(runtime.threads, || cells_here(scene, viewers, request, runtime))
 }
 
@@ -182,7 +182,7 @@ fn decided(
     runtime: &Runtime<'_>,
 ) -> Result<Decided, BakeError> {
     request.check(&tile.scene.into())?;
-    request.check_parts("a world of tiles")?;
+    refuse_parts(request.parts, "a world of tiles")?;
     let scene = merged(tile);
     let cells = CellsFrom::Boxes(ViewCells { cells: tile.cells.to_vec(), axes: None });
     let near: Vec<Aabb<3>> = tile.near.iter().flat_map(|near| near.cells.iter().map(|cell| cell.bounds)).collect();

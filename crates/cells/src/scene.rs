@@ -6,6 +6,7 @@ use sightlines_geometry::coordinate::MAX_MAGNITUDE;
 use sightlines_geometry::{Aabb, CoordinateError, Point3, check_coordinate};
 use sightlines_pvs::ObjectSource;
 use std::borrow::Cow;
+use std::ops::Range;
 
 /// Something that is seen or not as a whole: a mesh of triangles.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,7 +27,15 @@ impl SceneObject {
 
     /// The corners of each triangle.
     pub fn corners(&self) -> impl ExactSizeIterator<Item = [Point3; 3]> + '_ {
-        self.triangles.iter().map(|t| t.map(|i| self.vertices[i as usize]))
+        self.corners_of(0..self.triangles.len())
+    }
+
+    /// The same of some triangles that follow each other.
+    ///
+    /// # Panics
+    /// If there are not so many.
+    pub fn corners_of(&self, triangles: Range<usize>) -> impl ExactSizeIterator<Item = [Point3; 3]> + '_ {
+        self.triangles[triangles].iter().map(|t| t.map(|i| self.vertices[i as usize]))
     }
 }
 

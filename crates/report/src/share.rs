@@ -2,7 +2,7 @@
 
 use crate::summary::size;
 use serde::Serialize;
-use sightlines_pvs::{CellId, ObjectId, Table};
+use sightlines_pvs::{CellId, ObjectId, Table, TriangleRange};
 use std::collections::BTreeMap;
 
 /// Shares of a scene that a viewer sees, from 0 to 1, averaged over the places where a viewer may be: each
@@ -29,37 +29,22 @@ impl ViewerShare {
         let sizes: Vec<f64> = table.cells().iter().map(|cell| size(cell, table.dimension())).collect();
         let all: f64 = sizes.iter().sum();
         let n_polygons: u64 = polygons.iter().take(table.objects().len()).sum();
-        let share = |part: u64, whole: u64| if whole > 0 { part as f64 / whole as f64 } else { 0.0 };
+        let share = |part: f64, whole: u64| if whole > 0 { part / whole as f64 } else { 0.0 };
         let ends: BTreeMap<ObjectId, u32> = table.object_parts().iter().map(|part| (part.object, part.end)).collect();
         let mut mean = Self { cells: 0.0, objects: 0.0, polygons: 0.0 };
         for (cell, size) in (0u32..).map(CellId).zip(sizes).filter(|_| all > 0.0) {
             let weight = size / all;
             let objects = table.visible_objects(cell);
-            let whole: u64 = objects.iter().filter_map(|&o| polygons.get(o.idx())).sum();
-            // Of objects in parts, what is not seen.
-            let hidden: f64 = if ends.is_empty() { 0.0 } else { unseen(table, cell, &objects, polygons, &ends) };
+            let polygons_in = |(object, range): TriangleRange| {
+                let all = polygons.get(object.idx()).copied().unwrap_or(0) as f64;
+                range.map_or(all, |range| all * f64::from(range.end - range.start) / f64::from(ends[&object]))
+            };
+            let seen: f64 = table.visible_ranges(cell).into_iter().map(polygons_in).sum();
             let n_cells: u64 = table.row(cell).iter().map(|word| u64::from(word.count_ones())).sum();
-            mean.cells += weight * share(n_cells, table.n_cells() as u64);
-            mean.objects += weight * share(objects.len() as u64, table.objects().len() as u64);
-            mean.polygons += weight * share(whole, n_polygons);
-            mean.polygons -= if n_polygons > 0 { weight * hidden / n_polygons as f64 } else { 0.0 };
+            mean.cells += weight * share(n_cells as f64, table.n_cells() as u64);
+            mean.objects += weight * share(objects.len() as f64, table.objects().len() as u64);
+            mean.polygons += weight * share(seen, n_polygons);
         }
         mean
     }
-}
-
-/// How many polygons of the objects that a cell sees are in parts that it does not see, by the triangles of the parts.
-///
-/// * `ends`: of each object in parts the end of the last one
-fn unseen(table: &Table, cell: CellId, objects: &[ObjectId], polygons: &[u64], ends: &BTreeMap<ObjectId, u32>) -> f64 {
-    let mut n_seen: BTreeMap<ObjectId, u32> = BTreeMap::new();
-    for (object, range) in table.visible_ranges(cell) {
-        *n_seen.entry(object).or_default() += range.map_or(0, |range| range.end - range.start);
-    }
-    let of = |object: &ObjectId| {
-        let end = f64::from(*ends.get(object)?);
-        let seen = f64::from(n_seen.get(object).copied().unwrap_or(0));
-        Some(*polygons.get(object.idx())? as f64 * (1.0 - seen / end))
-    };
-    objects.iter().filter_map(of).sum()
 }

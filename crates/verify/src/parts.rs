@@ -1,4 +1,4 @@
-//! Tables with parts of objects: the parts as objects of their own, so that everything that is checked of objects is checked of them.
+//! Tables with parts of objects, checked as tables in which each part is an object of its own.
 
 use crate::findings::{Findings, Violation};
 use sightlines_cells::{MovingObject, Scene, SceneObject, places_of_triangles};
@@ -36,7 +36,7 @@ impl InParts {
         let mut of: Vec<u32> = Vec::new();
         let mut add = |thing: Thing, object: u32, triangles: Range<usize>| {
             let whole = &scene.objects()[object as usize];
-            let vertices: Vec<_> = whole.corners().skip(triangles.start).take(triangles.len()).flatten().collect();
+            let vertices: Vec<_> = whole.corners_of(triangles).flatten().collect();
             let triangles = (0..vertices.len() as u32 / 3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
             objects.push(SceneObject { name: whole.name.clone(), vertices, triangles });
             things.push(thing);
@@ -78,9 +78,7 @@ impl InParts {
         Some(Self { table: table_of(table, &things, &in_parts), scene: in_parts, things })
     }
 
-    /// Has violations speak of the objects and parts of the table as it is.
-    ///
-    /// * `first`: the first violation that does not
+    /// Restates violations, from the given one on, by the parts and objects of the original table.
     pub(crate) fn rename(&self, findings: &mut Findings, first: usize) {
         for violation in &mut findings.violations[first..] {
             let Violation::HiddenObject { cell, object, segment } = *violation else { continue };

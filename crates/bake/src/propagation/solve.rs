@@ -9,7 +9,7 @@ use sightlines_progress::{Cancelled, Observer};
 use sightlines_pvs::runs::{read_runs, read_varint, runs_of, write_runs, write_varint};
 use std::collections::VecDeque;
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Rays from a cell to where its neighbour sees an object.
 const AIMED: usize = 4;
@@ -44,6 +44,8 @@ pub(crate) struct Propagation<'a> {
     sights: Vec<Vec<Sight>>,
     /// Which share of the full effort each question gets.
     share: f64,
+    /// Memory that no thread uses now.
+    free: Mutex<Vec<Memory>>,
 }
 
 /// What was found of one object.
@@ -80,7 +82,7 @@ impl Solved {
 
 /// Memory of a thread.
 #[derive(Debug)]
-pub(crate) struct Memory {
+struct Memory {
     search: FaceSearch,
     /// By cell: whether it may see the object. All others are those from which it is hidden, if they stay so.
     is_visible: Vec<bool>,
@@ -108,7 +110,14 @@ impl<'a> Propagation<'a> {
         let tiling = Tiling::new(cells);
         let sights = sights(&tiling, rays, n_objects, observer)?;
         let n_pairs = tiling.len() as f64 * n_objects as f64;
-        Ok(Self { tiling, rays, surface, sights, share: (FULL_EFFORT_PAIRS / n_pairs).clamp(LEAST_SHARE, 1.0) })
+        Ok(Self {
+            tiling,
+            rays,
+            surface,
+            sights,
+            share: (FULL_EFFORT_PAIRS / n_pairs).clamp(LEAST_SHARE, 1.0),
+            free: Mutex::default(),
+        })
     }
 
     #[cfg(test)]
@@ -116,7 +125,7 @@ impl<'a> Propagation<'a> {
         self.tiling.close();
     }
 
-    pub(crate) fn memory(&self) -> Memory {
+    fn memory(&self) -> Memory {
         let n = self.tiling.len();
         Memory {
             search: FaceSearch::new(self.surface.clone(), LONGEST_CHAIN),
@@ -132,7 +141,16 @@ impl<'a> Propagation<'a> {
     /// * `object`: its index, if it is one of the objects that rays find
     /// * `fronts`: whether only the fronts of its triangles are seen
     /// * `known`: cells from which it is hidden, which is not asked again
-    pub(crate) fn solve(
+    pub(crate) fn solve(&self, object: Option<u32>, target: &FaceTarget, fronts: bool, known: &[Range<u32>]) -> Solved {
+        let free = || self.free.lock().unwrap_or_else(PoisonError::into_inner);
+        let kept = free().pop();
+        let mut memory = kept.unwrap_or_else(|| self.memory());
+        let solved = self.solve_with(&mut memory, object, target, fronts, known);
+        free().push(memory);
+        solved
+    }
+
+    fn solve_with(
         &self,
         memory: &mut Memory,
         object: Option<u32>,

@@ -41,10 +41,9 @@ fn hidden(soup: &Soup, tiles: &[Aabb<3>], targets: &[Aabb<3>], fault: bool) -> V
     if fault {
         propagation.close();
     }
-    let mut memory = propagation.memory();
     let of = |target: &Aabb<3>| {
         let target = FaceTarget::of_box(target).expect("a box");
-        let solved = propagation.solve(&mut memory, None, &target, false, &[]);
+        let solved = propagation.solve(None, &target, false, &[]);
         solved.hidden.into_iter().flatten().collect()
     };
     targets.iter().map(of).collect()

@@ -380,13 +380,23 @@ fn targets_of(scene: &Scene, boxes: &[Aabb<3>]) -> (Occludees, RaySampler) {
         if *extent == ANYWHERE { Vec::new() } else { scene.covering_triangles(object) }
     };
     let triangles: Vec<Vec<[Point3; 3]>> = (0u32..).zip(boxes).map(covering).collect();
-    // What is see-through stops no ray.
-    let none: &[[Point3; 3]] = &[];
-    let stops = |k: u32| scene.is_opaque(k) || scene.hides_from_front(k);
-    let in_the_way = (0u32..).zip(&triangles).map(|(k, of)| if stops(k) { &of[..] } else { none });
-    let witness = RaySampler::new(in_the_way).with_single_sided(|object| scene.is_single_sided(object));
-    let witness = witness.with_front_occluders(|object| scene.hides_from_front(object));
+    let witness = rays_of(scene, &triangles, |object| object);
     (Occludees::new(triangles).with_single_sided(|object| scene.is_single_sided(object)), witness)
+}
+
+/// Whether an object stops rays, if only from its front: what is see-through does not.
+pub(crate) fn stops_rays(scene: &Scene, object: u32) -> bool {
+    scene.is_opaque(object) || scene.hides_from_front(object)
+}
+
+/// Rays among things made of triangles, with the sides of the objects that they are of.
+pub(crate) fn rays_of(scene: &Scene, things: &[Vec<[Point3; 3]>], object_of: impl Fn(u32) -> u32) -> RaySampler {
+    let none: &[[Point3; 3]] = &[];
+    let in_the_way =
+        (0u32..).zip(things).map(|(thing, of)| if stops_rays(scene, object_of(thing)) { &of[..] } else { none });
+    RaySampler::new(in_the_way)
+        .with_single_sided(|thing| scene.is_single_sided(object_of(thing)))
+        .with_front_occluders(|thing| scene.hides_from_front(object_of(thing)))
 }
 
 /// States the objects of a scene.

@@ -12,7 +12,7 @@ use sightlines_line_space::{FaceTarget, Surface};
 use sightlines_multifocal::{Occludees, QueryCounts, RaySampler, WorkDone};
 use sightlines_pvs::BitMatrix;
 use sightlines_stabtree::PairMask;
-use std::sync::{Arc, Mutex, MutexGuard};
+use std::sync::Arc;
 
 /// The phase of units of work: one for each object, and for each group of cells.
 const PHASE: &str = "shadows";
@@ -53,18 +53,11 @@ pub(super) fn see(
         threads::on(options.threads, || Propagation::new(cells.to_vec(), rays, surface, n_objects, options.progress))?;
     let wanted = wanted(cells, occludees, extents);
     let costs: Vec<f64> = wanted.iter().map(|of| 100.0 + of.target.triangles().len() as f64).collect();
-    let memories = Mutex::new(Vec::new());
     let from_bytes = |bytes: &[u8]| Solved::from_bytes(bytes, n as u32);
     let found = phase::decide(PHASE, &costs, options, (Solved::to_bytes, from_bytes), |unit| {
         let Wanted { object, target, .. } = &wanted[unit];
         let is_culled = object.is_some_and(|object| scene.is_single_sided(object));
-        let known = memories.lock().ok().and_then(|mut memories: MutexGuard<'_, Vec<_>>| memories.pop());
-        let mut memory = known.unwrap_or_else(|| propagation.memory());
-        let solved = propagation.solve(&mut memory, *object, target, is_culled, &[]);
-        if let Ok(mut memories) = memories.lock() {
-            memories.push(memory);
-        }
-        Ok(solved)
+        Ok(propagation.solve(*object, target, is_culled, &[]))
     })?;
     let mut tiled = Tiled {
         rows: ones(n, n),
