@@ -52,8 +52,8 @@ pub struct BakeRequest {
     pub buffers: BufferRequest,
     /// Scenes by a from-region method: when a cell is cut into smaller volumes. None: never.
     pub split: Option<Split>,
-    /// Scenes: objects with more triangles than this are cut into parts of no more, and the table says of each part, too, which cells see it
-    /// ([`ObjectPart`](sightlines_pvs::ObjectPart)). None: none is cut.
+    /// Scenes: objects of more triangles than this are split into parts of at most that many, and the table lists which cells may see each part
+    /// ([`ObjectPart`](sightlines_pvs::ObjectPart)). None: no object is split.
     pub parts: Option<u32>,
     /// Quake maps and portal files: only the first, coarse bound; quick, and shows much that is hidden.
     pub fast: bool,

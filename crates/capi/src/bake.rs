@@ -106,8 +106,8 @@ pub struct SlBakeOptions {
     pub eye_height: [f64; 2],
     /// The axis that points upwards, for `SL_CELLS_EYE_LEVEL`: 1, 2 or 3 for x, y or z; 0 for what the file says, or else z.
     pub up: u64,
-    /// Scenes: objects with more triangles than this are cut into parts of no more, of which the table says as well what cells see
-    /// (`sl_table_visible_ranges`); 0 to cut none.
+    /// Scenes: objects of more triangles than this are split into parts of at most that many, and the table lists which cells may see each part
+    /// (`sl_table_visible_ranges`); 0 to split none.
     pub parts: u64,
 }
 

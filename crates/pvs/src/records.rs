@@ -53,9 +53,9 @@ pub struct ObjectSource {
     pub primitive: u32,
 }
 
-/// A part of an object: some of its triangles, one after the other in the order of the file that the table was made of, those without an area among
-/// them. A program that draws lists of triangles draws it by an offset and a count. In an OBJ file the faces of an object, as it is in the table, are counted as
-/// the triangles that they are cut into.
+/// A part of an object: a range of its triangles, in the order of the file that the table was made of; degenerate triangles are counted. A program that
+/// draws lists of triangles draws it by an offset and a count. In an OBJ file, the triangles are those into which the faces are divided, without faces that were left
+/// out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ObjectPart {
     /// The object.

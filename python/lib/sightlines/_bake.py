@@ -59,8 +59,8 @@ def bake(
         the file's format; meshes whose coordinates single precision holds are as precise as that, others are taken exactly
     :param detail_below: objects smaller than this in every direction hide nothing; None for what suits the scene
     :param keep_solid: whether the insides of solid things are cells too
-    :param parts: objects with more triangles than this are cut into parts of no more, and the table says which of these are seen, too
-        (:meth:`Table.visible_ranges`); None to cut none
+    :param parts: objects of more triangles than this are split into parts of at most that many, and the table lists which cells may see
+        each part (:meth:`Table.visible_ranges`); None to split none
     :param see_through: names of meshes that are seen and hide nothing; only for trimesh and meshes by name
     :param max_cells: the most cells
     :param time_limit: of scenes, seconds, after which what is not decided counts as visible; the table then depends on the machine

@@ -2,7 +2,7 @@
 
 use crate::common::file::{
     File, assert_damage_is_noticed, assert_every_changed_byte_is_an_error, assert_every_prefix_is_an_error, changes,
-    forged,
+    forge_every_byte, forged,
 };
 use crate::common::full::{named_villa, wedges};
 use crate::common::{any_parts, assert_well_formed};
@@ -155,29 +155,10 @@ fn every_prefix_and_changed_byte_of_doors_is_an_error() {
     let table = table();
     assert_every_prefix_is_an_error(&table);
     assert_every_changed_byte_is_an_error(&table);
-    let file = File::parse(&table.to_bytes());
-    assert_eq!(file.write(), table.to_bytes(), "the files of these tests are right themselves");
-    let (mut n_tables, mut n_errors) = (0, 0);
-    for part in (0..file.parts.len()).filter(|&i| is_new(&file.parts[i].id)) {
-        for at in 0..file.parts[part].bytes.len() {
-            let mut forged = file.clone();
-            for flip in 1..=255 {
-                forged.parts[part].bytes[at] = file.parts[part].bytes[at] ^ flip;
-                let bytes = forged.write();
-                match Table::from_bytes(&bytes) {
-                    Ok(read) => {
-                        assert_well_formed(&read);
-                        assert_answers(&read);
-                        assert_eq!(read.to_bytes(), bytes, "not written as it was read");
-                        n_tables += 1;
-                    }
-                    Err(_) => n_errors += 1,
-                }
-            }
-            forged.parts[part].bytes.truncate(at);
-            assert!(Table::from_bytes(&forged.write()).is_err(), "section cut to {at} bytes");
-        }
-    }
+    let [n_tables, n_errors] = forge_every_byte(&table, is_new, |read| {
+        assert_well_formed(read);
+        assert_answers(read);
+    });
     assert!(n_tables > 1000 && n_errors > 1000, "{n_tables} tables, {n_errors} errors");
 }
 

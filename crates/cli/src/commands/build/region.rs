@@ -50,8 +50,8 @@ pub(crate) struct RegionArgs {
     /// axis-aligned walls, from 0 to 2.5 m
     #[arg(long, value_name = "LOW,HIGH", value_parser = heights, conflicts_with_all = ["cells", "grid", "n_cells"])]
     eye_height: Option<[f64; 2]>,
-    /// Scenes in space: cut objects with more than N triangles into parts of no more, and find which cells see each part: ranges of its triangles,
-    /// in the order of the file, for engines that draw a mesh by offsets and counts. What hides is not cut
+    /// Scenes in space: split objects of more than N triangles into parts of at most N, and find which cells may see each part. A part is a range of
+    /// the object's triangles in file order, so an engine draws it by an offset and a count. Occluders are not split
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     parts: Option<u32>,
     #[command(flatten)]

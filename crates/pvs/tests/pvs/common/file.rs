@@ -107,6 +107,38 @@ pub(crate) fn assert_every_changed_byte_is_an_error(table: &Table) {
     assert_eq!((n_tried, &Table::from_bytes(&bytes).unwrap()), (255 * bytes.len(), table));
 }
 
+/// Changes every byte of some sections into every other value, with correct checksums, and cuts them short: a file is read as it is written, or refused. How
+/// many were read, and how many not.
+pub(crate) fn forge_every_byte(
+    table: &Table,
+    is_forged: impl Fn(&[u8; 4]) -> bool,
+    check: impl Fn(&Table),
+) -> [usize; 2] {
+    let file = File::parse(&table.to_bytes());
+    assert_eq!(file.write(), table.to_bytes(), "the files of these tests are right themselves");
+    let (mut n_tables, mut n_errors) = (0, 0);
+    for part in (0..file.parts.len()).filter(|&i| is_forged(&file.parts[i].id)) {
+        for at in 0..file.parts[part].bytes.len() {
+            let mut forged = file.clone();
+            for flip in 1..=255 {
+                forged.parts[part].bytes[at] = file.parts[part].bytes[at] ^ flip;
+                let bytes = forged.write();
+                match Table::from_bytes(&bytes) {
+                    Ok(read) => {
+                        check(&read);
+                        assert_eq!(read.to_bytes(), bytes, "not written as it was read");
+                        n_tables += 1;
+                    }
+                    Err(_) => n_errors += 1,
+                }
+            }
+            forged.parts[part].bytes.truncate(at);
+            assert!(Table::from_bytes(&forged.write()).is_err(), "section cut to {at} bytes");
+        }
+    }
+    [n_tables, n_errors]
+}
+
 /// A random change of the bytes of a section.
 #[derive(Debug)]
 pub(crate) struct Change {
