@@ -46,12 +46,6 @@ fn cut(scene: &Scene, most: usize) -> Vec<Part> {
     parts.collect()
 }
 
-/// Half the surface of a box.
-fn surface_of(b: &Aabb<3>) -> f64 {
-    let [x, y, z] = [0, 1, 2].map(|k| b.max[k] - b.min[k]);
-    x * y + y * z + z * x
-}
-
 /// Cuts a run where the surfaces of the halves, weighted by their numbers, are least, as trees of boxes are cut. The smaller half has at least a quarter of
 /// what a part may have, and a sixteenth of the run, so the depth is logarithmic. O(n log n).
 fn cut_run(boxes: &[Aabb<3>], first: usize, most: usize, runs: &mut Vec<Range<usize>>) {
@@ -62,7 +56,7 @@ fn cut_run(boxes: &[Aabb<3>], first: usize, most: usize, runs: &mut Vec<Range<us
     }
     let with = |all: &mut Aabb<3>, b: &Aabb<3>| {
         *all = all.with(b.min).with(b.max);
-        Some(surface_of(all))
+        Some(all.half_surface())
     };
     let before: Vec<f64> = boxes.iter().scan(Aabb::EMPTY, with).collect();
     let mut behind: Vec<f64> = boxes.iter().rev().scan(Aabb::EMPTY, with).collect();

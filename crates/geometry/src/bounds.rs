@@ -18,6 +18,12 @@ impl<const D: usize> Aabb<D> {
         points.into_iter().fold(Self::EMPTY, Self::with)
     }
 
+    /// Half the surface of the box; in the plane, its area. Rounded.
+    pub fn half_surface(&self) -> f64 {
+        let size = |k: usize| self.max[k] - self.min[k];
+        (0..D).flat_map(|i| (0..i).map(move |j| (i, j))).map(|(i, j)| size(i) * size(j)).sum()
+    }
+
     /// The box extended to contain `p`.
     #[must_use]
     pub fn with(mut self, p: [f64; D]) -> Self {

@@ -45,12 +45,6 @@ pub struct BoxTree<const D: usize> {
     order: Vec<u32>,
 }
 
-/// Half the surface of a box.
-fn surface<const D: usize>(b: &Aabb<D>) -> f64 {
-    let size = |k: usize| b.max[k] - b.min[k];
-    (0..D).flat_map(|i| (0..i).map(move |j| (i, j))).map(|(i, j)| size(i) * size(j)).sum()
-}
-
 fn union<const D: usize>(a: &Aabb<D>, b: &Aabb<D>) -> Aabb<D> {
     Aabb { min: std::array::from_fn(|k| a.min[k].min(b.min[k])), max: std::array::from_fn(|k| a.max[k].max(b.max[k])) }
 }
@@ -125,12 +119,12 @@ impl<const D: usize> BoxTree<D> {
             let mut all = Aabb::EMPTY;
             for (n, (cost, &i)) in (1u32..).zip(work.costs[start..end].iter_mut().zip(sorted)) {
                 all = union(&all, &of(i));
-                *cost = surface(&all) * f64::from(n);
+                *cost = all.half_surface() * f64::from(n);
             }
             let mut all = Aabb::EMPTY;
             for k in (start + 1..end).rev() {
                 all = union(&all, &of(work.sorted[axis][k]));
-                let cost = work.costs[k - 1] + surface(&all) * (end - k) as f64;
+                let cost = work.costs[k - 1] + all.half_surface() * (end - k) as f64;
                 let off = k.abs_diff(middle);
                 if k >= start + least && k + least <= end && (cost, off) < (best.0, best.1) {
                     best = (cost, off, axis, k);
