@@ -660,8 +660,8 @@ typedef struct sl_bake_options {
      */
     uint64_t up;
     /**
-     * Scenes: objects with more triangles than this are cut into parts of no more, of which the table says as well what cells see
-     * (`sl_table_visible_ranges`); 0 to cut none.
+     * Scenes: objects of more triangles than this are split into parts of at most that many, and the table lists which cells may see each part
+     * (`sl_table_visible_ranges`); 0 to split none.
      */
     uint64_t parts;
 } sl_bake_options;
