@@ -9,7 +9,7 @@
 
 use crate::bvh::{Bvh, Ray};
 use sightlines_cells::{Point3, Scene};
-use sightlines_geometry::Aabb;
+use sightlines_geometry::{Aabb, orient3d};
 
 /// Where a ray meets a triangle.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -117,6 +117,25 @@ impl RayScene {
         });
         blocked
     }
+
+    /// Whether the closed segment between two points certainly touches no triangle. Exact, so that a segment along an edge, which
+    /// rounding takes past it, is told from one with room on all sides. A segment in a triangle's plane is never certain.
+    pub fn is_clear(&self, from: Point3, to: Point3) -> bool {
+        let mut clear = true;
+        self.bvh.visit(&Ray::new(from, sub(to, from)), 1.0 + 1e-9, |i| {
+            clear &= are_apart(from, to, &self.triangles[i as usize].corners);
+            if clear { 1.0 + 1e-9 } else { f64::NEG_INFINITY }
+        });
+        clear
+    }
+}
+
+/// The line through `p` and `q` passes the edges of a triangle that it meets on one side, or touches them.
+fn are_apart(p: Point3, q: Point3, &[a, b, c]: &[Point3; 3]) -> bool {
+    let both = |signs: &[f64]| (signs.iter().any(|&s| s > 0.0), signs.iter().any(|&s| s < 0.0));
+    let ends = [orient3d(a, b, c, p), orient3d(a, b, c, q)];
+    let is_beside = ends.iter().all(|&s| s > 0.0) || ends.iter().all(|&s| s < 0.0);
+    is_beside || both(&[orient3d(p, q, a, b), orient3d(p, q, b, c), orient3d(p, q, c, a)]) == (true, true)
 }
 
 /// A ray's direction, as the shear and the order of axes that turn it into the third axis.
@@ -311,5 +330,16 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// A segment that passes an edge exactly, which rounding takes to the open side; a bit to either side is told for certain.
+    #[test]
+    fn rays_segments_along_an_edge_are_not_clear() {
+        let s = RayScene::new(&scene(&[vec![[[0, 0, 0], [2, -1, 7], [6, 0, -5]]]]));
+        let (from, to) = ([5.0, -2.0, -2.0], [4.0, 1.3001109505282598, 1.0]);
+        let by = |x: f64| [to[0] + x, to[1], to[2]];
+        assert!(!s.is_blocked(from, to) && !s.is_clear(from, to));
+        assert!(!s.is_clear(from, by(-1e-14)) && s.is_clear(from, by(1e-14)));
+        assert!(s.is_clear(from, [5.0, -3.0, -2.0]) && !s.is_clear([8.0, -1.0, 2.0], [-4.0, 0.5, -1.0]));
     }
 }

@@ -42,8 +42,9 @@ pub(crate) fn open_line(rays: &RayScene, v: &Volume, target: &Aabb<3>, seed: u64
         let mut random = Random::new(seed, i);
         let (from, to) = (point(&mut random, v.bounds()), point(&mut random, target));
         let hit = rays.first_hit(from, std::array::from_fn(|k| to[k] - from[k]));
-        // A target that begins right behind a wall is met with it, as far as the tracer can tell.
-        hit.is_none_or(|h| h.t > 1.0 + 1e-9).then_some([from, to])
+        // A target that begins right behind a wall is met with it, as far as the tracer can tell; and it may round a segment along an
+        // edge to pass it.
+        (hit.is_none_or(|h| h.t > 1.0 + 1e-9) && rays.is_clear(from, to)).then_some([from, to])
     })
 }
 
