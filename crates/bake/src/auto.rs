@@ -151,6 +151,9 @@ const LOOSE: f64 = 0.5;
 /// The openness below which a scene counts as rooms, whose walls are connected.
 const ROOMS: f64 = 0.1;
 
+/// Given cells times triangles up to which line space is used as well, whatever the walls: it takes about a second there.
+const QUICK: u64 = 1 << 16;
+
 /// How to bake a scene. Sightlines, the default, are always used as well, so for the same cells no table is looser than by
 /// default.
 #[derive(Debug, Clone, PartialEq)]
@@ -281,8 +284,8 @@ pub struct Choice {
 
 /// Chooses the method of a scene whose cells are decided, and puts it into the recipe.
 ///
-/// Cells that are given are few, and worth more work: line space takes the place of sheets for them; and where something hides from its front
-/// only, of which sheets do not know. An observer receives a report of each
+/// Cells that are given are few, and worth more work: line space takes the place of sheets for them, and is used in small scenes with walls along
+/// the axes too, of which it finds what several hide together; also where something hides from its front only, of which sheets do not know. An observer receives a report of each
 /// measurement, and cannot cancel.
 pub(crate) fn choose_for(scene: &Scene, recipe: &mut Recipe, progress: Option<&dyn Observer>) -> Choice {
     if matches!(recipe.cells, CellsFrom::EyeLevel(_)) {
@@ -292,7 +295,9 @@ pub(crate) fn choose_for(scene: &Scene, recipe: &mut Recipe, progress: Option<&d
     }
     let (facts, mut choice) = choose_observed(scene, progress);
     let are_given = matches!(recipe.cells, CellsFrom::Grid(_) | CellsFrom::Boxes(_));
-    if choice.sheets && (are_given || !scene.front_occluders().is_empty()) {
+    let n_cells = if are_given { recipe.cells.most().unwrap_or(u64::MAX) } else { u64::MAX };
+    let is_quick = facts.n_triangles > 0 && n_cells.saturating_mul(facts.n_triangles as u64) <= QUICK;
+    if is_quick || choice.sheets && (are_given || !scene.front_occluders().is_empty()) {
         choice.use_line_space();
     }
     recipe.method = if choice.uses_region_method() { SceneMethod::Both } else { SceneMethod::Sightlines };
