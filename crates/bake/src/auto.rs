@@ -13,6 +13,7 @@ use sightlines_geometry::vector::{length, normal};
 use sightlines_geometry::{Aabb, Point3, Random};
 use sightlines_multifocal::mesh::Mesh;
 use sightlines_multifocal::{Layout, RaySampler};
+use sightlines_packed::format::MAX_SMALL_CELLS;
 use sightlines_progress::{Observer, Progress};
 use std::fmt;
 
@@ -293,9 +294,14 @@ pub(crate) fn choose_for(scene: &Scene, recipe: &mut Recipe, progress: Option<&d
         let reason = "cells are at the height of eyes: shadows are propagated from cell to cell, and whoever is elsewhere sees everything".to_owned();
         return Choice { method: recipe.method.name().to_owned(), reasons: vec![reason], facts: None };
     }
+    if recipe.cells.most().is_some_and(|n| n > MAX_SMALL_CELLS as u64) {
+        recipe.method = SceneMethod::FromRegion(OcclusionMethod::LineSpace);
+        let reason = format!("more than {MAX_SMALL_CELLS} cells: each is asked about alone, as a square of all their pairs takes much memory");
+        return Choice { method: recipe.method.name().to_owned(), reasons: vec![reason], facts: None };
+    }
     let (facts, mut choice) = choose_observed(scene, progress);
     let are_given = matches!(recipe.cells, CellsFrom::Grid(_) | CellsFrom::Boxes(_));
-    let n_cells = if are_given { recipe.cells.most().unwrap_or(u64::MAX) } else { u64::MAX };
+    let n_cells = recipe.cells.most().filter(|_| are_given).unwrap_or(u64::MAX);
     let is_quick = facts.n_triangles > 0 && n_cells.saturating_mul(facts.n_triangles as u64) <= QUICK;
     if is_quick || choice.sheets && (are_given || !scene.front_occluders().is_empty()) {
         choice.use_line_space();
@@ -323,6 +329,7 @@ pub(crate) fn no_choice(input: &BakeInput<'_>) -> Choice {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{BakeRequest, Runtime};
     use sightlines_cells::SceneObject;
 
     fn object(corners: Vec<Point3>, triangles: Vec<[u32; 3]>) -> SceneObject {
@@ -402,5 +409,21 @@ mod tests {
         let room = Scene::new(vec![block([0.0; 3], [8.0, 6.0, 3.0], true)]).expect("a scene");
         let (facts, choice) = choose(&room);
         assert!(facts.loose == Some(0.0) && facts.openness.is_none() && choice.sheets, "{facts:?}");
+    }
+
+    /// Line space is used for a few given cells, whatever the walls, and alone for more than a square of bits has room for.
+    #[test]
+    fn how_many_cells_are_given_matters() {
+        let room = Scene::new(vec![block([0.0; 3], [8.0, 6.0, 3.0], false)]).expect("a scene");
+        let chosen = |cells: CellsFrom| {
+            let request = BakeRequest { cells: Some(cells), ..BakeRequest::default() };
+            let prepared = request.prepare(&room, &Runtime::default()).expect("good options");
+            (prepared.recipe().method, prepared.recipe().buffers.line_space)
+        };
+        assert_eq!(chosen(CellsFrom::Grid([2, 2, 2])), (SceneMethod::Both, true));
+        assert_eq!(chosen(CellsFrom::Grid([32, 32, 32])), (SceneMethod::Sightlines, false));
+        assert_eq!(chosen(CellsFrom::KdTree), (SceneMethod::Sightlines, false));
+        let alone = SceneMethod::FromRegion(OcclusionMethod::LineSpace);
+        assert_eq!(chosen(CellsFrom::Grid([65, 32, 32])).0, alone);
     }
 }

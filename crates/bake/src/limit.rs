@@ -24,6 +24,15 @@ pub struct LimitReport {
     pub n_object_pairs: u64,
 }
 
+/// What was not decided about one cell.
+pub(crate) struct LeftOfCell {
+    /// Other cells.
+    pub(crate) n_cells: usize,
+    pub(crate) n_objects: usize,
+    /// Whether no object is hidden. Objects that no cell sees are not drawn, or out of reach, which needs no decision.
+    pub(crate) sees_all: bool,
+}
+
 impl LimitReport {
     /// Counts what was left. `objects`: cells by objects, what is visible.
     pub(crate) fn of(left: &PairMask, objects: &BitMatrix) -> Self {
@@ -32,15 +41,21 @@ impl LimitReport {
         for cell in 0..n {
             seen_anywhere.iter_mut().zip(objects.row(cell)).for_each(|(all, word)| *all |= word);
         }
+        let of_cell = |cell: usize| LeftOfCell {
+            n_cells: left.boxes.iter_ones(cell).filter(|&other| other != cell).count(),
+            n_objects: left.objects.iter_ones(cell).count(),
+            sees_all: objects.row(cell).iter().zip(&seen_anywhere).all(|(word, all)| word == all),
+        };
+        Self::counted(n, (0..n).map(of_cell))
+    }
+
+    /// Counts what was left of each of `n` cells.
+    pub(crate) fn counted(n: usize, cells: impl Iterator<Item = LeftOfCell>) -> Self {
         let mut report = Self::default();
-        for cell in 0..n {
-            let n_cells = left.boxes.iter_ones(cell).filter(|&other| other != cell).count();
-            let n_objects = left.objects.iter_ones(cell).count();
-            // Objects that no cell sees are not drawn, or out of reach, which needs no decision.
-            let none_hidden = || objects.row(cell).iter().zip(&seen_anywhere).all(|(word, all)| word == all);
+        for LeftOfCell { n_cells, n_objects, sees_all } in cells {
             *if n_cells + n_objects == 0 {
                 &mut report.n_cells_decided
-            } else if n_cells + 1 == n && none_hidden() {
+            } else if n_cells + 1 == n && sees_all {
                 &mut report.n_cells_undecided
             } else {
                 &mut report.n_cells_in_part

@@ -148,6 +148,29 @@ pub(super) fn see_all(
     Ok(rows)
 }
 
+/// The same within an allowance, of everything: each cell has a share of it, and what those before it have left.
+pub(super) fn see_all_within(
+    scene: &Targets<'_>,
+    make: MakeMethod<'_>,
+    options: &RegionBakeOptions<'_>,
+    allowance: Allowance<'_>,
+) -> Result<Vec<CellRow>, BakeError> {
+    let n = scene.volumes.len();
+    let counter = Counter::new(options.progress, "cells", n).of(Work::Deciding);
+    let shares = Shares::new(allowance, n, threads::on(options.threads, rayon::current_num_threads));
+    let one = |method: &mut Box<dyn FromRegion + Send>, cell: usize| {
+        let row = see_from(scene, &mut **method, options, cell, None, shares.next_unit())?;
+        counter.step()?;
+        Ok((cell, row))
+    };
+    let cells: Vec<usize> = scattered(n).collect();
+    let found: Vec<(usize, CellRow)> =
+        threads::on(options.threads, || cells.into_par_iter().map_init(make, one).collect::<Result<_, BakeError>>())?;
+    let mut rows: Vec<CellRow> = vec![CellRow::default(); n];
+    found.into_iter().for_each(|(cell, row)| rows[cell] = row);
+    Ok(rows)
+}
+
 /// The predicted cost of each cell: in proportion to what some rays from it reach; the same for all if that is not needed.
 fn costs_of(scene: &Targets<'_>, is_needed: bool) -> Vec<f64> {
     let n_objects = scene.occludees.len();

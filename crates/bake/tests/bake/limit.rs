@@ -7,6 +7,7 @@ use sightlines_bake::{BakeRequest, BufferRequest, CellsFrom, LimitReport, Report
 use sightlines_cells::{Scene, SceneObject};
 use sightlines_geometry::{Aabb, Point3, Random};
 use sightlines_multifocal::{RaySampler, Split};
+use sightlines_packed::Packed;
 use sightlines_progress::Budget;
 use sightlines_pvs::{BitMatrix, Table, TableParts};
 use sightlines_scenes::{TowerOptions, tower};
@@ -27,8 +28,12 @@ pub(crate) fn building(turned: bool) -> Scene {
     Scene::new(upright.expect("a tower").objects().iter().map(object).collect()).expect("a scene")
 }
 
-fn baked(scene: &Scene, options: &BakeRequest, budget: Option<&dyn Budget>) -> (Table, Option<LimitReport>) {
-    // Small buffers and few rays: how long one cell takes does not matter here.
+/// What a bake makes within a budget.
+type Made = (Table, Option<LimitReport>);
+type Bake = fn(&Scene, &BakeRequest, Option<&dyn Budget>) -> Made;
+
+/// Small buffers and few rays: how long one cell takes does not matter here.
+fn made_small(options: &BakeRequest) -> BakeRequest {
     let mut options = options.clone();
     if options.method != Some(SceneMethod::Sightlines) {
         options.split = Some(Split { n_rays: 1024, ..Split::default() });
@@ -36,8 +41,22 @@ fn baked(scene: &Scene, options: &BakeRequest, budget: Option<&dyn Budget>) -> (
     if ![Some(SceneMethod::Sightlines), Some(SceneMethod::Auto)].contains(&options.method) {
         options.buffers = BufferRequest { planes: Some(1), texels: Some(32), ..BufferRequest::default() };
     }
+    options
+}
+
+/// A table that is written row by row.
+fn by_rows(scene: &Scene, options: &BakeRequest, budget: Option<&dyn Budget>) -> Made {
     let runtime = Runtime { budget, threads: 1, ..Runtime::default() };
-    let baked = runtime.bake(scene, &options).expect("a table");
+    let (scene, options) = (scene.clone(), made_small(options));
+    let prepared = options.prepare(&scene, &runtime).expect("good options");
+    let (bytes, report, _) = prepared.run_packed(Vec::new(), &runtime).expect("a packed table");
+    let packed = Packed::open(bytes, 1 << 20).expect("a sound table");
+    (packed.to_table().expect("a sound table"), report.limit)
+}
+
+fn baked(scene: &Scene, options: &BakeRequest, budget: Option<&dyn Budget>) -> Made {
+    let runtime = Runtime { budget, threads: 1, ..Runtime::default() };
+    let baked = runtime.bake(scene, &made_small(options)).expect("a table");
     let limit = match &baked.report {
         Report::Scene(report) => report.limit,
         Report::Regions(report) => report.limit,
@@ -93,6 +112,10 @@ fn impostor(full: &Table, zero: &Table) -> Table {
 }
 
 fn check(name: &str, scene: &Scene, options: &BakeRequest) {
+    check_made(name, scene, options, baked);
+}
+
+fn check_made(name: &str, scene: &Scene, options: &BakeRequest, baked: Bake) {
     let (full, none) = baked(scene, options, None);
     assert!(none.is_none() && full.info_value("time-limit").is_none(), "{name}");
     let (wrong, n_hits) = hidden_wrongly(scene, &full);
@@ -158,4 +181,15 @@ fn places_by_both_methods() {
     let method = SceneMethod::FromRegion(OcclusionMethod::Multifocal);
     check("places by one method", &scene, &BakeRequest { cells: cells.clone(), ..by(method) });
     check("places", &scene, &BakeRequest { cells, ..by(SceneMethod::Auto) });
+}
+
+/// Row by row, whether walls have one side or two.
+#[test]
+fn tables_row_by_row_keep_to_a_budget() {
+    let scene = building(true);
+    let cells = Some(CellsFrom::Grid([4, 3, 1]));
+    let options = BakeRequest { cells, ..by(SceneMethod::FromRegion(OcclusionMethod::LineSpace)) };
+    check_made("rows", &scene, &options, by_rows);
+    let all = (0..scene.objects().len() as u32).collect();
+    check_made("rows, one side", &scene.with_single_sided(all).expect("objects of it"), &options, by_rows);
 }

@@ -30,12 +30,16 @@ impl Clock {
     }
 
     /// Warns if something was not decided in time.
-    pub(super) fn warn(&self, path: &Path, report: &Report) {
-        let (left, cut_time) = match report {
-            Report::Scene(report) => (report.limit, report.cut_time),
-            Report::Regions(report) => (report.limit, report.cut_time),
-            _ => (None, Duration::ZERO),
-        };
+    pub(super) fn warn_of(&self, path: &Path, report: &Report) {
+        match report {
+            Report::Scene(report) => self.warn(path, report.limit, report.cut_time),
+            Report::Regions(report) => self.warn(path, report.limit, report.cut_time),
+            _ => {}
+        }
+    }
+
+    /// The same, with what was not decided, and the time that cutting cells took.
+    pub(super) fn warn(&self, path: &Path, left: Option<LimitReport>, cut_time: Duration) {
         if let (Some(limit), Some(left)) = (self.limit, left) {
             let [limit, cut] = [limit, cut_time].map(seconds);
             tracing::warn!("{}: the limit of {limit} was reached (cutting cells took {cut}): {left}", path.display());

@@ -177,9 +177,9 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
         let runtime = Runtime { units: kept.units(), ..runtime };
         let plan = announce::Plan::new(&source.content, recipe, auto.as_ref(), args.time_limit);
         if let Some(file) = args.by_rows(&source, recipe, class) {
-            let outcome = packed::write_rows(path, file, (&prepared, &runtime), plan, (out, show_progress), &kept)?;
+            let outcome = packed::write_rows(path, file, (&prepared, &runtime), plan, (out, show_progress, &clock), &kept)?;
             return Ok(Built {
-                auto: None,
+                auto,
                 outcome: Outcome::Rows(Box::new(outcome)),
                 viewers: None,
                 surroundings,
@@ -195,7 +195,7 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
         }
         let baked = bake_announced(path, &prepared, &runtime, plan, show_progress);
         let baked = baked.map_err(|error| source.failed(path, error))?;
-        clock.warn(path, &baked.report);
+        clock.warn_of(path, &baked.report);
         let (baked, stab) = stab::add(path, baked, args.stab_trees, threads, &kept, show_progress)?;
         let (baked, given_doors) = doors::add(path, baked, &args.doors);
         let baked = plans::state(baked, &reading);
@@ -272,7 +272,7 @@ impl BuildArgs {
     /// The scene, if its table is written row by row.
     fn by_rows<'s>(&self, source: &'s Source, recipe: &Recipe, class: Option<SizeClass>) -> Option<&'s SceneFile> {
         let out = (&*self.output, class);
-        packed::of_rows(source, recipe, self.time_limit.is_some(), out).filter(|_| self.is_alone())
+        packed::of_rows(source, recipe, out).filter(|_| self.is_alone())
     }
 
     /// Chooses what fits into the memory that may be used: for a packed table the layout that is written row by row, and the number of threads.

@@ -1,6 +1,7 @@
 //! A table in packed form, as `build` writes it under a name that ends in `.pvz`.
 
 use super::announce;
+use super::limit::{self, Clock};
 use super::brief::{Brief, of_cells};
 use super::source::Source;
 use crate::buffers::method_failed;
@@ -10,7 +11,7 @@ use crate::kept::Kept;
 use crate::output::{self, JsonSchema, Serialize, count};
 use crate::progress::Bar;
 use sightlines::bake::region::PackRegionsError;
-use sightlines::bake::{BakeError, Bakeable, PreparedBake, Recipe, RegionReport, Runtime, SceneMethod};
+use sightlines::bake::{BakeError, Bakeable, LimitReport, PreparedBake, Recipe, RegionReport, Runtime, SceneMethod};
 use sightlines::formats::SceneFile;
 use sightlines::packed::format::MAX_SMALL_CELLS;
 use sightlines::packed::{PackOptions, PackReport, SizeClass, pack};
@@ -36,13 +37,12 @@ pub(super) fn bytes_of(table: &Table, path: &Path, out: &Path, class: Option<Siz
 pub(super) fn of_rows<'s>(
     source: &'s Source,
     recipe: &Recipe,
-    has_budget: bool,
     (out, class): (&Path, Option<SizeClass>),
 ) -> Option<&'s SceneFile> {
     let Bakeable::Scene(file) = &source.content else { return None };
     let n = recipe.cells.most()?;
     let is_large = class.map_or(n > MAX_SMALL_CELLS as u64, |class| class == SizeClass::Large);
-    let is_by_cell = matches!(recipe.method, SceneMethod::FromRegion(_)) && !has_budget;
+    let is_by_cell = matches!(recipe.method, SceneMethod::FromRegion(_));
     (is_large && is_by_cell && is_packed(out)).then_some(file)
 }
 
@@ -52,7 +52,7 @@ pub(super) fn write_rows(
     file: &SceneFile,
     (prepared, runtime): (&PreparedBake<'_>, &Runtime<'_>),
     plan: announce::Plan,
-    (out, show_progress): (&Path, bool),
+    (out, show_progress, clock): (&Path, bool, &Clock),
     kept: &Kept<'_>,
 ) -> Result<Outcome> {
     let bar = Bar::new("visibility", show_progress);
@@ -65,6 +65,7 @@ pub(super) fn write_rows(
         PackRegionsError::Bake(BakeError::Method(source)) => method_failed(path, source),
         error => anyhow!("{}: {error}", path.display()),
     })?;
+    clock.warn(path, report.limit, report.cut_time);
     kept.before_writing()?;
     output::save(out, &bytes)?;
     Ok(Outcome::new(out, file, &report, &packed))
@@ -93,6 +94,9 @@ pub(super) struct Outcome {
     n_visible_pairs: u64,
     /// Pairs of a cell and an object that may be visible from it.
     n_objects_seen: u64,
+    /// If there was a time limit and it was reached.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    time_limit: Option<LimitReport>,
     /// Seconds for everything.
     seconds: f64,
     /// What a cell is.
@@ -113,6 +117,7 @@ impl Outcome {
             n_row_bytes: packed.row_bytes,
             n_visible_pairs: report.n_visible_pairs,
             n_objects_seen: report.n_objects_seen,
+            time_limit: report.limit,
             seconds: report.time.as_secs_f64(),
             noun: match (report.places, report.eye_level) {
                 (Some(_), _) => "place",
@@ -141,7 +146,7 @@ impl Outcome {
             cells: of_cells(self.n_cells, self.noun, 0),
             out: self.out.clone(),
             n_bytes: usize::try_from(self.n_bytes).unwrap_or(usize::MAX),
-            visible: format!("a cell sees {cells:.0} cells and {objects:.0} objects on average"),
+            visible: format!("a cell sees {cells:.0} cells and {objects:.0} objects on average") + &limit::brief(self.time_limit),
             seconds: self.seconds,
         }
     }
@@ -153,6 +158,7 @@ impl fmt::Display for Outcome {
         writeln!(f, "cells          {}", of_cells(self.n_cells, self.noun, 0))?;
         writeln!(f, "method         {}", self.method)?;
         writeln!(f, "visible        {cells:.1} cells and {objects:.1} objects from a cell on average")?;
-        writeln!(f, "wrote          {}, {} bytes, {} of them rows", self.out, self.n_bytes, self.n_row_bytes)
+        writeln!(f, "wrote          {}, {} bytes, {} of them rows", self.out, self.n_bytes, self.n_row_bytes)?;
+        self.time_limit.iter().try_for_each(|left| writeln!(f, "time limit     {left}"))
     }
 }

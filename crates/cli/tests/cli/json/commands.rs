@@ -216,6 +216,7 @@ fn scenes(all: &mut Results) {
     add("query of a view", "query parts.pvs --eye 2,1,2 --method all");
     let row_by_row = "build of a scene row by row";
     add(row_by_row, "build least.glb -o r.pvz --class large --method shafts --grid 2,1,2");
+    add(row_by_row, "build least.glb -o r.pvz --class large --method shafts --grid 2,1,2 --time-limit 0");
     add(row_by_row, "build turned.obj -o t.pvz --class large --gap 1e-5 --method shafts --grid 2,1,1");
     add("build of a scene by regions", "build triangles.obj -o r.pvs --method shafts --stab-trees=16 --certify");
     let least = read_scene(folder.path("least.glb")).expect("a scene").scene;
