@@ -71,7 +71,7 @@ pub struct PlanReport {
     pub n_visible_pairs: u64,
     /// Joints that close openings no wider than the gap of the plan.
     pub n_joints: usize,
-    /// Ends of walls that miss others by little, and yet by more than the gap: see [`Plan::n_near_misses`](sightlines_cells::Plan::n_near_misses).
+    /// Ends of walls that miss others by little, and yet by more than the gap: see [`Plan::near_misses`](sightlines_cells::Plan::near_misses).
     pub n_near_misses: usize,
     /// Walls that do not block because the k-d tree cannot follow them.
     pub n_ignored_walls: usize,

@@ -3,17 +3,19 @@
 use crate::error::{Result, bail};
 use crate::numbers::coordinates;
 use crate::region::refuse_reversed;
+use sightlines::pvs::DoorBox;
 use std::str::FromStr;
 
 /// A door that is given as a box: `NAME=X0,Y0,Z0,X1,Y1,Z1`, in the plane `NAME=X0,Y0,X1,Y1`.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct DoorBox {
-    pub(crate) name: String,
-    min: Vec<f64>,
-    max: Vec<f64>,
+pub(crate) struct DoorArg {
+    /// With z = 0 in the plane.
+    pub(crate) door: DoorBox,
+    /// Number of coordinates of a corner.
+    pub(crate) n_dimensions: usize,
 }
 
-impl FromStr for DoorBox {
+impl FromStr for DoorArg {
     type Err = anyhow::Error;
 
     /// The name is all before the last `=`.
@@ -29,19 +31,9 @@ impl FromStr for DoorBox {
         }
         let max = min.split_off(min.len() / 2);
         refuse_reversed(&min, &max)?;
-        Ok(Self { name: name.to_owned(), min, max })
-    }
-}
-
-impl DoorBox {
-    /// Number of coordinates of a corner.
-    pub(crate) fn n_dimensions(&self) -> usize {
-        self.min.len()
-    }
-
-    /// The corners, with z = 0 in the plane.
-    pub(crate) fn corners(&self) -> [[f64; 3]; 2] {
-        [&self.min, &self.max].map(|p| std::array::from_fn(|k| p.get(k).copied().unwrap_or(0.0)))
+        let lifted = |p: &[f64]| std::array::from_fn(|k| p.get(k).copied().unwrap_or(0.0));
+        let door = DoorBox { name: name.to_owned(), min: lifted(&min), max: lifted(&max) };
+        Ok(Self { door, n_dimensions: min.len() })
     }
 }
 
@@ -51,14 +43,11 @@ mod tests {
 
     #[test]
     fn doors_are_parsed() {
-        let door = |text: &str| text.parse::<DoorBox>().map_err(|error| error.to_string());
+        let door = |text: &str| text.parse::<DoorArg>().map_err(|error| error.to_string());
         let front = door("front=0,0,0,1,2.5,0").unwrap();
-        assert_eq!((front.name.as_str(), front.n_dimensions()), ("front", 3));
-        assert_eq!(front.corners(), [[0.0; 3], [1.0, 2.5, 0.0]]);
-        assert_eq!(
-            door("a=b=-1,2,3,4").map(|d| (d.name.clone(), d.corners()[0])),
-            Ok(("a=b".into(), [-1.0, 2.0, 0.0]))
-        );
+        assert_eq!((front.door.name.as_str(), front.n_dimensions), ("front", 3));
+        assert_eq!([front.door.min, front.door.max], [[0.0; 3], [1.0, 2.5, 0.0]]);
+        assert_eq!(door("a=b=-1,2,3,4").map(|d| (d.door.name, d.door.min)), Ok(("a=b".into(), [-1.0, 2.0, 0.0])));
         let refused = |text: &str, error: &str| assert!(door(text).is_err_and(|e| e.starts_with(error)), "{text}");
         for bad in ["front", "front=1,2,3", "front=1,2,3,4,5"] {
             refused(bad, "a door is a name and a box");

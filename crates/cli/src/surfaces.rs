@@ -138,6 +138,13 @@ pub(crate) struct Surfaces {
     n_single_sided_triangles: usize,
     /// Those of them that hide from their front only, as they are not of a closed object.
     n_front_occluding_triangles: usize,
+}
+
+/// The same, and what of it viewers in the cells of a table see.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+pub(crate) struct SeenSurfaces {
+    #[serde(flatten)]
+    all: Surfaces,
     /// If triangles that hide have one side: how many of them viewers in the cells of the table can see from behind.
     #[serde(skip_serializing_if = "Option::is_none")]
     backs: Option<SeenBacks>,
@@ -176,14 +183,13 @@ impl Surfaces {
             ignored_view_volumes: ignored_view_volumes.iter().take(MOST_NAMES).map(name).collect(),
             n_single_sided_triangles: *n_single_sided_triangles,
             n_front_occluding_triangles: *n_front_occluding_triangles,
-            backs: None,
         }
     }
 
     /// The same, with what viewers in the cells of a table of the scene can see from behind, unless both sides are drawn.
-    pub(crate) fn with_backs(self, table: &Table, scene: &Scene) -> Self {
+    pub(crate) fn seen(self, table: &Table, scene: &Scene) -> SeenSurfaces {
         let Backs { n_triangles, n_at_most, n_by_rays } = Backs::of(table, scene);
-        Self { backs: (n_triangles > 0).then_some(SeenBacks { n_at_most, n_by_rays }), ..self }
+        SeenSurfaces { all: self, backs: (n_triangles > 0).then_some(SeenBacks { n_at_most, n_by_rays }) }
     }
 
     /// The same in few words: how many objects are what, and how many triangles have one side.
@@ -240,13 +246,22 @@ impl fmt::Display for Surfaces {
                 f,
                 "single-sided   {triangles}; {n} hide from their fronts only, and the others, of closed objects, from both sides"
             )?;
-            if let Some(SeenBacks { n_at_most, n_by_rays }) = self.backs {
-                writeln!(
-                    f,
-                    "               from behind, viewers in cells see at most {n_at_most} of them; rays met {n_by_rays}"
-                )?;
-            }
         }
         Ok(())
+    }
+}
+
+impl SeenSurfaces {
+    /// As [`Surfaces::brief`].
+    pub(crate) fn brief(&self) -> Vec<String> {
+        self.all.brief()
+    }
+}
+
+impl fmt::Display for SeenSurfaces {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.all)?;
+        let Some(SeenBacks { n_at_most, n_by_rays }) = self.backs else { return Ok(()) };
+        writeln!(f, "               from behind, viewers in cells see at most {n_at_most} of them; rays met {n_by_rays}")
     }
 }

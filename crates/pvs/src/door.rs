@@ -2,6 +2,20 @@
 
 use crate::{DoorId, DoorRecord, Frame, PortalId, Table};
 
+/// The key under which a table states the boxes of its doors that were given as such: a line of six numbers for each, in the order of the doors.
+const BOXES: &str = "door-boxes";
+
+/// A door that is given as a box of the scene, in its units.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DoorBox {
+    /// Its name; names may repeat.
+    pub name: String,
+    /// The lower corner.
+    pub min: [f64; 3],
+    /// The upper corner; z does not count in a plane.
+    pub max: [f64; 3],
+}
+
 impl Table {
     /// The doors, by id; empty in a stripped table, and in older files.
     pub fn doors(&self) -> &[DoorRecord] {
@@ -22,6 +36,48 @@ impl Table {
         let within = portals.filter(|(_, portal)| box_covers(self.frame(), self.dimension(), min, max, &portal.points));
         within.map(|(id, _)| id).collect()
     }
+
+    /// The same table with these doors behind its own: each closes the [portals within](Self::portals_within) its box, which the table states.
+    /// O(doors × portals).
+    #[must_use]
+    pub fn with_door_boxes(self, boxes: &[DoorBox]) -> Self {
+        if boxes.is_empty() {
+            return self;
+        }
+        let own = self.door_boxes();
+        let text = own.iter().map(|(_, corners)| *corners).chain(boxes.iter().map(|door| [door.min, door.max]));
+        let text: Vec<String> = text.map(|corners| written(corners.as_flattened())).collect();
+        let record = |door: &DoorBox| DoorRecord {
+            name: door.name.clone(),
+            object: None,
+            portals: self.portals_within(door.min, door.max),
+        };
+        let doors = self.doors().iter().cloned().chain(boxes.iter().map(record)).collect();
+        let table = self.with_doors(doors).expect("the portals within a box are portals of the table, ascending");
+        table.with_info(BOXES, text.join("\n"))
+    }
+
+    /// The doors that were given as boxes, ascending, and the corners of these, low and high. None if the table does not state one for each such
+    /// door, as in older files. O(doors).
+    pub fn door_boxes(&self) -> Vec<(DoorId, [[f64; 3]; 2])> {
+        let as_boxes = (0u32..).map(DoorId).zip(self.doors()).filter(|(_, door)| door.object.is_none());
+        let ids: Vec<DoorId> = as_boxes.map(|(id, _)| id).collect();
+        let stated: Option<Vec<_>> = self.info_value(BOXES).unwrap_or_default().lines().map(corners).collect();
+        match stated {
+            Some(stated) if stated.len() == ids.len() => ids.into_iter().zip(stated).collect(),
+            _ => Vec::new(),
+        }
+    }
+}
+
+fn written(numbers: &[f64]) -> String {
+    numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(",")
+}
+
+fn corners(text: &str) -> Option<[[f64; 3]; 2]> {
+    let numbers: Vec<f64> = text.split(',').map(|x| x.parse().ok()).collect::<Option<_>>()?;
+    let [a, b, c, d, e, f] = numbers.try_into().ok()?;
+    Some([[a, b, c], [d, e, f]])
 }
 
 /// The doors of a name, ascending. O(doors).

@@ -35,7 +35,7 @@ mod table;
 pub use bits::BitMatrix;
 pub use check::{Item, TableError};
 pub use digest::GeometryDigest;
-pub use door::{box_covers, doors_named};
+pub use door::{DoorBox, box_covers, doors_named};
 pub use format::{DecodeError, DecodeErrorKind, SectionId};
 pub use frame::{Frame, FrameError};
 pub use id::{CellId, DoorId, MirrorId, ObjectId, PortalId};

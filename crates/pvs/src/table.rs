@@ -109,6 +109,14 @@ impl Table {
         Ok(self)
     }
 
+    /// The same table with another text under a key of its [free texts](Self::info).
+    pub(crate) fn with_info(mut self, key: &str, value: String) -> Self {
+        self.parts.info.retain(|(other, _)| other != key);
+        self.parts.info.push((key.to_owned(), value));
+        self.parts.info.sort();
+        self
+    }
+
     /// Whether cells can be found at points: not in a table of the clusters of a Quake map without planes.
     pub fn has_places(&self) -> bool {
         !self.parts.kind.is_quake() || self.parts.planes.is_some()

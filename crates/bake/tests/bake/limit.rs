@@ -38,7 +38,8 @@ fn made_small(options: &BakeRequest) -> BakeRequest {
     if options.method != Some(SceneMethod::Sightlines) {
         options.split = Some(Split { n_rays: 1024, ..Split::default() });
     }
-    if ![Some(SceneMethod::Sightlines), Some(SceneMethod::Auto)].contains(&options.method) {
+    let without = [SceneMethod::Sightlines, SceneMethod::Auto, SceneMethod::FromRegion(OcclusionMethod::LineSpace)];
+    if options.method.is_none_or(|method| !without.contains(&method)) {
         options.buffers = BufferRequest { planes: Some(1), texels: Some(32), ..BufferRequest::default() };
     }
     options

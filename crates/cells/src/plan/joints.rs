@@ -70,13 +70,17 @@ impl Plan {
         lines.chain(self.joints.iter().map(Joint::segment))
     }
 
-    /// How many ends of opaque lines miss others by more than the [gap](Self::gap) and yet by little, and so perhaps by mistake: at most 32 times
+    /// The ends of opaque lines that miss others by more than the [gap](Self::gap) and yet by little, and so perhaps by mistake: at most 32 times
     /// the gap and 2^-10 of the longer side of the plan, or 2^-14 of that side where this is more. For remarks only. As [`Plan::joined`].
-    pub fn n_near_misses(&self) -> usize {
+    pub fn near_misses(&self) -> Vec<Point2> {
         let side = self.longer_side();
         let near = (32.0 * self.gap).min(side / 1024.0).max(side / 16384.0);
-        let ends = |gap| if gap > 0.0 && gap >= self.least_gap() { find(self, gap).n_ends } else { 0 };
-        if near > self.gap { ends(near).saturating_sub(ends(self.gap)) } else { 0 }
+        let ends = |gap| if gap > 0.0 && gap >= self.least_gap() { find(self, gap).ends } else { Vec::new() };
+        if near <= self.gap {
+            return Vec::new();
+        }
+        let joined: BTreeSet<[u64; 2]> = ends(self.gap).into_iter().map(bits).collect();
+        ends(near).into_iter().filter(|end| !joined.contains(&bits(*end))).collect()
     }
 
     /// The ends of opaque lines, repeated as often as they occur.
@@ -89,13 +93,13 @@ impl Plan {
 struct Found {
     joints: Vec<Joint>,
     /// Ends of opaque lines with joints.
-    n_ends: usize,
+    ends: Vec<Point2>,
 }
 
 /// Joints of all ends within a gap, in the order of the ends.
 fn find(plan: &Plan, gap: f64) -> Found {
     let walls = Walls::new(plan, gap);
-    let mut found = Found { joints: Vec::new(), n_ends: 0 };
+    let mut found = Found { joints: Vec::new(), ends: Vec::new() };
     let (mut known, mut made) = (BTreeSet::new(), BTreeSet::new());
     let mut near = Vec::new();
     for end in plan.opaque_ends().filter(|end| known.insert(bits(*end))) {
@@ -106,7 +110,9 @@ fn find(plan: &Plan, gap: f64) -> Found {
                 found.joints.push(joint);
             }
         };
-        found.n_ends += usize::from(walls.join(end, &mut near, &mut add));
+        if walls.join(end, &mut near, &mut add) {
+            found.ends.push(end);
+        }
     }
     found
 }
@@ -346,9 +352,9 @@ mod tests {
     #[test]
     fn near_misses_are_counted() {
         let walls = [[0., 0., 40., 0.], [40., 0., 40., 30.], [20., 30., 20., 0.002], [30., 30., 30., 0.5]];
-        assert_eq!(plan(&walls).n_near_misses(), 1);
-        assert_eq!(plan(&walls).joined(0.01).unwrap().n_near_misses(), 0);
-        assert_eq!(plan(&walls).joined(0.001).unwrap().n_near_misses(), 1);
+        assert_eq!(plan(&walls).near_misses().len(), 1);
+        assert_eq!(plan(&walls).joined(0.01).unwrap().near_misses().len(), 0);
+        assert_eq!(plan(&walls).joined(0.001).unwrap().near_misses().len(), 1);
         let error = plan(&walls).joined(1e-300).unwrap_err().to_string();
         assert!(error.starts_with("a gap of 1e-300 is neither 0 nor at least 1.14e-12, "), "{error}");
         assert!(plan(&walls).joined(f64::NAN).is_err() && plan(&walls).joined(-1.0).is_err());

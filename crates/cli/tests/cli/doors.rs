@@ -111,10 +111,7 @@ fn doors_are_given_as_boxes() {
     let (open, shut) = (seen(&folder, "level.pvs", &[]), seen(&folder, "level.pvs", &["first room"]));
     assert!(shut.as_array().map(Vec::len) < open.as_array().map(Vec::len), "{shut}");
     let found = folder.run(&["verify", "level.pvs", "level.glb", "--rays", "2000"]).expect(0).out;
-    assert!(
-        found.contains("1 door\n") && found.contains("remark         1 door that the scene does not have"),
-        "{found}"
-    );
+    assert!(found.contains("1 door\n") && !found.contains("remark"), "{found}");
 
     let run = build("crack=1.5,0,3.75,1.6,2,4").expect(0);
     assert!(run.err.contains("the door \"crack\" closes nothing: no portal is wholly within its box"), "{}", run.err);

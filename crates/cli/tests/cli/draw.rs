@@ -258,3 +258,31 @@ fn options_of_a_view_need_an_eye() {
     assert!(refused(&["--eye", "3,3", "--dir", "0,0"]).starts_with("--dir: "));
     assert!(!folder.path("out.svg").exists());
 }
+
+/// Where ends of walls were joined, and where they nearly meet others; of the same plan without a gap, and of none.
+#[test]
+fn joints_of_a_plan_are_drawn() {
+    let folder = Folder::new();
+    let wall = |ends: [[f64; 2]; 2]| {
+        json!({"type": "Feature", "properties": {}, "geometry": {"type": "LineString", "coordinates": ends}})
+    };
+    let room = [[0.0, 0.0], [10.0, 0.0], [10.0, 6.0], [0.0, 6.0], [0.0, 0.0]];
+    let mut lines: Vec<Value> = room.windows(2).map(|ends| wall([ends[0], ends[1]])).collect();
+    lines.extend([wall([[4.0, 0.001], [4.0, 2.0]]), wall([[7.0, 5.995], [7.0, 4.0]])]);
+    folder.write("plan.geojson", json!({"type": "FeatureCollection", "features": lines}).to_string());
+    let rings = |gap: &str| {
+        let run = folder.run(&["build", "plan.geojson", "--gap", gap, "-o", "plan.pvs"]).expect(0);
+        folder.run(&["draw", "plan.pvs", "--joints", "plan.geojson", "-o", "plan.svg"]).expect(0);
+        let svg = String::from_utf8(folder.read("plan.svg")).expect("text");
+        let is_said = run.err.contains("`draw --joints` shows where they are");
+        (svg.matches("<circle").count(), ["are joined", "nearly meet"].map(|words| svg.contains(words)), is_said)
+    };
+    // A ring is two circles, and the legend has a dot for each kind.
+    assert_eq!(rings("0.002"), (6, [true, true], true));
+    assert_eq!(rings("0.006"), (5, [true, false], false));
+    folder.run(&["draw", "plan.pvs", "-o", "plain.svg"]).expect(0);
+    assert!(!String::from_utf8(folder.read("plain.svg")).expect("text").contains("<circle"));
+    let tower = Folder::with_tower();
+    let error = tower.refused(&["draw", "tower.pvs", "--joints", "tower.glb", "-o", "out.svg"]);
+    assert!(error.contains("--joints"), "{error}");
+}

@@ -25,6 +25,8 @@ pub(super) struct Annotations<'a> {
     pub(super) eye: Option<Point2>,
     /// Where they look, and the angle of view in radians.
     pub(super) looks: Option<(Point2, f64)>,
+    /// Where walls were joined, and where they nearly meet.
+    pub(super) rings: [&'a [Point2]; 2],
 }
 
 /// What is drawn besides the cells and what is seen.
@@ -73,6 +75,10 @@ fn colour_of(kind: Kind) -> &'static str {
         Kind::SeeThrough => theme::SEE_THROUGH,
     }
 }
+
+/// The rings of [`Annotations::rings`].
+const RINGS: [(&str, &str); 2] =
+    [(theme::PORTAL, "ends of walls that are joined"), (theme::SIGHTLINE, "ends of walls that nearly meet others")];
 
 /// Which cells are meant.
 type Keep<'a> = &'a dyn Fn(CellId) -> bool;
@@ -144,6 +150,11 @@ impl Picture<'_> {
             entries.push(line(theme::SIGHTLINE, self.strokes.line, "a line of sight"));
         } else if !annotations.portals.is_empty() {
             entries.push(line(theme::SIGHTLINE, self.strokes.wall, "portals of a blocked way"));
+        }
+        for ((colour, label), places) in RINGS.into_iter().zip(annotations.rings) {
+            if !places.is_empty() {
+                entries.push(Entry { swatch: Swatch::Dot(colour), label });
+            }
         }
         if annotations.eye.is_some() {
             entries.push(Entry { swatch: Swatch::Dot(theme::SIGHTLINE), label: "the viewer" });
@@ -264,7 +275,7 @@ impl Picture<'_> {
         }
     }
 
-    /// Rings around cells too thin to be seen, marked doors, the line of sight, the eye.
+    /// Rings around cells too thin to be seen, marked doors, the line of sight, joints of walls, the eye.
     fn annotations(&self, out: &mut String, annotations: &Annotations<'_>) {
         for cell in &self.figure.cells {
             if annotations.target == Some(cell.id) {
@@ -291,6 +302,9 @@ impl Picture<'_> {
         }
         if let (Some(eye), Some((direction, angle))) = (annotations.eye, annotations.looks) {
             self.view(out, eye, direction, angle);
+        }
+        for ((colour, _), places) in RINGS.into_iter().zip(annotations.rings) {
+            places.iter().for_each(|&p| self.ring(out, self.frame.place(p), colour));
         }
         for point in annotations.line.into_iter().flatten().chain(annotations.eye) {
             svg::dot(out, self.frame.place(point), self.strokes.mark, theme::SIGHTLINE);
@@ -322,7 +336,13 @@ impl Picture<'_> {
         if (x1 - x0).min(y1 - y0) > 2.0 * least {
             return;
         }
-        let [x, y, r] = [0.5 * (x0 + x1), 0.5 * (y0 + y1), 4.0 * self.strokes.mark].map(Px);
+        self.ring(out, [0.5 * (x0 + x1), 0.5 * (y0 + y1)], colour);
+    }
+
+    /// A ring around a place of the picture.
+    fn ring(&self, out: &mut String, [x, y]: [f64; 2], colour: &str) {
+        let least = self.strokes.wall.max(self.strokes.mark);
+        let [x, y, r] = [x, y, 4.0 * self.strokes.mark].map(Px);
         for (colour, width) in [(theme::PAPER, 2.0 * least), (colour, least)] {
             let _ = writeln!(
                 out,

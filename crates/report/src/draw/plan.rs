@@ -20,6 +20,10 @@ pub struct DrawOptions<'a> {
     pub line: Option<[Point2; 2]>,
     /// Indices of portals to mark, such as those that the line passes.
     pub marked_portals: Vec<usize>,
+    /// Places where walls were joined.
+    pub joints: &'a [Point2],
+    /// Places where walls nearly meet, and were not joined.
+    pub near_misses: &'a [Point2],
     /// Whether objects are drawn.
     pub objects: bool,
     /// Whether a legend and a scale bar stand below, if there is room for words.
@@ -40,6 +44,8 @@ impl Default for DrawOptions<'_> {
             target: None,
             line: None,
             marked_portals: Vec::new(),
+            joints: &[],
+            near_misses: &[],
             objects: true,
             legend: true,
             group_colours: true,
@@ -81,6 +87,7 @@ pub fn plan_drawing(table: &Table, options: &DrawOptions<'_>) -> Result<Drawing,
         line: options.line,
         eye,
         looks: sight.and_then(|sight| sight.looks),
+        rings: [options.joints, options.near_misses],
     };
     let title = match options.view {
         PictureSubject::Plan => "Cells and portals".to_owned(),
@@ -105,6 +112,7 @@ fn check(table: &Table, options: &DrawOptions<'_>) -> Result<(), DrawError> {
     check_sight(table, options.sight.as_ref())?;
     let eye = if let PictureSubject::Eye(eye) = options.view { Some(eye) } else { None };
     let direction = options.sight.and_then(|sight| sight.looks).map(|(direction, _)| direction);
-    let finite = options.line.into_iter().flatten().chain(eye).chain(direction).all(Point2::is_finite);
+    let rings = options.joints.iter().chain(options.near_misses).copied();
+    let finite = options.line.into_iter().flatten().chain(eye).chain(direction).chain(rings).all(Point2::is_finite);
     if finite { Ok(()) } else { Err(DrawError::NotFinite) }
 }

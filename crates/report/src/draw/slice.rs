@@ -93,6 +93,7 @@ pub fn slice_drawing(table: &Table, options: &SliceOptions<'_>) -> Result<Drawin
         eye: eye.map(on_floor),
         line: line.map(|ends| ends.map(on_floor)),
         looks: looks.map(|(direction, angle)| (on_floor(direction), angle)),
+        rings: [&[]; 2],
     };
     let title = format!("{} at height {}", title(view, seen.as_ref()), svg::short(height));
     let look = Look { objects: false, group_colours: true, legend };

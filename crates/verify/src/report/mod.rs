@@ -301,7 +301,7 @@ impl fmt::Display for VerifyReport {
             (
                 self.remarks.doors_as_boxes,
                 "door",
-                "that the scene does not have: what was given as a box is not compared",
+                "that was given as a box which the table does not state: not compared",
             ),
             (self.remarks.unlisted_door_portals, "portal", "that a door could close and does not: more is shown there"),
             (self.remarks.flattened, "triangle", "thinner than the gap, which the table takes to be none"),

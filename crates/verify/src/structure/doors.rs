@@ -1,7 +1,8 @@
 //! Doors: a portal that a door closes has to be covered by the door's leaf, or what is behind would be hidden when it is shut.
 //!
 //! A leaf covers a portal if triangles of the door lie in the plane of the portal and cover all of it, exactly, as they cover
-//! [walls](crate::walls). Of a door that was given as a box the scene has no leaf: it is counted, and not compared.
+//! [walls](crate::walls). Of a door that was given as a box the scene has no leaf: that box has to contain the portal. Where the table does not state
+//! the box, such doors are counted.
 
 use crate::findings::{Findings, Violation};
 use crate::walls::uncovered;
@@ -9,14 +10,24 @@ use sightlines_cells::{Scene, SceneObject};
 use sightlines_geometry::{Aabb, Point2, orient2d};
 use sightlines_pvs::{DoorId, PortalId, PortalRecord, Table};
 
+/// Compares the doors that were given as boxes with these. O(doors × portals) comparisons of corners.
+pub(super) fn as_boxes(table: &Table, findings: &mut Findings) {
+    let boxes = table.door_boxes();
+    let n_unknown = table.doors().iter().filter(|door| door.object.is_none()).count() - boxes.len();
+    findings.remarks.doors_as_boxes = n_unknown as u64;
+    for (door, [min, max]) in boxes {
+        let (closed, within) = (&table.doors()[door.idx()].portals, table.portals_within(min, max));
+        let open = closed.iter().filter(|portal| within.binary_search(portal).is_err());
+        open.for_each(|&portal| findings.add(Violation::OpenDoor { door, portal }));
+        let unlisted = within.iter().filter(|portal| closed.binary_search(portal).is_err());
+        findings.remarks.unlisted_door_portals += unlisted.count() as u64;
+    }
+}
+
 /// Compares the doors of a table with those of a scene. O(doors × portals) comparisons of boxes.
 pub(super) fn of_scene(table: &Table, scene: &Scene, findings: &mut Findings) {
-    findings.n_doors = table.doors().len();
     for (door, record) in (0u32..).map(DoorId).zip(table.doors()) {
-        let Some(object) = record.object else {
-            findings.remarks.doors_as_boxes += 1;
-            continue;
-        };
+        let Some(object) = record.object else { continue };
         // A table of another scene may have objects that this one has not; that is found where they are counted.
         let Some(leaf) = scene.objects().get(object.idx()).filter(|_| scene.doors().contains(&object.0)) else {
             findings.add(Violation::NoDoor { door });
@@ -36,12 +47,6 @@ pub(super) fn of_scene(table: &Table, scene: &Scene, findings: &mut Findings) {
             }
         }
     }
-}
-
-/// For tables of something else than a scene in space: no door of theirs is compared.
-pub(super) fn of_others(table: &Table, findings: &mut Findings) {
-    findings.n_doors = table.doors().len();
-    findings.remarks.doors_as_boxes = table.doors().len() as u64;
 }
 
 /// Whether triangles of a leaf in the plane of a portal cover all of it.

@@ -18,6 +18,7 @@ pub(crate) fn check(table: &Table, truth: &Truth<'_>) -> Findings {
         n_cells: table.n_cells(),
         n_portals: table.portals().len(),
         n_objects: table.objects().len(),
+        n_doors: table.doors().len(),
         ..Findings::default()
     };
     neighbours(table, &mut findings);
@@ -26,7 +27,6 @@ pub(crate) fn check(table: &Table, truth: &Truth<'_>) -> Findings {
             planar::check(table, plan, &mut findings);
             objects::of_plan(table, plan, &mut findings);
             mirrors::of_plan(table, plan, &mut findings);
-            doors::of_others(table, &mut findings);
         }
         Truth::Scene(scene) => {
             spatial::check(table, &mut findings);
@@ -36,15 +36,18 @@ pub(crate) fn check(table: &Table, truth: &Truth<'_>) -> Findings {
         }
         Truth::Portals(graph) => {
             world::portals(table, graph, &mut findings);
-            doors::of_others(table, &mut findings);
         }
         Truth::World(graph, tree) => {
             world::portals(table, graph, &mut findings);
             world::faces(table, tree, &mut findings);
-            doors::of_others(table, &mut findings);
         }
     }
     findings
+}
+
+/// Compares the doors of a table, along its frame if it has one, with the boxes that it states for them.
+pub(crate) fn door_boxes(table: &Table, findings: &mut Findings) {
+    doors::as_boxes(table, findings);
 }
 
 /// What has changed since the table was made, by its digests; nothing if it has none.

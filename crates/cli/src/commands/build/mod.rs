@@ -22,7 +22,7 @@ mod worth;
 pub(crate) use source::bake_visibly;
 
 use crate::command::{Done, JsonArg, Verbosity};
-use crate::doors::DoorBox;
+use crate::doors::DoorArg;
 use crate::error::{Result, anyhow, bail};
 use crate::input::{self, refuse};
 use crate::kept::{self, Keeping, Kept, ResumeArgs};
@@ -32,7 +32,7 @@ use crate::numbers::duration;
 use crate::output::{self, JsonSchema, Serialize};
 use crate::plans::{self, PlanArgs};
 use crate::progress::Bar;
-use crate::surfaces::{SurfaceArgs, Surfaces};
+use crate::surfaces::{SeenSurfaces, SurfaceArgs, Surfaces};
 use crate::tables::size_class;
 use crate::up::UpArgs;
 use options::BakeArgs;
@@ -78,7 +78,7 @@ pub(crate) struct BuildArgs {
     /// wholly within the box; `export` lists the corners of all portals. In a plan NAME=X0,Y0,X1,Y1. Names may repeat; scenes may have doors of
     /// their own
     #[arg(long = "door", help_heading = "Input", value_name = "NAME=X0,Y0,Z0,X1,Y1,Z1", allow_hyphen_values = true)]
-    doors: Vec<DoorBox>,
+    doors: Vec<DoorArg>,
     #[command(flatten)]
     pub(crate) memory: MemoryArgs,
     #[command(flatten)]
@@ -207,7 +207,7 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
         let outcome = Outcome::new(out, &source, recipe, &baked, bytes.len(), verbose);
         let surfaces = match (&source.content, prepared.input()) {
             (Bakeable::Scene(file), BakeInput::Scene(scene, _)) => {
-                Some(Surfaces::new(file).with_backs(&baked.table, scene))
+                Some(Surfaces::new(file).seen(&baked.table, scene))
             }
             _ => None,
         };
@@ -386,7 +386,7 @@ pub(crate) struct Built {
     placed: framed::Placed,
     /// Of a scene in space.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
-    surfaces: Option<Surfaces>,
+    surfaces: Option<SeenSurfaces>,
     /// With `--door`: the doors that were given as boxes.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     given_doors: Vec<doors::GivenDoor>,

@@ -22,7 +22,7 @@ pub(super) fn warn(path: &Path, report: &PlanReport) {
     say(
         report.n_near_misses,
         "end",
-        "of walls miss others by little: if they were meant to meet, --gap WIDTH joins those within WIDTH",
+        "of walls miss others by little: if they were meant to meet, --gap WIDTH joins those within WIDTH; `draw --joints` shows where they are",
     );
     if report.n_rounded_crossings > 0 {
         let n = count(report.n_rounded_crossings as u64, "crossing");

@@ -2,6 +2,7 @@
 
 pub(crate) mod space;
 
+mod joints;
 mod scene;
 mod viewer;
 use crate::command::{Answer, Done, Verbosity};
@@ -15,6 +16,7 @@ use sightlines::geometry::{Point2, check_coordinate};
 use sightlines::pvs::Table;
 use sightlines::report::{DrawError, DrawOptions, Drawing, MAX_SIZE, MIN_SIZE, PictureSubject, Surfaces, plan_drawing};
 use std::path::{Path, PathBuf};
+use joints::Rings;
 use std::sync::Arc;
 use viewer::{Shown, Viewer};
 
@@ -33,6 +35,14 @@ pub(crate) struct DrawArgs {
          cells tell of]"
     ))]
     scene: Option<PathBuf>,
+    #[arg(long, help_heading = "Picture", value_name = "PLAN", help = crate::input::with_formats(
+        "Plans: what the table was built from, a {plans} or a WAD. Rings show where ends of walls are joined, as they miss others by no more than \
+         the gap of the table, and where they miss them by little more"
+    ))]
+    joints: Option<PathBuf>,
+    /// With --joints and a WAD of several maps: the map
+    #[arg(long, help_heading = "Picture", value_name = "NAME", requires = "joints")]
+    map: Option<String>,
     /// Show what is visible from this cell
     #[arg(long, help_heading = "Viewer", value_name = "N", conflicts_with = "eye")]
     cell: Option<u32>,
@@ -68,7 +78,7 @@ fn height(text: &str) -> Result<f64, String> {
 
 pub(crate) fn run(args: &DrawArgs, _: Verbosity) -> Result<Done> {
     PictureKind::of(&args.output)?;
-    let inputs: Vec<&Path> = std::iter::once(&args.table).chain(&args.scene).map(PathBuf::as_path).collect();
+    let inputs: Vec<&Path> = std::iter::once(&args.table).chain(&args.scene).chain(&args.joints).map(PathBuf::as_path).collect();
     output::check(&inputs, &[&args.output])?;
     viewer::refuse_without_eye(args)?;
     let table = Arc::new(input::table(&args.table)?);
@@ -83,7 +93,11 @@ pub(crate) fn run(args: &DrawArgs, _: Verbosity) -> Result<Done> {
             ("--scene", args.scene.is_some()),
         ];
         refuse(&args.table, &given, "scenes in space", "the table of a plan")?;
+    } else {
+        refuse(&args.table, &[("--joints", args.joints.is_some())], "plans", "the table of a scene in space")?;
     }
+    let rings = args.joints.as_deref().map(|path| joints::of(path, args.map.as_deref(), &table)).transpose()?;
+    let rings = &rings.unwrap_or_default();
     let viewer = match &args.eye {
         Some(eye) => {
             let viewer = Viewer::new(args, eye, &table)?;
@@ -98,12 +112,12 @@ pub(crate) fn run(args: &DrawArgs, _: Verbosity) -> Result<Done> {
     let surfaces = args.scene.as_deref().map(|path| scene::surfaces(path, &table)).transpose()?;
     let surfaces = surfaces.as_ref();
     let svg = match viewer {
-        None => picture(args, &table, None, surfaces, !args.no_legend)?.to_svg(),
+        None => picture(args, &table, None, (surfaces, rings), !args.no_legend)?.to_svg(),
         Some(mut viewer) => {
             let (methods, has_panels) = (viewer.methods(), viewer.has_panels());
             let mut drawn = methods.into_iter().map(|method| {
                 let (legend, shown) = (!args.no_legend && !has_panels, viewer.shown(method));
-                let drawing = picture(args, &table, Some(&shown), surfaces, legend)?;
+                let drawing = picture(args, &table, Some(&shown), (surfaces, rings), legend)?;
                 Ok((format!("{}: {}", method.name(), shown.counts()), drawing))
             });
             if has_panels {
@@ -123,23 +137,29 @@ fn picture(
     args: &DrawArgs,
     table: &Table,
     shown: Option<&Shown<'_>>,
-    surfaces: Option<&Surfaces>,
+    (surfaces, rings): (Option<&Surfaces>, &Rings),
     legend: bool,
 ) -> Result<Drawing> {
     match table.dimension() {
-        2 => plan(args, table, shown, legend),
+        2 => plan(args, table, shown, rings, legend),
         _ => space::draw(args, table, shown, surfaces, legend),
     }
 }
 
-fn plan(args: &DrawArgs, table: &Table, shown: Option<&Shown<'_>>, legend: bool) -> Result<Drawing> {
+fn plan(
+    args: &DrawArgs,
+    table: &Table,
+    shown: Option<&Shown<'_>>,
+    Rings { joints, near_misses }: &Rings,
+    legend: bool,
+) -> Result<Drawing> {
     let view = match (args.cell, &args.eye) {
         (Some(id), _) => PictureSubject::Cell(place::cell(id, table, &args.table)?),
         (None, Some(eye)) => PictureSubject::Eye(eye.planar(table, &args.table)?),
         (None, None) => PictureSubject::Plan,
     };
     let sight = shown.map(|shown| shown.sight(|[x, y, _]| Point2::new(x, y)));
-    let options = DrawOptions { view, sight, size: args.size, legend, ..DrawOptions::default() };
+    let options = DrawOptions { view, sight, joints, near_misses, size: args.size, legend, ..DrawOptions::default() };
     plan_drawing(table, &options).map_err(failed(&args.table))
 }
 

@@ -4,8 +4,8 @@ use crate::tables::common::{Real, changed, check, quick};
 use sightlines_bake::{SceneBakeOptions, bake_scene};
 use sightlines_cells::{Scene, SceneObject};
 use sightlines_frame::Moved;
-use sightlines_geometry::{Point3, Random};
-use sightlines_pvs::{DoorRecord, Frame, ObjectId, ObjectSource, PortalId, Table, TableParts};
+use sightlines_geometry::{Aabb, Point3, Random};
+use sightlines_pvs::{DoorBox, DoorRecord, Frame, ObjectId, ObjectSource, PortalId, PortalRecord, Table, TableParts};
 use sightlines_verify::VerifyOptions;
 
 /// How often each kind of damage is done.
@@ -182,5 +182,44 @@ fn doors_that_close_less_are_counted() {
         });
         let found = check(&given, &real, &options());
         assert_eq!((found.n_violations, found.remarks.doors_as_boxes, found.n_doors), (0, 1, 5), "{name}");
+    }
+}
+
+/// Doors that were given as boxes close what these contain: a portal more is a violation, one less is counted.
+#[test]
+fn doors_that_are_boxes_are_compared_with_these() {
+    for (name, table, scene) in cases() {
+        let real = Real::Scene(scene);
+        let frame = table.frame().copied();
+        let wider = frame.map_or(0.0, |frame| 2.0 * frame.gap());
+        let around = |portal: &PortalRecord| {
+            let in_scene = portal.points.iter().map(|&p| frame.map_or(p, |frame| frame.to_scene(p)));
+            let b = Aabb::<3>::around(in_scene);
+            DoorBox { name: "gate".to_owned(), min: b.min.map(|x| x - wider), max: b.max.map(|x| x + wider) }
+        };
+        let boxes: Vec<DoorBox> = table.portals().iter().take(3).map(around).collect();
+        let (n, one) = (table.doors().len(), &boxes[..1]);
+        let given = table.clone().with_door_boxes(one).with_door_boxes(&boxes);
+        assert_eq!(given.door_boxes().len(), 4, "{name}");
+        assert!(given.doors()[n..].iter().all(|door| !door.portals.is_empty()), "{name}");
+        let found = |table: &Table| {
+            let found = check(table, &real, &options());
+            (found.n_violations, found.remarks.doors_as_boxes, found.remarks.unlisted_door_portals)
+        };
+        assert_eq!(found(&given), (0, 0, 0), "{name}");
+        let closed = &given.doors()[n].portals;
+        let other = (0..).map(PortalId).find(|portal| !closed.contains(portal)).expect("more portals than one");
+        let more = changed(&given, |parts| assert!(insert(&mut parts.doors[n], other)));
+        assert_eq!(found(&more), (1, 0, 0), "{name}");
+        let less = changed(&given, |parts| parts.doors[n].portals.clear());
+        assert_eq!(found(&less), (0, 0, closed.len() as u64), "{name}");
+        // Boxes that are not stated for each door are those of none.
+        for text in ["", "0,0,0,1,1,1", "0,0,0,1,1,1\n1\n2\n3", "0,0,0,1,1,x\n\n\n"] {
+            let unstated = changed(&given, |parts| {
+                let (_, value) = parts.info.iter_mut().find(|(key, _)| key == "door-boxes").expect("stated");
+                *value = text.to_owned();
+            });
+            assert_eq!(found(&unstated), (0, 4, 0), "{name}");
+        }
     }
 }
