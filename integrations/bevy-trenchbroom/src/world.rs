@@ -74,5 +74,5 @@ fn source(face: u32, corners: &[Vec3]) -> PvsSource {
     if corners.is_empty() {
         (min, max) = ([0.0; 3], [0.0; 3]);
     }
-    PvsSource { node: face, primitive: 0, name: format!("face {face}"), min, max }
+    PvsSource { node: face, name: format!("face {face}"), min, max, ..PvsSource::default() }
 }

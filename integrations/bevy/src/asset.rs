@@ -178,6 +178,16 @@ impl PvsTable {
         }
     }
 
+    /// Whether the table was made for engines that draw the backs of single-sided faces (`--backs drawn`): then such faces hide from both sides.
+    pub(crate) fn takes_backs_to_be_drawn(&self) -> bool {
+        let info = match &self.form {
+            Form::Plain(table) => table.info(),
+            #[cfg(feature = "packed")]
+            Form::Packed { cells, .. } => cells.packed().info(),
+        };
+        info.iter().any(|(key, value)| key == "backs" && value == "drawn")
+    }
+
     /// All objects, by id. For a packed table this reads them all.
     ///
     /// # Errors

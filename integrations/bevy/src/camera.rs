@@ -188,6 +188,9 @@ pub enum PvsProblemKind {
     NoPerspective,
     /// A part of a packed table could not be read.
     Read(String),
+    /// It was made for engines that draw the backs of single-sided faces (`build --backs drawn`), and the level has materials with one side, of
+    /// which Bevy draws no backs: what is seen through them may be missing.
+    BacksDrawn,
 }
 
 impl fmt::Display for PvsProblemKind {
@@ -196,6 +199,10 @@ impl fmt::Display for PvsProblemKind {
             Self::NotLoaded => f.write_str("it could not be loaded; everything is drawn"),
             Self::NoLevel(misfit) => write!(f, "it was not made of this level: {misfit}; everything is drawn"),
             Self::NoPerspective => f.write_str("the camera has no perspective; everything is drawn"),
+            Self::BacksDrawn => f.write_str(
+                "it was made for engines that draw the backs of single-sided faces, and the level has such faces: where the game does not set \
+                 their `cull_mode` to None, what is seen through their backs may be missing; build it without --backs drawn",
+            ),
             Self::Read(error) => write!(f, "{error}; more is drawn than has to be"),
         }
     }

@@ -109,7 +109,7 @@ pub(crate) fn cull(
         };
         find_level(walk, table, pvs, &scenes, &parents);
         let found = walk.tie.as_ref().and_then(|(scene, _)| scenes.get(*scene).ok());
-        let Some((scene, _, scene_place)) = found else {
+        let Some((scene, level, scene_place)) = found else {
             view.state = PvsState::NoLevel;
             let largest = walk.misfits.values().max_by_key(|(n, _)| *n);
             if let (true, Some((_, misfit))) = (walk.frames_without > PATIENCE, largest) {
@@ -120,6 +120,9 @@ pub(crate) fn cull(
             continue;
         };
         view.level = Some(scene);
+        if !walk.has_warned && table.takes_backs_to_be_drawn() && level.sources.iter().any(|mesh| mesh.is_single_sided) {
+            warn(walk, PvsProblemKind::BacksDrawn);
+        }
         let eye =
             if is_locked && walk.view.is_some() { walk.view.clone() } else { eye(place, projection, scene_place) };
         let (Some(eye), Some(to_scene)) = (eye, Affine::of(scene_place.affine()).inverse()) else {

@@ -23,6 +23,8 @@ pub struct PvsSource {
     pub min: [f64; 3],
     /// Upper corner of that box.
     pub max: [f64; 3],
+    /// Whether its material has one side in the file: then Bevy draws no backs of it, unless the game changes the material.
+    pub is_single_sided: bool,
 }
 
 /// On the root of every scene that was loaded from a glTF file: its meshes in the order of the file, parents before children. Added by the
@@ -69,8 +71,8 @@ pub(crate) struct Rest {
 pub(crate) struct Notes {
     /// Of the scene that is being loaded: for each entity of a node its index and given name.
     nodes: HashMap<Entity, (u32, Option<String>)>,
-    /// For each entity of a mesh its primitive.
-    meshes: HashMap<Entity, u32>,
+    /// For each entity of a mesh its primitive, and whether its material has one side.
+    meshes: HashMap<Entity, (u32, bool)>,
 }
 
 impl GltfExtensionHandler for Notes {
@@ -83,11 +85,11 @@ impl GltfExtensionHandler for Notes {
         _: &mut LoadContext<'_>,
         primitive: &::gltf::Primitive<'_>,
         _: &::gltf::Mesh<'_>,
-        _: &::gltf::Material<'_>,
+        material: &::gltf::Material<'_>,
         entity: &mut EntityWorldMut<'_>,
         _: &str,
     ) {
-        self.meshes.insert(entity.id(), primitive.index() as u32);
+        self.meshes.insert(entity.id(), (primitive.index() as u32, !material.double_sided()));
     }
 
     fn on_gltf_node(&mut self, _: &mut LoadContext<'_>, node: &::gltf::Node<'_>, entity: &mut EntityWorldMut<'_>) {
@@ -128,7 +130,11 @@ impl Notes {
         above: Affine,
         sources: &mut Vec<PvsSource>,
     ) {
-        let (Some(&primitive), Some((node, name))) = (self.meshes.get(&child), self.nodes.get(&node)) else { return };
+        let (Some(&(primitive, is_single_sided)), Some((node, name))) =
+            (self.meshes.get(&child), self.nodes.get(&node))
+        else {
+            return;
+        };
         let local = world.get::<Transform>(child).copied().unwrap_or_default();
         let bounds = world.get::<Aabb>(child).copied().unwrap_or_default();
         let (min, max) = corners_of(&bounds);
@@ -137,7 +143,7 @@ impl Notes {
         let name = if primitive == 0 { name } else { format!("{name}#{primitive}") };
         let object =
             PvsObject { source: sources.len() as u32, bounds: [bounds.center.into(), bounds.half_extents.into()] };
-        sources.push(PvsSource { node: *node, primitive, name, min, max });
+        sources.push(PvsSource { node: *node, primitive, name, min, max, is_single_sided });
         let mut child = world.entity_mut(child);
         // Their vertices leave the box.
         if !child.contains::<SkinnedMesh>() && !child.contains::<MeshMorphWeights>() {

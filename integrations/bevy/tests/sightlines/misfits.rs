@@ -122,6 +122,37 @@ fn with_a_table_of_another_level_everything_is_drawn_and_one_warning_is_given() 
     assert!(matches!(&kinds[3], PvsMisfit::Missing { object: 7, .. }), "{:?}", kinds[3]);
 }
 
+/// A table for engines that draw backs does not fit a level with single-sided materials, of which Bevy draws none.
+#[test]
+fn tables_for_engines_that_draw_backs_are_warned_of() {
+    for (backs, is_single_sided, expected) in [
+        (Some("drawn"), true, &[PvsProblemKind::BacksDrawn][..]),
+        (Some("drawn"), false, &[]),
+        (Some("culled"), true, &[]),
+        (None, true, &[]),
+    ] {
+        let mut app = app();
+        collect_problems(&mut app);
+        let mut parts = table("tower.pvs").into_parts();
+        parts.info.extend(backs.map(|backs| ("backs".to_owned(), backs.to_owned())));
+        parts.info.sort();
+        let handle = add_table(&mut app, Table::new(parts).expect("information is free"));
+        spawn_level(&mut app, "tower.glb", Transform::IDENTITY);
+        until_level(&mut app, table("tower.pvs").objects().len());
+        let mut scenes = app.world_mut().query::<&mut PvsScene>();
+        for mut scene in scenes.iter_mut(app.world_mut()) {
+            scene.sources.iter_mut().for_each(|mesh| mesh.is_single_sided = is_single_sided);
+        }
+        let cut = spawn_camera(&mut app, Some(PvsCamera::new(handle).without_thread()));
+        look(&mut app, &[cut], here());
+        for _ in 0..3 {
+            app.update();
+        }
+        assert_eq!(problems(&app), expected, "{backs:?}");
+        assert_eq!(view(&app, cut).state, PvsState::Inside);
+    }
+}
+
 #[test]
 fn a_table_is_loaded_again_while_the_camera_is_there() {
     let (mut app, cut, whole) = two(fits);
