@@ -120,7 +120,8 @@ pub(crate) fn cull(
             continue;
         };
         view.level = Some(scene);
-        if !walk.has_warned && table.takes_backs_to_be_drawn() && level.sources.iter().any(|mesh| mesh.is_single_sided) {
+        if !walk.has_warned && table.takes_backs_to_be_drawn() && level.sources.iter().any(|mesh| mesh.is_single_sided)
+        {
             warn(walk, PvsProblemKind::BacksDrawn);
         }
         let eye =
