@@ -296,7 +296,9 @@ pub(crate) fn choose_for(scene: &Scene, recipe: &mut Recipe, progress: Option<&d
     }
     if recipe.cells.most().is_some_and(|n| n > MAX_SMALL_CELLS as u64) {
         recipe.method = SceneMethod::FromRegion(OcclusionMethod::LineSpace);
-        let reason = format!("more than {MAX_SMALL_CELLS} cells: each is asked about alone, as a square of all their pairs takes much memory");
+        let reason = format!(
+            "more than {MAX_SMALL_CELLS} cells: each is asked about alone, as a square of all their pairs takes much memory"
+        );
         return Choice { method: recipe.method.name().to_owned(), reasons: vec![reason], facts: None };
     }
     let (facts, mut choice) = choose_observed(scene, progress);

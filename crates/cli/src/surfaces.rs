@@ -262,6 +262,9 @@ impl fmt::Display for SeenSurfaces {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.all)?;
         let Some(SeenBacks { n_at_most, n_by_rays }) = self.backs else { return Ok(()) };
-        writeln!(f, "               from behind, viewers in cells see at most {n_at_most} of them; rays met {n_by_rays}")
+        writeln!(
+            f,
+            "               from behind, viewers in cells see at most {n_at_most} of them; rays met {n_by_rays}"
+        )
     }
 }

@@ -94,7 +94,10 @@ fn pack_here<W: Write>(
         see::see_all(&targets, make, options, None)?
     };
     let columns = Columns::of(&rows);
-    let limit = budget.is_limited().then(|| left_of(&rows, &columns, boxes.len(), targets.has_one_way)).filter(LimitReport::is_any);
+    let limit = budget
+        .is_limited()
+        .then(|| left_of(&rows, &columns, boxes.len(), targets.has_one_way))
+        .filter(LimitReport::is_any);
     state_objects(&mut parts, scene, &boxes);
     parts.cell_objects = touching.iter().map(|list| list.iter().copied().map(ObjectId).collect()).collect();
     parts.kind =
@@ -180,7 +183,8 @@ impl Columns {
     /// O(n log n) of runs.
     fn of(rows: &[CellRow]) -> Self {
         let runs = || (0u32..).zip(rows).flat_map(|(row, of)| of.cells.iter().map(move |run| (run, row)));
-        let mut edges = [runs().map(|(run, row)| (run.start, row)).collect(), runs().map(|(run, row)| (run.end, row)).collect()];
+        let mut edges =
+            [runs().map(|(run, row)| (run.start, row)).collect(), runs().map(|(run, row)| (run.end, row)).collect()];
         edges.iter_mut().for_each(|edges: &mut Vec<(u32, u32)>| edges.sort_unstable());
         Self { n: rows.len(), edges }
     }

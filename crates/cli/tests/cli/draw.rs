@@ -263,9 +263,7 @@ fn options_of_a_view_need_an_eye() {
 #[test]
 fn joints_of_a_plan_are_drawn() {
     let folder = Folder::new();
-    let wall = |ends: [[f64; 2]; 2]| {
-        json!({"type": "Feature", "properties": {}, "geometry": {"type": "LineString", "coordinates": ends}})
-    };
+    let wall = |ends: [[f64; 2]; 2]| json!({"type": "Feature", "properties": {}, "geometry": {"type": "LineString", "coordinates": ends}});
     let room = [[0.0, 0.0], [10.0, 0.0], [10.0, 6.0], [0.0, 6.0], [0.0, 0.0]];
     let mut lines: Vec<Value> = room.windows(2).map(|ends| wall([ends[0], ends[1]])).collect();
     lines.extend([wall([[4.0, 0.001], [4.0, 2.0]]), wall([[7.0, 5.995], [7.0, 4.0]])]);

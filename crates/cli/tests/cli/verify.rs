@@ -246,7 +246,8 @@ fn real_tables_are_true() {
         folder.run(&["build", &scene, "-o", "t.pvs", "--quiet"]).expect(0);
         // Rays through a map for Quake take most of the time.
         let few = ["--rays", "5000", "--pairs", "500", "--segments", "46"];
-        let of = |table: &str, rc| folder.run(&[&["verify", "--json", table, &scene][..], &few].concat()).expect(rc).json();
+        let of =
+            |table: &str, rc| folder.run(&[&["verify", "--json", table, &scene][..], &few].concat()).expect(rc).json();
         let reply = of("t.pvs", 0);
         assert!(reply["cells"]["n_confirmed"].as_u64() > Some(100), "{scene}: {}", reply["cells"]);
         flip(&folder, "t.pvs", "flipped.pvs", 4);

@@ -177,7 +177,8 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
         let runtime = Runtime { units: kept.units(), ..runtime };
         let plan = announce::Plan::new(&source.content, recipe, auto.as_ref(), args.time_limit);
         if let Some(file) = args.by_rows(&source, recipe, class) {
-            let outcome = packed::write_rows(path, file, (&prepared, &runtime), plan, (out, show_progress, &clock), &kept)?;
+            let outcome =
+                packed::write_rows(path, file, (&prepared, &runtime), plan, (out, show_progress, &clock), &kept)?;
             return Ok(Built {
                 auto,
                 outcome: Outcome::Rows(Box::new(outcome)),
@@ -206,9 +207,7 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
         output::save(out, &bytes)?;
         let outcome = Outcome::new(out, &source, recipe, &baked, bytes.len(), verbose);
         let surfaces = match (&source.content, prepared.input()) {
-            (Bakeable::Scene(file), BakeInput::Scene(scene, _)) => {
-                Some(Surfaces::new(file).seen(&baked.table, scene))
-            }
+            (Bakeable::Scene(file), BakeInput::Scene(scene, _)) => Some(Surfaces::new(file).seen(&baked.table, scene)),
             _ => None,
         };
         let peak_bytes = memory::peak_bytes();

@@ -1,8 +1,8 @@
 //! A table in packed form, as `build` writes it under a name that ends in `.pvz`.
 
 use super::announce;
-use super::limit::{self, Clock};
 use super::brief::{Brief, of_cells};
+use super::limit::{self, Clock};
 use super::source::Source;
 use crate::buffers::method_failed;
 use crate::error::{ErrorAbout, Result, anyhow};
@@ -146,7 +146,8 @@ impl Outcome {
             cells: of_cells(self.n_cells, self.noun, 0),
             out: self.out.clone(),
             n_bytes: usize::try_from(self.n_bytes).unwrap_or(usize::MAX),
-            visible: format!("a cell sees {cells:.0} cells and {objects:.0} objects on average") + &limit::brief(self.time_limit),
+            visible: format!("a cell sees {cells:.0} cells and {objects:.0} objects on average")
+                + &limit::brief(self.time_limit),
             seconds: self.seconds,
         }
     }

@@ -12,11 +12,11 @@ use crate::picture::{PictureKind, save_picture};
 use crate::place::{self, Point};
 use crate::sight::SightArgs;
 use crate::{input, output};
+use joints::Rings;
 use sightlines::geometry::{Point2, check_coordinate};
 use sightlines::pvs::Table;
 use sightlines::report::{DrawError, DrawOptions, Drawing, MAX_SIZE, MIN_SIZE, PictureSubject, Surfaces, plan_drawing};
 use std::path::{Path, PathBuf};
-use joints::Rings;
 use std::sync::Arc;
 use viewer::{Shown, Viewer};
 
@@ -78,7 +78,8 @@ fn height(text: &str) -> Result<f64, String> {
 
 pub(crate) fn run(args: &DrawArgs, _: Verbosity) -> Result<Done> {
     PictureKind::of(&args.output)?;
-    let inputs: Vec<&Path> = std::iter::once(&args.table).chain(&args.scene).chain(&args.joints).map(PathBuf::as_path).collect();
+    let inputs: Vec<&Path> =
+        std::iter::once(&args.table).chain(&args.scene).chain(&args.joints).map(PathBuf::as_path).collect();
     output::check(&inputs, &[&args.output])?;
     viewer::refuse_without_eye(args)?;
     let table = Arc::new(input::table(&args.table)?);
