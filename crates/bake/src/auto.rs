@@ -286,7 +286,8 @@ pub struct Choice {
 /// Chooses the method of a scene whose cells are decided, and puts it into the recipe.
 ///
 /// Cells that are given are few, and worth more work: line space takes the place of sheets for them, and is used in small scenes with walls along
-/// the axes too, of which it finds what several hide together; also where something hides from its front only, of which sheets do not know. An observer receives a report of each
+/// the axes too, of which it finds what several hide together; also where something hides from its front only, of which sheets do not know. Of more
+/// cells than a square of bits has room for, line space decides alone. An observer receives a report of each
 /// measurement, and cannot cancel.
 pub(crate) fn choose_for(scene: &Scene, recipe: &mut Recipe, progress: Option<&dyn Observer>) -> Choice {
     if matches!(recipe.cells, CellsFrom::EyeLevel(_)) {
@@ -425,7 +426,8 @@ mod tests {
         assert_eq!(chosen(CellsFrom::Grid([2, 2, 2])), (SceneMethod::Both, true));
         assert_eq!(chosen(CellsFrom::Grid([32, 32, 32])), (SceneMethod::Sightlines, false));
         assert_eq!(chosen(CellsFrom::KdTree), (SceneMethod::Sightlines, false));
+        let places = |n: u32| CellsFrom::Places(PlaceOptions { n_cells: Some(n), cell_size: None });
         let alone = SceneMethod::FromRegion(OcclusionMethod::LineSpace);
-        assert_eq!(chosen(CellsFrom::Grid([65, 32, 32])).0, alone);
+        assert_eq!([places(1 << 16), places((1 << 16) + 1)].map(|of| chosen(of).0 == alone), [false, true]);
     }
 }

@@ -82,7 +82,7 @@ pub fn bake_plan(plan: &Plan, options: &PlanBakeOptions<'_>) -> Result<BakedPlan
         Subdivide::Auto => unreachable!("a plan was cut by one of the two"),
     };
     // Sources of integers state that nothing was rounded.
-    report.n_near_misses = if plan.stated_precision() == Some(0.0) { 0 } else { plan.near_misses().len() };
+    report.n_near_misses = plan.near_misses().len();
     report.n_joints = plan.joints().len();
     let mut info = Vec::new();
     if plan.gap() > 0.0 {

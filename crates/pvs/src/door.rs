@@ -3,7 +3,7 @@
 use crate::{DoorId, DoorRecord, Frame, PortalId, Table};
 
 /// The key under which a table states the boxes of its doors that were given as such: a line of six numbers for each, in the order of the doors.
-const BOXES: &str = "door-boxes";
+pub(crate) const BOXES: &str = "door-boxes";
 
 /// A door that is given as a box of the scene, in its units.
 #[derive(Debug, Clone, PartialEq)]

@@ -48,6 +48,7 @@ impl Table {
         let mut parts = self.parts.clone();
         parts.portals.clear();
         parts.doors.clear();
+        parts.info.retain(|(key, _)| key != crate::door::BOXES);
         parts.stab = None;
         parts.cells.iter_mut().for_each(|cell| cell.polygon.clear());
         Self { parts, nodes: self.nodes.clone() }

@@ -130,7 +130,8 @@ impl RayScene {
     }
 }
 
-/// The line through `p` and `q` passes the edges of a triangle that it meets on one side, or touches them.
+/// Whether the closed segment `p q` certainly does not touch the triangle: both ends are on one side of it, or the line through them passes some edges on
+/// one side and some on the other.
 fn are_apart(p: Point3, q: Point3, &[a, b, c]: &[Point3; 3]) -> bool {
     let both = |signs: &[f64]| (signs.iter().any(|&s| s > 0.0), signs.iter().any(|&s| s < 0.0));
     let ends = [orient3d(a, b, c, p), orient3d(a, b, c, q)];

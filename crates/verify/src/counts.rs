@@ -54,7 +54,7 @@ pub struct Remarks {
     /// Cells from which no ray was shot: too thin to contain a place, or without a portal where only portals are known.
     #[cfg_attr(feature = "serde", serde(rename = "n_cells_without_places"))]
     pub cells_without_places: u64,
-    /// Of the doors, those that were not compared: given as boxes, which the table does not state; no violation.
+    /// Of the doors, those that were not compared: given as boxes, which the table does not state, or objects of plans and maps; no violation.
     #[cfg_attr(feature = "serde", serde(rename = "n_doors_as_boxes"))]
     pub doors_as_boxes: u64,
     /// Pairs of a door and a portal that its leaf covers, and that the door does not close; no violation.

@@ -331,7 +331,7 @@ impl fmt::Display for Violation {
             Self::NoDoor { door } => write!(f, "door {door} is an object that is no door in the scene"),
             Self::DoorName { door } => write!(f, "door {door} has another name than its object in the scene"),
             Self::OpenDoor { door, portal } => {
-                write!(f, "door {door} closes portal {portal}, which its leaf does not cover")
+                write!(f, "door {door} closes portal {portal}, which its leaf or box does not cover")
             }
             Self::UnlistedObject { cell, object } => {
                 write!(f, "object {object} touches cell {cell}, which does not list it")

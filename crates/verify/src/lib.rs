@@ -72,7 +72,7 @@ use sightlines_pvs::Table;
 pub fn verify(table: &Table, truth: &Truth<'_>, options: &VerifyOptions<'_>) -> Result<Findings, VerifyError> {
     truth.check_kind(table)?;
     let mut findings = check(table, truth, options)?;
-    structure::door_boxes(table, &mut findings);
+    structure::door_boxes(table, truth, &mut findings);
     findings.add_first(structure::changes(table, truth));
     Ok(findings)
 }

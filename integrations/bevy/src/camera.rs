@@ -242,6 +242,8 @@ pub(crate) struct Walk {
     /// Frames in which no scene fitted.
     pub(crate) frames_without: u32,
     pub(crate) has_warned: bool,
+    /// Whether the table's view of backs was compared with the level's.
+    pub(crate) has_compared_backs: bool,
     /// The last view, for locked sets.
     pub(crate) view: Option<View>,
     /// The cells of the eye, and what may be seen from there.

@@ -85,7 +85,9 @@ pub(crate) fn cull(
         };
         let id = pvs.table.id();
         let mut warn = |walk: &mut Walk, what: PvsProblemKind| {
-            if !std::mem::replace(&mut walk.has_warned, true) {
+            // That of backs is found once, and takes no other's place.
+            let is_first = what == PvsProblemKind::BacksDrawn || !std::mem::replace(&mut walk.has_warned, true);
+            if is_first {
                 let path = server.as_ref().and_then(|server| server.get_path(id));
                 let path = path.map_or_else(|| id.to_string(), |path| path.to_string());
                 tracing::warn!("{path}: {what}");
@@ -120,7 +122,9 @@ pub(crate) fn cull(
             continue;
         };
         view.level = Some(scene);
-        if !walk.has_warned && table.takes_backs_to_be_drawn() && level.sources.iter().any(|mesh| mesh.is_single_sided)
+        if !std::mem::replace(&mut walk.has_compared_backs, true)
+            && table.takes_backs_to_be_drawn()
+            && level.sources.iter().any(|mesh| mesh.is_single_sided)
         {
             warn(walk, PvsProblemKind::BacksDrawn);
         }

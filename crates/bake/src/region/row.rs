@@ -31,6 +31,13 @@ impl CellRow {
         Self { cells, objects, proven: proven.map(set), left: left.map(set), effort }
     }
 
+    /// Of a cell of which nothing is decided, among so many cells and objects.
+    pub(super) fn undecided(sizes: [u32; 2]) -> Self {
+        let all = sizes.map(|n| runs_of(0..n));
+        let [cells, objects] = all.clone();
+        Self { cells, objects, left: all, ..Self::default() }
+    }
+
     /// Of a row that is decided.
     pub(super) fn to_bytes(&self) -> Vec<u8> {
         let Self { cells, objects, proven: [cells_proven, objects_proven], effort, .. } = self;

@@ -259,6 +259,9 @@ fn see_from(
 ) -> Result<CellRow, BackendError> {
     let volume = &scene.volumes[cell];
     let (n_boxes, n_objects) = (scene.n_boxes(), scene.occludees.len());
+    if known.is_none() && unit.is_over() {
+        return Ok(CellRow::undecided([n_boxes as u32, n_objects as u32]));
+    }
     let split = |cells: &BitMatrix, objects: &BitMatrix| -> [Vec<bool>; 2] {
         let of_row = |matrix: &BitMatrix, columns: Range<usize>| columns.map(|k| matrix.get(cell, k)).collect();
         let mut of_cells: Vec<bool> = of_row(cells, 0..cells.n_cols());

@@ -93,11 +93,9 @@ fn pack_here<W: Write>(
     } else {
         see::see_all(&targets, make, options, None)?
     };
-    let columns = Columns::of(&rows);
-    let limit = budget
-        .is_limited()
-        .then(|| left_of(&rows, &columns, boxes.len(), targets.has_one_way))
-        .filter(LimitReport::is_any);
+    let one_way = targets.has_one_way;
+    let limit = options.budget.is_limited().then(|| left_of(&rows, &touching, boxes.len(), one_way));
+    let limit = limit.filter(LimitReport::is_any);
     state_objects(&mut parts, scene, &boxes);
     parts.cell_objects = touching.iter().map(|list| list.iter().copied().map(ObjectId).collect()).collect();
     parts.kind =
@@ -112,12 +110,11 @@ fn pack_here<W: Write>(
     drop(parts);
     let (mut n_visible_pairs, mut n_objects_seen, mut effort) = (0, 0, WorkDone::default());
     let (mut seen, mut things): (Vec<CellId>, Vec<ObjectId>) = (Vec::new(), Vec::new());
-    let mut column = columns.first();
+    let mut column = Column::of(&rows, |row| &row.cells);
     for (cell, row) in (0u32..).zip(&rows) {
         column.go_on();
         seen.clear();
         // A cell sees itself, whatever a method says of eyes in it.
-        let one_way = targets.has_one_way;
         seen.extend(column.with(&row.cells, cell, one_way).map(CellId));
         things.clear();
         things.extend(row.objects.iter().cloned().flatten().map(ObjectId));
@@ -147,82 +144,105 @@ fn pack_here<W: Write>(
 }
 
 /// What of the rows was not decided, and counts as visible.
-fn left_of(rows: &[CellRow], columns: &Columns, n_objects: usize, one_way: bool) -> LimitReport {
+///
+/// * `touching`: for each cell the objects that it sees in any case
+fn left_of(rows: &[CellRow], touching: &[Vec<u32>], n_objects: usize, one_way: bool) -> LimitReport {
     let n_in = |runs: &[Range<u32>]| runs.iter().map(|run| run.len()).sum::<usize>();
+    let has = |runs: &[Range<u32>], k: u32| {
+        let after = runs.partition_point(|run| run.start <= k);
+        after > 0 && k < runs[after - 1].end
+    };
     let mut seen_anywhere = vec![false; n_objects];
     rows.iter().flat_map(|row| row.objects.iter().cloned().flatten()).for_each(|o| seen_anywhere[o as usize] = true);
     let n_seen = seen_anywhere.into_iter().filter(|seen| *seen).count();
-    let mut column = columns.first();
-    let of_cell = |row: &CellRow| {
-        column.go_on();
-        // What the other of the two hides is decided.
-        let n_cells = if one_way { n_in(&row.left[0]) } else { column.n_common(&row.left[0]) };
-        LeftOfCell { n_cells, n_objects: n_in(&row.left[1]), sees_all: n_in(&row.objects) == n_seen }
+    let (mut seen, mut left) = (Column::of(rows, |row| &row.cells), Column::of(rows, |row| &row.left[0]));
+    let of_cell = |(cell, row): (u32, &CellRow)| {
+        seen.go_on();
+        left.go_on();
+        // Either of the two may not have decided, and may hide the other.
+        left.join(&row.left[0], true);
+        seen.join(&row.cells, one_way);
+        let n_cells = left.words.iter().zip(&seen.words).map(|(a, b)| (a & b).count_ones() as usize).sum::<usize>();
+        let n_own = usize::from(has(&row.left[0], cell) && seen.has(cell));
+        let n_touching = touching[cell as usize].iter().filter(|&&object| has(&row.left[1], object)).count();
+        LeftOfCell {
+            n_cells: n_cells - n_own,
+            n_objects: n_in(&row.left[1]) - n_touching,
+            sees_all: n_in(&row.objects) == n_seen,
+        }
     };
-    LimitReport::counted(rows.len(), rows.iter().map(of_cell))
+    LimitReport::counted(rows.len(), (0..).zip(rows).map(of_cell))
 }
 
-/// By whom each cell is seen, cell after cell: the columns of the rows.
-struct Columns {
-    n: usize,
-    /// Where runs of rows begin, and where they end: the index, and the row. Ascending.
-    edges: [Vec<(u32, u32)>; 2],
-}
-
-/// One column, as a set of bits.
+/// The rows that have an index in a set of theirs, as a set of bits; index after index.
 struct Column<'a> {
-    of: &'a Columns,
+    rows: &'a [CellRow],
+    set: fn(&CellRow) -> &[Range<u32>],
     next: u32,
-    at: [usize; 2],
+    /// By index: a row whose set changes there, or [`NONE`]. By row: another one that changes where it does; and how many of its changes are past.
+    first: Vec<u32>,
+    others: Vec<u32>,
+    past: Vec<u32>,
     bits: Vec<u64>,
-    /// Those that were asked for last.
+    /// What was joined last.
     words: Vec<u64>,
 }
 
-impl Columns {
-    /// O(n log n) of runs.
-    fn of(rows: &[CellRow]) -> Self {
-        let runs = || (0u32..).zip(rows).flat_map(|(row, of)| of.cells.iter().map(move |run| (run, row)));
-        let mut edges =
-            [runs().map(|(run, row)| (run.start, row)).collect(), runs().map(|(run, row)| (run.end, row)).collect()];
-        edges.iter_mut().for_each(|edges: &mut Vec<(u32, u32)>| edges.sort_unstable());
-        Self { n: rows.len(), edges }
+const NONE: u32 = u32::MAX;
+
+impl<'a> Column<'a> {
+    /// Before the first column of sets of rows: of as many rows as indices. O(n).
+    fn of(rows: &'a [CellRow], set: fn(&CellRow) -> &[Range<u32>]) -> Self {
+        let (n, none) = (rows.len(), vec![0; rows.len().div_ceil(64)]);
+        let (first, others, past) = (vec![NONE; n], vec![NONE; n], vec![0; n]);
+        let mut column = Self { rows, set, next: 0, first, others, past, bits: none.clone(), words: none };
+        (0..n as u32).for_each(|row| column.wait(row));
+        column
     }
 
-    /// Before the first column.
-    fn first(&self) -> Column<'_> {
-        let none = vec![0; self.n.div_ceil(64)];
-        Column { of: self, next: 0, at: [0; 2], bits: none.clone(), words: none }
+    /// Notes where the set of a row changes next.
+    fn wait(&mut self, row: u32) {
+        let past = self.past[row as usize] as usize;
+        let run = (self.set)(&self.rows[row as usize]).get(past / 2);
+        let at = run.map(|run| if past.is_multiple_of(2) { run.start } else { run.end });
+        // Nothing changes behind the last index.
+        if let Some(first) = at.and_then(|at| self.first.get_mut(at as usize)) {
+            self.others[row as usize] = std::mem::replace(first, row);
+        }
     }
-}
 
-impl Column<'_> {
     /// Goes on to the next column. In all O(runs).
     fn go_on(&mut self) {
-        for (edges, at) in self.of.edges.iter().zip(&mut self.at) {
-            while let Some(&(_, row)) = edges.get(*at).filter(|(index, _)| *index == self.next) {
-                self.bits[row as usize / 64] ^= 1 << (row % 64);
-                *at += 1;
-            }
+        let mut row = std::mem::replace(&mut self.first[self.next as usize], NONE);
+        while row != NONE {
+            let after = self.others[row as usize];
+            self.bits[row as usize / 64] ^= 1 << (row % 64);
+            self.past[row as usize] += 1;
+            self.wait(row);
+            row = after;
         }
         self.next += 1;
     }
 
-    /// The members of a row, ascending: those that are in the column too, or, where sight is `one_way`, all and those of the column; and `own`.
+    /// The members of a row that are in the column too, or, where `either` is enough, all and those of the column; and `own`. Ascending.
     /// O(n / 64 + members).
-    fn with(&mut self, row: &[Range<u32>], own: u32, one_way: bool) -> impl Iterator<Item = u32> {
-        self.take(row);
-        for (word, &other) in self.words.iter_mut().zip(&self.bits) {
-            if one_way { *word |= other } else { *word &= other }
-        }
+    fn with(&mut self, row: &[Range<u32>], own: u32, either: bool) -> impl Iterator<Item = u32> {
+        self.join(row, either);
         self.words[own as usize / 64] |= 1 << (own % 64);
         ones(&self.words).map(|k| k as u32)
     }
 
-    /// How many of these are in the column. O(n / 64).
-    fn n_common(&mut self, row: &[Range<u32>]) -> usize {
+    /// Puts the same into `words`, but for `own`. O(n / 64).
+    fn join(&mut self, row: &[Range<u32>], either: bool) {
         self.take(row);
-        self.words.iter().zip(&self.bits).map(|(a, b)| (a & b).count_ones() as usize).sum()
+        for (word, &other) in self.words.iter_mut().zip(&self.bits) {
+            if either { *word |= other } else { *word &= other }
+        }
+    }
+
+    /// Whether an index is in what was joined last.
+    fn has(&self, index: u32) -> bool {
+        self.words[index as usize / 64] >> (index % 64) & 1 == 1
     }
 
     /// Takes runs as bits.
@@ -260,12 +280,35 @@ mod tests {
     }
 
     proptest! {
+        /// Invariant: a pair is left if one of the two has not decided it, and it is visible.
+        #[test]
+        fn what_is_left_is_what_pairs_say(seen in rows(), seed: u64, one_way: bool) {
+            let mut random = sightlines_geometry::Random::new(seed);
+            let n = seen.len() as u32;
+            // Of what a row sees, a part is not decided.
+            let rows: Vec<CellRow> = seen.into_iter().map(|row| {
+                let left = row.cells.iter().cloned().flatten().filter(|_| random.below(2) == 0).collect::<Vec<_>>();
+                CellRow { left: [runs_of(left), Vec::new()], ..row }
+            }).collect();
+            let has = |runs: &[Range<u32>], cell: u32| runs.iter().any(|run| run.contains(&cell));
+            let is_left = |a: u32, b: u32| {
+                let [from, to] = [a, b].map(|cell| &rows[cell as usize]);
+                let sees = [has(&from.cells, b), has(&to.cells, a)];
+                let is_seen = if one_way { sees[0] || sees[1] } else { sees[0] && sees[1] };
+                is_seen && (has(&from.left[0], b) || has(&to.left[0], a))
+            };
+            let n_pairs = (0..n).flat_map(|a| (0..a).map(move |b| (a, b))).filter(|&(a, b)| is_left(a, b)).count();
+            let report = left_of(&rows, &vec![Vec::new(); n as usize], 0, one_way);
+            prop_assert_eq!(report.n_cell_pairs, n_pairs as u64);
+        }
+    }
+
+    proptest! {
         /// Invariant: columns hold what a search through all rows finds.
         #[test]
         fn columns_are_what_rows_say(rows in rows(), one_way: bool) {
             let has = |row: u32, cell: u32| rows[row as usize].cells.iter().any(|run| run.contains(&cell));
-            let columns = Columns::of(&rows);
-            let (mut column, n) = (columns.first(), rows.len() as u32);
+            let (mut column, n) = (Column::of(&rows, |row| &row.cells), rows.len() as u32);
             for (cell, row) in (0..n).zip(&rows) {
                 column.go_on();
                 let both = |other: u32| [has(cell, other), has(other, cell)];
@@ -275,8 +318,6 @@ mod tests {
                 };
                 let expected: Vec<u32> = (0..n).filter(is_seen).collect();
                 prop_assert_eq!(column.with(&row.cells, cell, one_way).collect::<Vec<_>>(), expected);
-                let n_common = (0..n).filter(|&other| both(other) == [true, true]).count();
-                prop_assert_eq!(column.n_common(&row.cells), n_common);
             }
         }
     }

@@ -192,5 +192,5 @@ fn tables_row_by_row_keep_to_a_budget() {
     let options = BakeRequest { cells, ..by(SceneMethod::FromRegion(OcclusionMethod::LineSpace)) };
     check_made("rows", &scene, &options, by_rows);
     let all = (0..scene.objects().len() as u32).collect();
-    check_made("rows, one side", &scene.with_single_sided(all).expect("objects of it"), &options, by_rows);
+    check_made("rows, one side", &scene.with_front_occluders(all).expect("objects of it"), &options, by_rows);
 }

@@ -70,17 +70,25 @@ impl Plan {
         lines.chain(self.joints.iter().map(Joint::segment))
     }
 
+    /// The ends of opaque lines that [joints](Self::joints) join to others. As [`Plan::joined`].
+    pub fn joined_ends(&self) -> Vec<Point2> {
+        if self.gap > 0.0 { find(self, self.gap).ends } else { Vec::new() }
+    }
+
     /// The ends of opaque lines that miss others by more than the [gap](Self::gap) and yet by little, and so perhaps by mistake: at most 32 times
-    /// the gap and 2^-10 of the longer side of the plan, or 2^-14 of that side where this is more. For remarks only. As [`Plan::joined`].
+    /// the gap and 2^-10 of the longer side of the plan, or 2^-14 of that side where this is more. None if the source [states](Self::stated_precision) that
+    /// coordinates are exact. For remarks only. As [`Plan::joined`].
     pub fn near_misses(&self) -> Vec<Point2> {
-        let side = self.longer_side();
-        let near = (32.0 * self.gap).min(side / 1024.0).max(side / 16384.0);
-        let ends = |gap| if gap > 0.0 && gap >= self.least_gap() { find(self, gap).ends } else { Vec::new() };
-        if near <= self.gap {
+        if self.stated_precision() == Some(0.0) {
             return Vec::new();
         }
-        let joined: BTreeSet<[u64; 2]> = ends(self.gap).into_iter().map(bits).collect();
-        ends(near).into_iter().filter(|end| !joined.contains(&bits(*end))).collect()
+        let side = self.longer_side();
+        let near = (32.0 * self.gap).min(side / 1024.0).max(side / 16384.0);
+        if near <= self.gap || near < self.least_gap() {
+            return Vec::new();
+        }
+        let joined: BTreeSet<[u64; 2]> = self.joined_ends().into_iter().map(bits).collect();
+        find(self, near).ends.into_iter().filter(|end| !joined.contains(&bits(*end))).collect()
     }
 
     /// The ends of opaque lines, repeated as often as they occur.

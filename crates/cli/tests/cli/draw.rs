@@ -259,7 +259,7 @@ fn options_of_a_view_need_an_eye() {
     assert!(!folder.path("out.svg").exists());
 }
 
-/// Where ends of walls were joined, and where they nearly meet others; of the same plan without a gap, and of none.
+/// Where ends of walls were joined, and where they nearly meet others; of the same plan without a gap, and of another one.
 #[test]
 fn joints_of_a_plan_are_drawn() {
     let folder = Folder::new();
@@ -278,6 +278,11 @@ fn joints_of_a_plan_are_drawn() {
     // A ring is two circles, and the legend has a dot for each kind.
     assert_eq!(rings("0.002"), (6, [true, true], true));
     assert_eq!(rings("0.006"), (5, [true, false], false));
+    let (_, words, _) = rings("0");
+    assert!(!words[0]);
+    folder.write("other.geojson", json!({"type": "FeatureCollection", "features": lines[..5]}).to_string());
+    let error = folder.refused(&["draw", "plan.pvs", "--joints", "other.geojson", "-o", "out.svg"]);
+    assert!(error.contains("its lines differ from those of this file"), "{error}");
     folder.run(&["draw", "plan.pvs", "-o", "plain.svg"]).expect(0);
     assert!(!String::from_utf8(folder.read("plain.svg")).expect("text").contains("<circle"));
     let tower = Folder::with_tower();

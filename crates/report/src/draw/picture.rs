@@ -78,7 +78,7 @@ fn colour_of(kind: Kind) -> &'static str {
 
 /// The rings of [`Annotations::rings`].
 const RINGS: [(&str, &str); 2] =
-    [(theme::PORTAL, "ends of walls that are joined"), (theme::SIGHTLINE, "ends of walls that nearly meet others")];
+    [(theme::PORTAL, "ends of walls that are joined"), (theme::TARGET, "ends of walls that nearly meet others")];
 
 /// Which cells are meant.
 type Keep<'a> = &'a dyn Fn(CellId) -> bool;

@@ -2,7 +2,7 @@
 //!
 //! A leaf covers a portal if triangles of the door lie in the plane of the portal and cover all of it, exactly, as they cover
 //! [walls](crate::walls). Of a door that was given as a box the scene has no leaf: that box has to contain the portal. Where the table does not state
-//! the box, such doors are counted.
+//! the box, such doors are counted; so are doors that are objects of plans and maps, which have no leafs.
 
 use crate::findings::{Findings, Violation};
 use crate::walls::uncovered;
@@ -11,9 +11,11 @@ use sightlines_geometry::{Aabb, Point2, orient2d};
 use sightlines_pvs::{DoorId, PortalId, PortalRecord, Table};
 
 /// Compares the doors that were given as boxes with these. O(doors × portals) comparisons of corners.
-pub(super) fn as_boxes(table: &Table, findings: &mut Findings) {
+///
+/// * `has_leafs`: whether doors that are objects are compared with these
+pub(super) fn as_boxes(table: &Table, has_leafs: bool, findings: &mut Findings) {
     let boxes = table.door_boxes();
-    let n_unknown = table.doors().iter().filter(|door| door.object.is_none()).count() - boxes.len();
+    let n_unknown = table.doors().iter().filter(|door| !has_leafs || door.object.is_none()).count() - boxes.len();
     findings.remarks.doors_as_boxes = n_unknown as u64;
     for (door, [min, max]) in boxes {
         let (closed, within) = (&table.doors()[door.idx()].portals, table.portals_within(min, max));

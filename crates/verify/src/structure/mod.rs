@@ -46,8 +46,8 @@ pub(crate) fn check(table: &Table, truth: &Truth<'_>) -> Findings {
 }
 
 /// Compares the doors of a table, along its frame if it has one, with the boxes that it states for them.
-pub(crate) fn door_boxes(table: &Table, findings: &mut Findings) {
-    doors::as_boxes(table, findings);
+pub(crate) fn door_boxes(table: &Table, truth: &Truth<'_>, findings: &mut Findings) {
+    doors::as_boxes(table, matches!(truth, Truth::Scene(_)), findings);
 }
 
 /// What has changed since the table was made, by its digests; nothing if it has none.

@@ -27,6 +27,8 @@ pub(super) fn of(path: &Path, map: Option<&str>, table: &Table) -> Result<Rings>
         return Err(other(path, "it is of a plan"));
     };
     let plan = plan.joined(stated_gap(table)).in_file(path)?;
-    let joints = plan.joints().iter().map(|joint| joint.from).collect();
-    Ok(Rings { joints, near_misses: plan.near_misses() })
+    if table.digest().is_some_and(|digest| digest != plan.digest()) {
+        return Err(other(path, "its lines differ from those of this file"));
+    }
+    Ok(Rings { joints: plan.joined_ends(), near_misses: plan.near_misses() })
 }
