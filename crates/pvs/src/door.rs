@@ -1,9 +1,7 @@
 //! Doors: the portals that they close, by name and by place.
 
+use crate::parts::DOOR_BOXES;
 use crate::{DoorId, DoorRecord, Frame, PortalId, Table};
-
-/// The key under which a table states the boxes of its doors that were given as such: a line of six numbers for each, in the order of the doors.
-pub(crate) const BOXES: &str = "door-boxes";
 
 /// A door that is given as a box of the scene, in its units.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,7 +52,7 @@ impl Table {
         };
         let doors = self.doors().iter().cloned().chain(boxes.iter().map(record)).collect();
         let table = self.with_doors(doors).expect("the portals within a box are portals of the table, ascending");
-        table.with_info(BOXES, text.join("\n"))
+        table.with_info(DOOR_BOXES, text.join("\n"))
     }
 
     /// The doors that were given as boxes, ascending, and the corners of these, low and high. None if the table does not state one for each such
@@ -62,7 +60,7 @@ impl Table {
     pub fn door_boxes(&self) -> Vec<(DoorId, [[f64; 3]; 2])> {
         let as_boxes = (0u32..).map(DoorId).zip(self.doors()).filter(|(_, door)| door.object.is_none());
         let ids: Vec<DoorId> = as_boxes.map(|(id, _)| id).collect();
-        let stated: Option<Vec<_>> = self.info_value(BOXES).unwrap_or_default().lines().map(corners).collect();
+        let stated: Option<Vec<_>> = self.info_value(DOOR_BOXES).unwrap_or_default().lines().map(corners).collect();
         match stated {
             Some(stated) if stated.len() == ids.len() => ids.into_iter().zip(stated).collect(),
             _ => Vec::new(),

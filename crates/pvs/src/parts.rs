@@ -3,6 +3,9 @@
 use crate::records::{CellRecord, DoorRecord, MirrorRecord, ObjectParts, ObjectRecord, ObjectSource, PortalRecord};
 use crate::{Axis, BitMatrix, Frame, GeometryDigest, Locator, ObjectId, PlaneTree, StabTrees, TableKind};
 
+/// The key under which a table states the boxes of its doors that were given as such: a line of six numbers for each, in the order of the doors.
+pub(crate) const DOOR_BOXES: &str = "door-boxes";
+
 /// The parts of a [`crate::Table`], not yet checked.
 ///
 /// [`TableParts::empty`] has the values of optional parts.

@@ -1,6 +1,6 @@
 //! The table and its queries.
 
-use crate::parts::TableParts;
+use crate::parts::{DOOR_BOXES, TableParts};
 use crate::records::{CellRecord, DoorRecord, MirrorRecord, ObjectPart, ObjectRecord, ObjectSource, PortalRecord};
 use crate::{
     Axis, CellId, CellSet, Frame, FrameError, GeometryDigest, Locator, NodeIndex, ObjectId, PlaneTree, StabTrees,
@@ -48,7 +48,7 @@ impl Table {
         let mut parts = self.parts.clone();
         parts.portals.clear();
         parts.doors.clear();
-        parts.info.retain(|(key, _)| key != crate::door::BOXES);
+        parts.info.retain(|(key, _)| key != DOOR_BOXES);
         parts.stab = None;
         parts.cells.iter_mut().for_each(|cell| cell.polygon.clear());
         Self { parts, nodes: self.nodes.clone() }
