@@ -295,11 +295,11 @@ pub(crate) fn choose_for(scene: &Scene, recipe: &mut Recipe, progress: Option<&d
         let reason = "cells are at the height of eyes: shadows are propagated from cell to cell, and whoever is elsewhere sees everything".to_owned();
         return Choice { method: recipe.method.name().to_owned(), reasons: vec![reason], facts: None };
     }
-    if recipe.cells.most().is_some_and(|n| n > MAX_SMALL_CELLS as u64) {
+    // Tables with parts are not written row by row.
+    if recipe.parts.is_none() && recipe.cells.most().is_some_and(|n| n > MAX_SMALL_CELLS as u64) {
         recipe.method = SceneMethod::FromRegion(OcclusionMethod::LineSpace);
-        let reason = format!(
-            "more than {MAX_SMALL_CELLS} cells: each is asked about alone, as a square of all their pairs takes much memory"
-        );
+        let reason =
+            format!("there may be more than {MAX_SMALL_CELLS} cells: line space decides about each cell by itself");
         return Choice { method: recipe.method.name().to_owned(), reasons: vec![reason], facts: None };
     }
     let (facts, mut choice) = choose_observed(scene, progress);
@@ -418,16 +418,18 @@ mod tests {
     #[test]
     fn how_many_cells_are_given_matters() {
         let room = Scene::new(vec![block([0.0; 3], [8.0, 6.0, 3.0], false)]).expect("a scene");
-        let chosen = |cells: CellsFrom| {
-            let request = BakeRequest { cells: Some(cells), ..BakeRequest::default() };
+        let chosen_with = |cells: CellsFrom, parts: Option<u32>| {
+            let request = BakeRequest { cells: Some(cells), parts, ..BakeRequest::default() };
             let prepared = request.prepare(&room, &Runtime::default()).expect("good options");
             (prepared.recipe().method, prepared.recipe().buffers.line_space)
         };
+        let chosen = |cells: CellsFrom| chosen_with(cells, None);
         assert_eq!(chosen(CellsFrom::Grid([2, 2, 2])), (SceneMethod::Both, true));
         assert_eq!(chosen(CellsFrom::Grid([32, 32, 32])), (SceneMethod::Sightlines, false));
         assert_eq!(chosen(CellsFrom::KdTree), (SceneMethod::Sightlines, false));
         let places = |n: u32| CellsFrom::Places(PlaceOptions { n_cells: Some(n), cell_size: None });
         let alone = SceneMethod::FromRegion(OcclusionMethod::LineSpace);
         assert_eq!([places(1 << 16), places((1 << 16) + 1)].map(|of| chosen(of).0 == alone), [false, true]);
+        assert_ne!(chosen_with(places(1 << 17), Some(8)).0, alone);
     }
 }

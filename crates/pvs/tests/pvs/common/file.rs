@@ -129,7 +129,10 @@ pub(crate) fn forge_every_byte(
                         assert_eq!(read.to_bytes(), bytes, "not written as it was read");
                         n_tables += 1;
                     }
-                    Err(_) => n_errors += 1,
+                    Err(error) => {
+                        assert!(error.offset <= bytes.len() as u64, "{error}");
+                        n_errors += 1;
+                    }
                 }
             }
             forged.parts[part].bytes.truncate(at);

@@ -1,6 +1,6 @@
 //! Doors of tables, and where objects are in their file: true ones have no violation, and each that was changed is found.
 
-use crate::tables::common::{Real, changed, check, quick};
+use crate::tables::common::{self, Real, changed, check, quick};
 use sightlines_bake::{SceneBakeOptions, bake_scene};
 use sightlines_cells::{Scene, SceneObject};
 use sightlines_frame::Moved;
@@ -222,4 +222,21 @@ fn doors_that_are_boxes_are_compared_with_these() {
             assert_eq!(found(&unstated), (0, 4, 0), "{name}");
         }
     }
+}
+
+/// Plans and maps have no leafs: their doors are counted, objects or not.
+#[test]
+fn doors_of_plans_and_maps_are_counted() {
+    let mut n_objects = 0;
+    for case in common::cases().filter(|case| !matches!(case.real, Real::Scene(_))) {
+        let object = (!case.table.objects().is_empty()).then_some(ObjectId(0));
+        n_objects += usize::from(object.is_some());
+        let table = changed(&case.table, |parts| {
+            parts.doors =
+                [object, None].map(|object| DoorRecord { object, name: String::new(), portals: vec![] }).into();
+        });
+        let found = check(&table, &case.real, &VerifyOptions { rays: 10, pairs: 0, ..quick() });
+        assert_eq!((found.remarks.doors_as_boxes, found.n_doors), (2, 2), "{}", case.name);
+    }
+    assert!(n_objects > 1, "{n_objects}");
 }
