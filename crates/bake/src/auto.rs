@@ -152,7 +152,7 @@ const LOOSE: f64 = 0.5;
 /// The openness below which a scene counts as rooms, whose walls are connected.
 const ROOMS: f64 = 0.1;
 
-/// Given cells times triangles up to which line space is used as well, whatever the walls: it takes about a second there.
+/// Up to this product of given cells and triangles, line space is used as well, whatever the direction of the walls: about a second of work.
 const QUICK: u64 = 1 << 16;
 
 /// How to bake a scene. Sightlines, the default, are always used as well, so for the same cells no table is looser than by

@@ -140,7 +140,7 @@ pub(crate) struct Surfaces {
     n_front_occluding_triangles: usize,
 }
 
-/// The same, and what of it viewers in the cells of a table see.
+/// The surfaces of a scene, and how many backs viewers in the cells of a table can see.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub(crate) struct SeenSurfaces {
     #[serde(flatten)]

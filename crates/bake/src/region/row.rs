@@ -31,7 +31,7 @@ impl CellRow {
         Self { cells, objects, proven: proven.map(set), left: left.map(set), effort }
     }
 
-    /// Of a cell of which nothing is decided, among so many cells and objects.
+    /// The row of a cell about which nothing was decided, among so many cells and objects: it sees all of them.
     pub(super) fn undecided(sizes: [u32; 2]) -> Self {
         let all = sizes.map(|n| runs_of(0..n));
         let [cells, objects] = all.clone();

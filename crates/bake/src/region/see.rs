@@ -148,7 +148,7 @@ pub(super) fn see_all(
     Ok(rows)
 }
 
-/// The same within an allowance, of everything: each cell has a share of it, and what those before it have left.
+/// The same within an allowance, and of everything: each cell gets a share of it, and what earlier cells have not used.
 pub(super) fn see_all_within(
     scene: &Targets<'_>,
     make: MakeMethod<'_>,

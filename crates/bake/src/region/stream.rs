@@ -159,7 +159,7 @@ fn left_of(rows: &[CellRow], touching: &[Vec<u32>], n_objects: usize, one_way: b
     let of_cell = |(cell, row): (u32, &CellRow)| {
         seen.go_on();
         left.go_on();
-        // Either of the two may not have decided, and may hide the other.
+        // A pair is left if one of the two cells has not decided it.
         left.join(&row.left[0], true);
         seen.join(&row.cells, one_way);
         let n_cells = left.words.iter().zip(&seen.words).map(|(a, b)| (a & b).count_ones() as usize).sum::<usize>();
@@ -174,14 +174,16 @@ fn left_of(rows: &[CellRow], touching: &[Vec<u32>], n_objects: usize, one_way: b
     LimitReport::counted(rows.len(), (0..).zip(rows).map(of_cell))
 }
 
-/// The rows that have an index in a set of theirs, as a set of bits; index after index.
+/// A column of a matrix whose rows are runs: the rows whose set has the current index, as bits. Goes from index to index.
 struct Column<'a> {
     rows: &'a [CellRow],
     set: fn(&CellRow) -> &[Range<u32>],
     next: u32,
-    /// By index: a row whose set changes there, or [`NONE`]. By row: another one that changes where it does; and how many of its changes are past.
+    /// By index: the first row of a list of those whose sets begin or end a run there, or [`NONE`].
     first: Vec<u32>,
+    /// By row: the next one in its list.
     others: Vec<u32>,
+    /// By row: how many beginnings and ends of its runs are past.
     past: Vec<u32>,
     bits: Vec<u64>,
     /// What was joined last.
@@ -191,7 +193,7 @@ struct Column<'a> {
 const NONE: u32 = u32::MAX;
 
 impl<'a> Column<'a> {
-    /// Before the first column of sets of rows: of as many rows as indices. O(n).
+    /// Ready to go to the first column of a square matrix. O(n).
     fn of(rows: &'a [CellRow], set: fn(&CellRow) -> &[Range<u32>]) -> Self {
         let (n, none) = (rows.len(), vec![0; rows.len().div_ceil(64)]);
         let (first, others, past) = (vec![NONE; n], vec![NONE; n], vec![0; n]);
@@ -200,7 +202,7 @@ impl<'a> Column<'a> {
         column
     }
 
-    /// Notes where the set of a row changes next.
+    /// Puts a row into the list of the index where its next run begins or ends.
     fn wait(&mut self, row: u32) {
         let past = self.past[row as usize] as usize;
         let run = (self.set)(&self.rows[row as usize]).get(past / 2);
@@ -224,7 +226,7 @@ impl<'a> Column<'a> {
         self.next += 1;
     }
 
-    /// The members of a row that are in the column too, or, where `either` is enough, all and those of the column; and `own`. Ascending.
+    /// What a row and the column have in common, or, with `either`, what one of them has; and `own`. Ascending.
     /// O(n / 64 + members).
     fn with(&mut self, row: &[Range<u32>], own: u32, either: bool) -> impl Iterator<Item = u32> {
         self.join(row, either);

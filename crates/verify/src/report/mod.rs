@@ -301,7 +301,7 @@ impl fmt::Display for VerifyReport {
             (
                 self.remarks.doors_as_boxes,
                 "door",
-                "not compared: given as a box that the table does not state, or an object of a plan or map",
+                "not compared, for want of a box in the table or a leaf in the scene",
             ),
             (self.remarks.unlisted_door_portals, "portal", "that a door could close and does not: more is shown there"),
             (self.remarks.flattened, "triangle", "thinner than the gap, which the table takes to be none"),

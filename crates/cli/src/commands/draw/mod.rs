@@ -36,8 +36,8 @@ pub(crate) struct DrawArgs {
     ))]
     scene: Option<PathBuf>,
     #[arg(long, help_heading = "Picture", value_name = "PLAN", help = crate::input::with_formats(
-        "Plans: what the table was built from, a {plans} or a WAD. Rings show where ends of walls are joined, as they miss others by no more than \
-         the gap of the table, and where they miss them by little more"
+        "Plans: what the table was built from, a {plans} or a WAD. Rings mark ends of walls that are joined to others within the gap of the \
+         table, and ends that miss others by slightly more"
     ))]
     joints: Option<PathBuf>,
     /// With --joints and a WAD of several maps: the map
