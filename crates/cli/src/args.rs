@@ -70,6 +70,8 @@ commands! {
     Query(query::QueryArgs) => query::run,
     /// Measure the eye-to-cell methods on a walk: what each leaves to draw, and its time
     Walk(walk::WalkArgs) => walk::run,
+    /// Find from which reach on bodies in two cells may see each other, for servers that hide players
+    Relevance(relevance::RelevanceArgs) => relevance::run,
     /// Compress a table into a file that can be read piece by piece
     Pack(pack::PackArgs) => pack::pack,
     /// Convert a packed table back to a plain one

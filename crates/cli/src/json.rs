@@ -2,7 +2,7 @@
 
 use crate::commands::{
     build, demo, explain, generate, info, isovist, job, levels, light, multifocal, pack, plan, portals, query, reject,
-    render, simplify, tiles, vga, view, vis,
+    relevance, render, simplify, tiles, vga, view, vis,
 };
 use schemars::JsonSchema;
 use schemars::generate::SchemaSettings;
@@ -34,6 +34,7 @@ pub(crate) fn schemas() -> Vec<(&'static [&'static str], Value)> {
         of::<query::sight::Seen>(&["`query` of a view"]),
         of::<WalkReport>(&["`walk`"]),
         of::<view::Outcome>(&["`view`"]),
+        of::<relevance::Outcome>(&["`relevance`"]),
         of::<pack::Outcome>(&["`pack`"]),
         of::<pack::Unpacked>(&["`unpack`"]),
         of::<explain::report::Outside>(&["`explain` outside every cell"]),

@@ -58,6 +58,8 @@ pub use sightlines_packed as packed;
 pub use sightlines_progress as progress;
 #[cfg(feature = "pvs")]
 pub use sightlines_pvs as pvs;
+#[cfg(feature = "relevance")]
+pub use sightlines_relevance as relevance;
 #[cfg(feature = "report")]
 pub use sightlines_report as report;
 #[cfg(feature = "scenes")]

@@ -17,6 +17,7 @@ pub(crate) mod plan;
 pub(crate) mod portals;
 pub(crate) mod query;
 pub(crate) mod reject;
+pub(crate) mod relevance;
 pub(crate) mod render;
 pub(crate) mod simplify;
 pub(crate) mod tiles;

@@ -15,6 +15,7 @@ fn missing_files_are_named() {
         &["query", "no.pvs", "--eye", "0,0"],
         &["walk", "no.pvs", "--random", "5"],
         &["pack", "no.pvs", "-o", "out.pvz"],
+        &["relevance", "no.pvs", "-o", "out.rel"],
         &["unpack", "no.pvz", "-o", "out.pvs"],
         &["export", "no.pvs"],
         &["explain", "no.pvs", "0", "1"],
@@ -82,6 +83,7 @@ fn scenes_instead_of_tables_are_named_with_what_to_do() {
         of_scene(&["draw", file, "-o", "out.svg"], file);
         of_scene(&["export", file], file);
         of_scene(&["pack", file, "-o", "out.pvz"], file);
+        of_scene(&["relevance", file, "-o", "out.rel"], file);
         of_scene(&["unpack", file, "-o", "out.pvs"], file);
         // Portal files are explained themselves.
         if file != "map.prt" {
@@ -291,6 +293,7 @@ fn outputs_are_all_or_nothing() {
         &["reject", "maps.wad", "-o", "no/out.wad"],
         &["export", "office.pvs", "-o", "no/out.json"],
         &["pack", "office.pvs", "-o", "no/out.pvz"],
+        &["relevance", "office.pvs", "-o", "no/out.rel"],
         &["walk", "office.pvs", "--random", "5", "-o", "no/out.svg"],
         &["draw", "office.pvs", "-o", "no/out.svg"],
         &["explain", "office.pvs", "0", "1", "--draw", "no/out.svg"],

@@ -21,6 +21,7 @@ const COMMANDS: [&str; 33] = [
     "isovist",
     "query",
     "walk",
+    "relevance",
     "pack",
     "unpack",
     "export",

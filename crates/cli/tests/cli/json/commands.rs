@@ -94,6 +94,7 @@ fn plans(all: &mut Results) {
     add("query of a view", "query o.pvs --eye 3,3 --method all");
     add("walk", "walk o.pvs --random 20");
     add("view", "view o.pvs -o o.html");
+    add("relevance", "relevance o.pvs -o o.rel --by-walking");
     add("pack", "pack o.pvs -o o.pvz");
     add("walk", "walk o.pvz --random 20");
     add("info of a packed table", "info o.pvz");

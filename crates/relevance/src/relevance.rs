@@ -1,0 +1,404 @@
+//! Who may see whom, tick by tick.
+
+use crate::body::Player;
+use crate::distance::widened;
+use crate::near::World;
+use crate::reaches::Reaches;
+use sightlines_geometry::Aabb;
+use sightlines_pvs::Table;
+use sightlines_pvs::bits::{ones, or_words};
+use std::sync::Arc;
+
+/// How [`Relevance`] answers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RelevanceOptions {
+    /// For how many seconds somebody stays shown who may no longer be seen.
+    pub hold: f64,
+    /// How many bodies are placed exactly in a tick, those that have moved first in turn. The others count as anywhere in the cells that they are in,
+    /// which shows them sooner, never later.
+    pub looks: usize,
+    /// How far a body may move until it is placed again, in scene units along each axis: more is less work, and shows bodies sooner.
+    pub slack: f64,
+    /// Up to which distance ways through portals count from the exact place of a body, for reaches of such ways: at most the largest reach that
+    /// pays, in scene units. Memory grows with its square.
+    pub walk: f64,
+}
+
+impl RelevanceOptions {
+    /// What suits most games: a hold of half a second, 256 bodies a tick, and a slack and a walk of the first and of the fifth of the
+    /// [usual reaches](Reaches::usual_ladder), halved and doubled: an eighth of a metre, and eight.
+    pub fn of(table: &Table) -> Self {
+        let usual = Reaches::usual_ladder(table);
+        Self { hold: 0.5, looks: 256, slack: usual[0] / 2.0, walk: 2.0 * usual[4] }
+    }
+}
+
+/// What changed in a tick. Pairs are the one who is told and the one of whom, by their places in the list of players.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Changes {
+    /// Pairs that are shown from now on.
+    pub gained: Vec<[u32; 2]>,
+    /// Pairs that are no longer shown.
+    pub lost: Vec<[u32; 2]>,
+    /// Bodies that were placed exactly in this tick.
+    pub n_looks: usize,
+    /// Bodies that had moved and were not, as no look was left; their answers are coarser.
+    pub n_coarse: usize,
+    /// Bodies of which nothing is known: outside of all cells, in part outside of cells that leave gaps, or without a valid box.
+    pub n_outside: usize,
+}
+
+/// How well the place of a body is known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Known {
+    /// It was never placed, or it is not known.
+    No,
+    /// The cells that it is in.
+    Cells,
+    /// Those near it as well.
+    Near,
+}
+
+/// Where a body is, and for how long that holds.
+#[derive(Debug)]
+struct Slot {
+    known: Known,
+    /// The boxes for which it holds: of the eyes and of what is seen.
+    boxes: [Aabb<3>; 2],
+    reaches: [f64; 2],
+    /// Whether the camera follows the body: it goes on no ways.
+    has_arm: bool,
+    /// Whether all of the boxes are where cells are known, so that nobody within them is outside.
+    is_inside: bool,
+    views: bool,
+    here: [Vec<u32>; 2],
+    /// All that is seen from where the eyes may get, as bits.
+    sees: Vec<u64>,
+    /// Where what is seen of it may get: words of bits that are not 0.
+    near: Vec<(u32, u64)>,
+    /// Changed in this tick.
+    is_new: bool,
+}
+
+/// Who may see whom of bodies that move through a scene.
+///
+/// A pair is shown in a tick if the first, within the reach of both, could have a line of sight to the second: within the cells of the table, whatever way
+/// they take. So whoever comes to see somebody was shown them for as long as both took for their reach, if nobody was
+/// faster than that. Somebody outside of all cells is shown to all, and all to them, from the tick in which they get there.
+///
+/// A tick allocates nothing once as many bodies were there before.
+#[derive(Debug)]
+pub struct Relevance {
+    pub(crate) world: World,
+    options: RelevanceOptions,
+    slots: Vec<Slot>,
+    /// Bits, row by row: who may be seen, and who is shown.
+    may: Vec<u64>,
+    shown: Vec<u64>,
+    stride: usize,
+    /// Pairs that are shown and may not be seen, and until when.
+    held: Vec<([u32; 2], f64)>,
+    changes: Changes,
+    /// Whose turn it is to be placed.
+    next: usize,
+    dirty: Vec<u32>,
+    pub(crate) pending: Vec<u32>,
+    pub(crate) found: Vec<u32>,
+}
+
+impl Relevance {
+    /// # Panics
+    /// If the reaches are of a table with another number of cells.
+    pub fn new(table: impl Into<Arc<Table>>, reaches: Reaches, options: RelevanceOptions) -> Self {
+        let table = table.into();
+        assert_eq!(table.n_cells(), reaches.n_cells(), "reaches are those of the table");
+        Self {
+            world: World::new(table, reaches, options.walk),
+            options,
+            slots: Vec::new(),
+            may: Vec::new(),
+            shown: Vec::new(),
+            stride: 0,
+            held: Vec::new(),
+            changes: Changes::default(),
+            next: 0,
+            dirty: Vec::new(),
+            pending: Vec::new(),
+            found: Vec::new(),
+        }
+    }
+
+    /// The table.
+    pub fn table(&self) -> &Arc<Table> {
+        &self.world.table
+    }
+
+    /// The reaches of pairs of cells.
+    pub fn reaches(&self) -> &Reaches {
+        &self.world.reaches
+    }
+
+    /// Who is shown to whom from now on. A body is told by its place in the list, from tick to tick; where somebody else takes a place, it is as if the
+    /// former had jumped there. With another number of players than before, those that went are lost without a word, and nothing is kept of
+    /// the pairs of others but that they are shown.
+    ///
+    /// * `now`: seconds, of any beginning, not descending
+    ///
+    /// Cost: O(cells near it) for each body that has moved by more than the slack, O(n / 64) at worst for each pair with one that has.
+    pub fn update(&mut self, now: f64, players: &[Player]) -> &Changes {
+        self.resize(players);
+        self.changes.gained.clear();
+        self.changes.lost.clear();
+        (self.changes.n_looks, self.changes.n_coarse, self.changes.n_outside) = (0, 0, 0);
+        self.place(players);
+        self.compare(now, players);
+        self.release(now);
+        &self.changes
+    }
+
+    /// Whether a pair was shown in the last tick.
+    pub fn is_shown(&self, to: u32, of: u32) -> bool {
+        let [to, of] = [to as usize, of as usize];
+        to < self.slots.len() && of < self.slots.len() && self.shown[to * self.stride + of / 64] >> (of % 64) & 1 == 1
+    }
+
+    /// Who was shown to somebody in the last tick, ascending.
+    pub fn shown_to(&self, to: u32) -> impl Iterator<Item = u32> + '_ {
+        let row = if (to as usize) < self.slots.len() {
+            &self.shown[to as usize * self.stride..][..self.stride]
+        } else {
+            &[]
+        };
+        ones(row).map(|of| of as u32)
+    }
+
+    fn resize(&mut self, players: &[Player]) {
+        let n = players.len();
+        if n == self.slots.len() {
+            return;
+        }
+        let stride = n.div_ceil(64);
+        let mut shown = vec![0; n * stride];
+        for to in 0..n.min(self.slots.len()) {
+            for of in ones(&self.shown[to * self.stride..][..self.stride]).filter(|&of| of < n) {
+                shown[to * stride + of / 64] |= 1 << (of % 64);
+            }
+        }
+        (self.may, self.shown, self.stride) = (shown.clone(), shown, stride);
+        self.held.retain(|&([to, of], _)| (to as usize) < n && (of as usize) < n);
+        // Held pairs may not be seen.
+        for &([to, of], _) in &self.held {
+            self.may[to as usize * stride + of as usize / 64] &= !(1 << (of % 64));
+        }
+        self.slots.resize_with(n, || Slot {
+            known: Known::No,
+            boxes: [Aabb::EMPTY; 2],
+            reaches: [0.0; 2],
+            has_arm: false,
+            is_inside: false,
+            views: false,
+            here: [Vec::new(), Vec::new()],
+            sees: Vec::new(),
+            near: Vec::new(),
+            is_new: true,
+        });
+        self.slots.iter_mut().for_each(|slot| slot.is_new = true);
+        self.changes.gained.reserve(64);
+        self.dirty.reserve(n);
+    }
+
+    /// Finds where bodies are, of which that does not hold any more.
+    fn place(&mut self, players: &[Player]) {
+        let n = players.len();
+        let mut left = self.options.looks;
+        // A slack of which nothing can be said is none.
+        let slack = self.options.slack;
+        let slack = if slack >= 0.0 && slack.is_finite() { slack } else { 0.0 };
+        self.dirty.clear();
+        let start = if n == 0 { 0 } else { self.next % n };
+        for i in (start..n).chain(0..start) {
+            let player = &players[i];
+            let slot = &mut self.slots[i];
+            let was_new = std::mem::take(&mut slot.is_new);
+            if !was_new && slot.holds(&self.world, player, slack, &mut self.pending, &mut self.found) {
+                continue;
+            }
+            let exactly = left > 0;
+            if exactly {
+                left -= 1;
+                self.changes.n_looks += 1;
+            } else {
+                self.changes.n_coarse += 1;
+                if self.changes.n_coarse == 1 {
+                    self.next = i;
+                }
+            }
+            slot.place(&self.world, player, slack, exactly, &mut self.pending, &mut self.found);
+            slot.is_new = true;
+            self.dirty.push(i as u32);
+        }
+        self.changes.n_outside = self.slots.iter().filter(|s| s.known == Known::No).count();
+        self.dirty.sort_unstable();
+    }
+
+    /// Compares the pairs of which one has changed.
+    fn compare(&mut self, now: f64, players: &[Player]) {
+        for (to, player) in players.iter().enumerate() {
+            if self.slots[to].is_new {
+                for of in 0..players.len() {
+                    self.compare_pair(now, players, to, player, of);
+                }
+            } else if player.role.views {
+                for d in 0..self.dirty.len() {
+                    self.compare_pair(now, players, to, player, self.dirty[d] as usize);
+                }
+            }
+        }
+        for d in &self.dirty {
+            self.slots[*d as usize].is_new = false;
+        }
+    }
+
+    #[inline]
+    fn compare_pair(&mut self, now: f64, players: &[Player], to: usize, player: &Player, of: usize) {
+        let role = &players[of].role;
+        let may = to != of && player.role.views && role.is_seen && {
+            player.role.always_sees(role) || self.may_see(&self.slots[to], &self.slots[of])
+        };
+        let (word, bit) = (to * self.stride + of / 64, 1 << (of % 64));
+        if may == (self.may[word] & bit != 0) {
+            return;
+        }
+        self.may[word] ^= bit;
+        let pair = [to as u32, of as u32];
+        if may {
+            if self.shown[word] & bit == 0 {
+                self.shown[word] |= bit;
+                self.changes.gained.push(pair);
+            } else if let Some(at) = self.held.iter().position(|&(held, _)| held == pair) {
+                self.held.swap_remove(at);
+            }
+        } else {
+            self.held.push((pair, now + self.options.hold.max(0.0)));
+        }
+    }
+
+    fn may_see(&self, a: &Slot, b: &Slot) -> bool {
+        match (a.known, b.known) {
+            (Known::No, _) | (_, Known::No) => true,
+            (Known::Near, Known::Near) => b.near.iter().any(|&(word, bits)| a.sees[word as usize] & bits != 0),
+            _ => !self.world.are_hidden(&a.here[0], a.reaches[0], a.has_arm, &b.here[1], b.reaches[1]),
+        }
+    }
+
+    /// Ends what was held for long enough.
+    fn release(&mut self, now: f64) {
+        let (shown, stride, lost) = (&mut self.shown, self.stride, &mut self.changes.lost);
+        self.held.retain(|&([to, of], until)| {
+            let goes = until <= now;
+            if goes {
+                shown[to as usize * stride + of as usize / 64] &= !(1 << (of % 64));
+                lost.push([to, of]);
+            }
+            !goes
+        });
+    }
+}
+
+impl Slot {
+    /// Whether what is known holds for a body as it is now, and is no more than by about the slack too much.
+    fn holds(&self, world: &World, player: &Player, slack: f64, pending: &mut Vec<u32>, found: &mut Vec<u32>) -> bool {
+        let body = &player.body;
+        let lies_in =
+            |b: &Aabb<3>, in_box: &Aabb<3>| (0..3).all(|k| in_box.min[k] <= b.min[k] && b.max[k] <= in_box.max[k]);
+        let (Some(eyes), Some(seen)) = (world.valid(&body.eyes), world.valid(&body.seen)) else {
+            return false;
+        };
+        // Comparisons with NaN are false.
+        let fits = |which: usize, b: &Aabb<3>, reach: f64| {
+            lies_in(b, &self.boxes[which])
+                && lies_in(&self.boxes[which], &widened(b, 3.0 * slack))
+                && reach <= self.reaches[which]
+                && self.reaches[which] <= reach + slack
+        };
+        let views = player.role.views;
+        self.known == Known::Near
+            && self.views == views
+            && (!views || fits(0, &eyes, body.eye_reach()) && self.has_arm == (body.arm != 0.0))
+            && fits(1, &seen, body.reach)
+            && (self.is_inside || self.is_in_cells(world, views.then_some(&eyes), &seen, pending, found))
+    }
+
+    fn is_in_cells(
+        &self,
+        world: &World,
+        eyes: Option<&Aabb<3>>,
+        seen: &Aabb<3>,
+        pending: &mut Vec<u32>,
+        found: &mut Vec<u32>,
+    ) -> bool {
+        eyes.into_iter().chain([seen]).all(|b| {
+            world.touching(b, pending, found);
+            !world.may_be_outside(b, found)
+        })
+    }
+
+    /// Places a body: with the cells near it, or without.
+    fn place(
+        &mut self,
+        world: &World,
+        player: &Player,
+        slack: f64,
+        exactly: bool,
+        pending: &mut Vec<u32>,
+        found: &mut Vec<u32>,
+    ) {
+        let body = &player.body;
+        self.known = Known::No;
+        self.views = player.role.views;
+        self.reaches = [body.eye_reach(), body.reach];
+        let (Some(eyes), Some(seen)) = (world.valid(&body.eyes), world.valid(&body.seen)) else {
+            return;
+        };
+        if self.reaches.iter().any(|r| r.is_nan() || *r < 0.0) {
+            return;
+        }
+        let eyes = player.role.views.then_some(eyes);
+        if !self.is_in_cells(world, eyes.as_ref(), &seen, pending, found) {
+            return;
+        }
+        let slack = if exactly { slack } else { 0.0 };
+        self.has_arm = body.arm != 0.0;
+        let mut is_inside = true;
+        self.near.clear();
+        for (which, b) in [eyes, Some(seen)].into_iter().enumerate() {
+            let Some(b) = b else {
+                continue; // Nobody asks what somebody sees who is told of nobody.
+            };
+            let wide = world.valid(&widened(&b, slack)).unwrap_or(b);
+            self.boxes[which] = wide;
+            world.touching(&wide, pending, &mut self.here[which]);
+            is_inside &= !world.may_be_outside(&wide, &self.here[which]);
+            if !exactly {
+                continue;
+            }
+            let walks = which == 1 || !self.has_arm;
+            world.near(&wide, walks.then_some(&self.here[which]), self.reaches[which], pending, found);
+            if which == 0 {
+                self.sees.clear();
+                self.sees.resize(world.n_cells().div_ceil(64), 0);
+                found.iter().for_each(|&cell| or_words(&mut self.sees, world.row(cell)));
+            } else {
+                for &cell in found.iter() {
+                    let (word, bit) = (cell / 64, 1 << (cell % 64));
+                    match self.near.last_mut() {
+                        Some((last, bits)) if *last == word => *bits |= bit,
+                        _ => self.near.push((word, bit)),
+                    }
+                }
+            }
+        }
+        self.is_inside = is_inside;
+        self.known = if exactly { Known::Near } else { Known::Cells };
+    }
+}

@@ -1,0 +1,349 @@
+//! Who is shown to whom, against brute force, and never late.
+
+use crate::grid::{Grid, body, cell, distances, grids, point, square, world};
+use proptest::prelude::*;
+use sightlines_geometry::{Aabb, Random};
+use sightlines_pvs::{CellId, Table};
+use sightlines_relevance::{
+    Body, Player, PlayerRole, ReachOptions, Reaches, Relevance, RelevanceOptions, Ways, WhoMoves,
+};
+use std::sync::Arc;
+
+fn reaches(table: &Table, ways: Ways) -> Reaches {
+    Reaches::of(table, &ReachOptions { ladder: vec![0.5, 1.0, 2.0, 4.0], ways, ..ReachOptions::default() })
+        .expect("reaches")
+}
+
+fn relevance(table: &Arc<Table>, ways: Ways, options: RelevanceOptions) -> Relevance {
+    Relevance::new(table.clone(), reaches(table, ways), options)
+}
+
+const EXACT: RelevanceOptions = RelevanceOptions { hold: 0.0, looks: usize::MAX, slack: 0.0, walk: 100.0 };
+
+/// Whether a pair may see each other within its reaches, by all pairs of cells.
+fn by_definition(table: &Table, far: &[Vec<f64>], ways: Ways, a: &Body, b: &Body) -> bool {
+    let n = table.n_cells();
+    // A camera on an arm goes on no ways.
+    let near = |at: &Aabb<3>, reach: f64, ways: Ways| {
+        let here: Vec<usize> = (0..n).filter(|&i| square(at, &cell(table, i)) == 0.0).collect();
+        let walks = |k: usize| ways == Ways::Straight || here.iter().any(|&i| i == k || far[i][k] <= reach);
+        let here = |k: usize| square(at, &cell(table, k)) <= reach * reach && walks(k);
+        (0..n).filter(|&k| here(k)).collect::<Vec<usize>>()
+    };
+    let eye_ways = if a.arm == 0.0 { ways } else { Ways::Straight };
+    let (from, to) = (near(&a.eyes, a.reach + a.arm, eye_ways), near(&b.seen, b.reach, ways));
+    from.iter().any(|&i| to.iter().any(|&j| table.sees(CellId(i as u32), CellId(j as u32))))
+}
+
+/// A body of whole coordinates and halves.
+fn some_body(random: &mut Random, all: &Aabb<3>) -> Body {
+    let mut some_box = || {
+        let min: [f64; 3] = std::array::from_fn(|k| (random.unit() * (2.0 * all.max[k] + 1.0)).floor() / 2.0);
+        Aabb { min, max: std::array::from_fn(|k| (min[k] + random.below(3) as f64 / 2.0).min(all.max[k])) }
+    };
+    let (eyes, seen) = (some_box(), some_box());
+    Body { eyes, seen, reach: random.below(5) as f64 / 2.0, arm: random.below(3) as f64 / 2.0 }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    /// With no slack and as many looks as are wanted, all answers are those of the definition; with few looks they are no less.
+    #[test]
+    fn answers_are_those_of_the_definition(grid in grids(), portals: bool, looks in 0usize..4) {
+        let table = grid.table();
+        let ways = if portals && !table.portals().is_empty() { Ways::Portals } else { Ways::Straight };
+        let far = distances(&table, ways);
+        let all = world(&table);
+        let mut random = Random::new(grid.seed ^ 1);
+        let players: Vec<Player> = (0..6).map(|_| Player { body: some_body(&mut random, &all), role: PlayerRole::ALONE }).collect();
+        let mut exact = relevance(&table, ways, EXACT);
+        let mut coarse = relevance(&table, ways, RelevanceOptions { looks, ..EXACT });
+        exact.update(0.0, &players);
+        let n_coarse = coarse.update(0.0, &players).n_coarse;
+        prop_assert_eq!(n_coarse, 6 - looks);
+        for i in 0..6 {
+            for j in (0..6).filter(|&j| j != i) {
+                let (a, b) = (&players[i].body, &players[j].body);
+                let expected = by_definition(&table, &far, ways, a, b);
+                prop_assert_eq!(exact.is_shown(i as u32, j as u32), expected, "{} {}", i, j);
+                prop_assert!(coarse.is_shown(i as u32, j as u32) || !expected);
+                let may = exact.may_see_within(a, b);
+                prop_assert!(may || !expected);
+                prop_assert!(!may || expected, "one question is answered as all");
+            }
+        }
+    }
+}
+
+/// Walkers of a bounded speed who stay in the grid, and in it on ways through portals if they have to.
+struct Walkers {
+    at: Vec<[f64; 3]>,
+    random: Random,
+}
+
+impl Walkers {
+    const STEP: f64 = 0.125;
+
+    fn new(table: &Table, n: usize, seed: u64) -> Self {
+        let (mut random, all) = (Random::new(seed), world(table));
+        Self { at: (0..n).map(|_| random.point(&all)).collect(), random }
+    }
+
+    fn step(&mut self, table: &Table, ways: Ways) {
+        let all = world(table);
+        let cells = |p: [f64; 3]| (0..table.n_cells()).filter(|&i| cell(table, i).contains(p)).collect::<Vec<usize>>();
+        for at in &mut self.at {
+            let (way, far) = (self.random.direction(), Self::STEP * self.random.unit());
+            let to: [f64; 3] = std::array::from_fn(|k| at[k] + way[k] * far);
+            if !all.contains(to) {
+                continue;
+            }
+            let (from, into) = (cells(*at), cells(to));
+            let passes = |i: usize, j: usize| {
+                let joins = |p: &&sightlines_pvs::PortalRecord| p.cells.iter().all(|c| c.idx() == i || c.idx() == j);
+                // The side between two cells of a grid is open as a whole, so the straight step passes it.
+                i == j || table.portals().iter().any(|p| joins(&p))
+            };
+            if ways == Ways::Straight || from == into || from.len() == 1 && into.len() == 1 && passes(from[0], into[0])
+            {
+                *at = to;
+            }
+        }
+    }
+}
+
+/// Of all moments in which two walkers see each other by `truth`: how many there are, how many are late, and of how many pairs and moments
+/// all in all one is shown to the other.
+struct Run {
+    n_seen: usize,
+    n_late: usize,
+    n_shown: usize,
+    n_all: usize,
+}
+
+/// Walks for a while. Each pair that sees each other has to be shown since as many ticks as they take for their reach.
+fn walk(truth: &Table, told: &mut Relevance, ways: Ways, seed: u64, arm: [f64; 2]) -> Run {
+    const N: usize = 5;
+    const TICKS: usize = 6;
+    let mut walkers = Walkers::new(truth, N, seed);
+    let mut since = [[0usize; N]; N];
+    let mut run = Run { n_seen: 0, n_late: 0, n_shown: 0, n_all: 0 };
+    let mut random = Random::new(seed ^ 77);
+    for tick in 0..200 {
+        walkers.step(truth, ways);
+        let body = |p: &[f64; 3]| Body { reach: Walkers::STEP * TICKS as f64, arm: arm[1], ..body(*p) };
+        let players: Vec<Player> =
+            walkers.at.iter().map(|p| Player { body: body(p), role: PlayerRole::ALONE }).collect();
+        told.update(tick as f64, &players);
+        for i in 0..N {
+            // The camera is anywhere within the true arm.
+            let (way, far) = (random.direction(), arm[0] * random.unit());
+            let eye: [f64; 3] = std::array::from_fn(|k| walkers.at[i][k] + way[k] * far);
+            for j in (0..N).filter(|&j| j != i) {
+                if !told.is_shown(i as u32, j as u32) {
+                    since[i][j] = tick + 1;
+                }
+                let sees = |k: usize, l: usize| {
+                    cell(truth, k).contains(eye)
+                        && cell(truth, l).contains(walkers.at[j])
+                        && truth.sees(CellId(k as u32), CellId(l as u32))
+                };
+                let n = truth.n_cells();
+                run.n_all += 1;
+                run.n_shown += usize::from(told.is_shown(i as u32, j as u32));
+                if (0..n).any(|k| (0..n).any(|l| sees(k, l))) {
+                    run.n_seen += 1;
+                    run.n_late += usize::from(since[i][j] > 0 && since[i][j] + TICKS > tick);
+                }
+            }
+        }
+    }
+    run
+}
+
+/// Nobody comes into sight late, on either kind of ways; and a table of which one pair is hidden that should not be, one portal too few, and an arm that
+/// was forgotten, come too late somewhere.
+#[test]
+fn nobody_is_late_and_impostors_are() {
+    let (mut n_seen, mut n_shown, mut n_all, mut late) = (0, 0, 0, [0; 3]);
+    let options = RelevanceOptions { hold: 0.0, looks: 3, slack: 0.0625, walk: 2.0 };
+    for seed in 0..30 {
+        let grid = Grid { size: [6, 3, 1], seed, blind: 120 };
+        let table = grid.table();
+        for ways in [Ways::Straight, Ways::Portals] {
+            let told = &mut relevance(&table, ways, options);
+            let run = walk(&table, told, ways, seed, [0.25, 0.25]);
+            assert_eq!(run.n_late, 0, "seed {seed}, {ways:?}");
+            n_seen += run.n_seen;
+            n_shown += run.n_shown;
+            n_all += run.n_all;
+        }
+        // Impostors.
+        late[0] +=
+            walk(&table, &mut relevance(&table, Ways::Straight, options), Ways::Straight, seed, [2.5, 0.0]).n_late;
+        let mut parts = grid.parts();
+        let seen =
+            (1..parts.cells.len()).flat_map(|i| (0..i).map(move |j| (i, j))).find(|&(i, j)| parts.rows.get(i, j));
+        if let Some((i, j)) = seen {
+            parts.rows.set(i, j, false);
+            parts.rows.set(j, i, false);
+            let less = Arc::new(Table::new(parts).expect("a table"));
+            late[1] +=
+                walk(&table, &mut relevance(&less, Ways::Straight, options), Ways::Straight, seed, [0.0; 2]).n_late;
+        }
+        let mut parts = grid.parts();
+        let portals = parts.portals.len();
+        parts.portals.retain(|p| p.cells[0] != CellId(0));
+        if parts.portals.len() < portals && !parts.portals.is_empty() {
+            let less = Arc::new(Table::new(parts).expect("a table"));
+            late[2] +=
+                walk(&table, &mut relevance(&less, Ways::Portals, options), Ways::Portals, seed, [0.0; 2]).n_late;
+        }
+    }
+    assert!(n_seen > 1_000, "{n_seen} moments");
+    assert!(n_shown * 10 < n_all * 8, "not all are shown: {n_shown} of {n_all}");
+    assert!(late.iter().all(|&n| n > 0), "each impostor is late: {late:?}");
+}
+
+/// Two rooms in a row that do not see each other, and a third that sees both.
+fn rooms() -> Arc<Table> {
+    let mut parts = Grid { size: [3, 1, 1], seed: 0, blind: usize::MAX }.parts();
+    for i in 0..3 {
+        for k in 0..3 {
+            (parts.cells[i].min[k], parts.cells[i].max[k]) =
+                if k == 0 { (4.0 * i as f64, 4.0 * i as f64 + 4.0) } else { (0.0, 4.0) };
+        }
+    }
+    parts.portals.clear();
+    for (i, j) in [(0, 1), (1, 2)] {
+        parts.rows.set(i, j, true);
+        parts.rows.set(j, i, true);
+    }
+    let bounds: Vec<_> = parts.cells.iter().map(|c| (c.min, c.max)).collect();
+    parts.locator = sightlines_pvs::Locator::build(&bounds, 3);
+    Arc::new(Table::new(parts).expect("a table"))
+}
+
+fn player(x: f64) -> Player {
+    Player { body: body([x, 2.0, 2.0]), role: PlayerRole::ALONE }
+}
+
+#[test]
+fn what_is_gained_is_held() {
+    let table = rooms();
+    let mut told = relevance(&table, Ways::Straight, RelevanceOptions { hold: 1.0, ..EXACT });
+    let mut at = |now: f64, x: f64| {
+        let changes = told.update(now, &[player(x), player(9.0)]);
+        (changes.gained.clone(), changes.lost.clone())
+    };
+    let (none, both) = (Vec::new(), vec![[0, 1], [1, 0]]);
+    assert_eq!(at(0.0, 2.0), (none.clone(), none.clone()), "hidden");
+    assert_eq!(at(1.0, 6.0), (both.clone(), none.clone()), "seen from the middle");
+    assert_eq!(at(2.0, 2.0), (none.clone(), none.clone()), "held");
+    assert_eq!(at(2.5, 6.0), (none.clone(), none.clone()), "seen again, so it was shown all the time");
+    assert_eq!(at(3.0, 2.0), (none.clone(), none.clone()));
+    assert_eq!(at(3.9, 2.0), (none.clone(), none.clone()));
+    let (gained, mut lost) = at(4.0, 2.0);
+    lost.sort_unstable();
+    assert_eq!((gained, lost), (none, both), "a second after it was seen last");
+}
+
+#[test]
+fn teams_and_spectators() {
+    let table = rooms();
+    let mut told = relevance(&table, Ways::Straight, EXACT);
+    let with = |x: f64, role: PlayerRole| Player { role, ..player(x) };
+    let players = [
+        with(1.0, PlayerRole::of_team(1)),
+        with(9.0, PlayerRole::of_team(1)),
+        with(9.0, PlayerRole::of_team(2)),
+        with(1.0, PlayerRole::SPECTATOR),
+        with(1.0, PlayerRole::THING),
+    ];
+    told.update(0.0, &players);
+    let shown: Vec<Vec<u32>> = (0..5).map(|i| told.shown_to(i).collect()).collect();
+    assert_eq!(shown, [vec![1, 4], vec![0, 2], vec![1], vec![0, 1, 2, 4], vec![]]);
+}
+
+#[test]
+fn of_whom_nothing_is_known_is_shown() {
+    let table = rooms();
+    let nan = f64::NAN;
+    let cases = [
+        ("outside", point([2.0, 2.0, 9.0])),
+        ("far away", point([1e300; 3])),
+        ("NaN", point([nan, 2.0, 2.0])),
+        ("infinite", Aabb { min: [-f64::INFINITY; 3], max: [f64::INFINITY; 3] }),
+        ("empty", Aabb::EMPTY),
+        ("larger than the world", Aabb { min: [-1e9; 3], max: [1e9; 3] }),
+    ];
+    for (what, b) in cases {
+        let mut told = relevance(&table, Ways::Straight, EXACT);
+        let strange = Player { body: Body::new(b, b), role: PlayerRole::ALONE };
+        told.update(0.0, &[player(2.0), strange]);
+        assert!(told.is_shown(0, 1) && told.is_shown(1, 0), "{what}");
+        told.update(0.0, &[player(2.0), player(9.0)]);
+        assert!(!told.is_shown(0, 1), "a place again, and no hold");
+    }
+    for (reach, arm) in [(nan, 0.0), (-1.0, 0.0), (0.0, nan), (f64::INFINITY, 0.0), (1e300, 0.0)] {
+        let mut told = relevance(&table, Ways::Straight, EXACT);
+        let strange = Player { body: Body { reach, arm, ..body([9.0, 2.0, 2.0]) }, role: PlayerRole::ALONE };
+        told.update(0.0, &[player(2.0), strange]);
+        assert!(told.is_shown(1, 0), "reach {reach}, arm {arm}");
+        assert!(told.may_see_within(&strange.body, &player(2.0).body));
+    }
+}
+
+/// In cells that leave gaps a body that is partly outside of them may be seen where nothing is known; elsewhere what is between cells is solid.
+#[test]
+fn gaps_show() {
+    use sightlines_pvs::{SceneMethods, TableKind};
+    let solid = rooms();
+    let mut parts = (*solid).clone().into_parts();
+    parts.kind = TableKind::SceneGivenCells { hidden_by: SceneMethods::default() };
+    let gaps = Arc::new(Table::new(parts).expect("a table"));
+    let across = Aabb { min: [0.5, 2.0, 2.0], max: [1.0, 2.5, 4.5] };
+    let inside = Aabb { min: [0.5, 2.0, 2.0], max: [1.0, 2.5, 4.0] };
+    let over_both = Aabb { min: [1.0, 2.0, 2.0], max: [5.0, 2.5, 4.0] };
+    for (table, b, shown, n) in
+        [(&solid, across, false, 0), (&gaps, across, true, 1), (&gaps, inside, false, 0), (&gaps, over_both, true, 0)]
+    {
+        let mut told = relevance(table, Ways::Straight, EXACT);
+        let n_outside = told
+            .update(0.0, &[player(9.0), Player { body: Body::new(point([1.0, 2.0, 2.0]), b), role: PlayerRole::ALONE }])
+            .n_outside;
+        assert_eq!((told.is_shown(0, 1), n_outside), (shown, n), "{b:?}");
+    }
+}
+
+/// Players that come and go, and those of whom one does not move.
+#[test]
+fn numbers_of_players_change() {
+    let table = rooms();
+    let mut told = relevance(&table, Ways::Straight, EXACT);
+    told.update(0.0, &[]);
+    assert_eq!(told.update(0.0, &[player(2.0), player(6.0)]).gained.len(), 2);
+    assert_eq!(told.update(0.0, &[player(2.0), player(6.0)]).n_looks, 0);
+    let changes = told.update(0.0, &[player(2.0), player(6.0), player(9.0)]);
+    assert_eq!((changes.gained.len(), changes.lost.len()), (2, 0), "the third and the second");
+    assert!(told.is_shown(1, 2) && !told.is_shown(0, 2) && !told.is_shown(0, 9) && told.shown_to(9).count() == 0);
+    told.update(0.0, &[player(2.0)]);
+    assert!(!told.is_shown(0, 1));
+}
+
+#[test]
+fn reaches_of_one_who_moves_tell_nothing_of_two() {
+    let table = rooms();
+    let reaches =
+        Reaches::of(&table, &ReachOptions { ladder: vec![1.0, 2.0], movers: WhoMoves::One, ..ReachOptions::default() })
+            .expect("reaches");
+    let mut told = Relevance::new(table, reaches, RelevanceOptions { looks: 0, ..EXACT });
+    for (reaches, shown) in [([0.0, 1.0], false), ([1.0, 0.0], false), ([0.5, 0.5], true), ([0.0, 3.0], true)] {
+        let with = |x: f64, reach: f64| Player { body: Body { reach, ..body([x, 2.0, 2.0]) }, role: PlayerRole::ALONE };
+        told.update(0.0, &[with(1.0, reaches[0]), with(9.0, reaches[1])]);
+        // The second room touches both, so a mover gets there at once: a rung is a matter of cells.
+        let may = told.is_shown(0, 1);
+        assert!(may || !shown, "{reaches:?}");
+    }
+}
