@@ -16,6 +16,7 @@ pub mod shares;
 pub mod spec;
 pub mod targets;
 pub mod viewed;
+pub mod walkers;
 pub mod witness;
 
 use sightlines::cells::{CellGraph, Exit, Plan, Planar};

@@ -1,6 +1,7 @@
 //! What tests across crates share: where real data is, and what was seen there.
 
 pub mod certificates;
+pub mod merged;
 mod numbers;
 pub mod quake_bytes;
 pub mod scenes;
@@ -13,6 +14,10 @@ pub mod world_files;
 #[cfg(doctest)]
 #[doc = include_str!("../../docs/guides/rust-engine.md")]
 struct GuideDoctests;
+
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/guides/servers.md")]
+struct ServerGuideDoctests;
 
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]

@@ -34,24 +34,44 @@ impl Exposure {
 }
 
 impl Relevance {
+    /// Whether `a` certainly does not see `b` within their reaches, wherever in their cells they are: what reaches of cells say alone. `false` if nothing is
+    /// known of one of them. O(cells that they touch).
+    pub fn are_hidden_by_cells(&mut self, a: &Body, b: &Body) -> bool {
+        let [mut here, mut there] = [Vec::new(), Vec::new()];
+        self.boxes_in_cells(a, b, &mut here, &mut there).is_some()
+            && self.world.are_hidden(&here, a.eye_reach(), a.arm != 0.0, &there, b.reach)
+    }
+
+    /// The boxes of the eyes of `a` and of what is seen of `b`, and the cells that these touch; none if nothing is known of one.
+    fn boxes_in_cells(
+        &mut self,
+        a: &Body,
+        b: &Body,
+        here: &mut Vec<u32>,
+        there: &mut Vec<u32>,
+    ) -> Option<[Aabb<3>; 2]> {
+        let boxes = [self.world.valid(&a.eyes)?, self.world.valid(&b.seen)?];
+        if [a.eye_reach(), b.reach].iter().any(|r| r.is_nan() || *r < 0.0) {
+            return None;
+        }
+        for (b, cells) in boxes.iter().zip([here, there]) {
+            self.world.touching(b, &mut self.pending, cells);
+            if self.world.may_be_outside(b, cells) {
+                return None;
+            }
+        }
+        Some(boxes)
+    }
+
     /// Whether `a` may see `b` within their reaches; `false` is certain, as far as both stay in cells of the table. Keeps nothing.
     ///
     /// Cost: reaches, O(cells that they touch); if these do not suffice, O(cells near `a` × words of cells near `b`).
     pub fn may_see_within(&mut self, a: &Body, b: &Body) -> bool {
-        let reaches = [a.eye_reach(), b.reach];
-        let (Some(eyes), Some(seen)) = (self.world.valid(&a.eyes), self.world.valid(&b.seen)) else {
+        let [mut here, mut there] = [Vec::new(), Vec::new()];
+        let Some([eyes, seen]) = self.boxes_in_cells(a, b, &mut here, &mut there) else {
             return true;
         };
-        if reaches.iter().any(|r| r.is_nan() || *r < 0.0) {
-            return true;
-        }
-        let world = &self.world;
-        let [mut here, mut there] = [Vec::new(), Vec::new()];
-        world.touching(&eyes, &mut self.pending, &mut here);
-        world.touching(&seen, &mut self.pending, &mut there);
-        if world.may_be_outside(&eyes, &here) || world.may_be_outside(&seen, &there) {
-            return true;
-        }
+        let (world, reaches) = (&self.world, [a.eye_reach(), b.reach]);
         if world.are_hidden(&here, reaches[0], a.arm != 0.0, &there, reaches[1]) {
             return false;
         }
@@ -75,11 +95,9 @@ impl Relevance {
         // A level holds for all places in both cells; on ways through portals it says more than the straight distance.
         let slower_than = |reach: f64| (reach - a.arm) / speeds[0].max(speeds[1]);
         let [mut here, mut there] = [Vec::new(), Vec::new()];
-        let (Some(eyes), Some(seen)) = (self.world.valid(&a.eyes), self.world.valid(&b.seen)) else {
+        if self.boxes_in_cells(&still(a), &still(b), &mut here, &mut there).is_none() {
             return 0.0;
-        };
-        self.world.touching(&eyes, &mut self.pending, &mut here);
-        self.world.touching(&seen, &mut self.pending, &mut there);
+        }
         let is_hidden = |reach: f64| {
             self.world.are_hidden(&here, reach, a.arm != 0.0, &there, if speeds[1] == 0.0 { 0.0 } else { reach })
         };

@@ -29,7 +29,9 @@ pub(crate) struct Boxes {
 impl Boxes {
     pub(crate) fn of(table: &Table) -> Self {
         let frame = table.frame().copied();
-        let gap = frame.map_or(0.0, |f| f.gap());
+        // Maps of Quake state the boxes of their leafs in whole units.
+        let rounded = if table.kind().is_quake() { 1.0 } else { 0.0 };
+        let gap = frame.map_or(rounded, |f| f.gap());
         let boxes = table.cells().iter().map(|c| widened(&Aabb { min: c.min, max: c.max }, gap)).collect();
         Self { boxes, frame }
     }

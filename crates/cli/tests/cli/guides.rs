@@ -84,6 +84,28 @@ fn the_guide_for_engines_works() {
     assert_same_picture("floor.svg", &folder.read("small.svg"));
 }
 
+/// What it writes tells the floors of the tower apart at once, and is small.
+#[test]
+fn the_guide_for_servers_works() {
+    let folder = Folder::new();
+    assert_eq!(follow(&folder, "servers.md"), 3);
+    let rel = |args: &[&str]| folder.run(&[&["relevance", "level.pvs", "-o", "out.rel", "--json"], args].concat()).expect(0).json();
+    let hidden = |reply: &serde_json::Value, i: usize| reply["reaches"][i]["hidden"].as_f64().expect("a share");
+    let straight = rel(&[]);
+    let n = straight["n_cells"].as_f64().expect("a number");
+    assert!(straight["n_bytes"].as_f64().expect("a number") <= 4.0 / 8.0 * n * n, "4 bits a pair");
+    assert_eq!(folder.read("out.rel"), folder.read("level.rel"), "the same again");
+    assert!(hidden(&straight, 0) > hidden(&straight, 3) && hidden(&straight, 3) > 0.0);
+    let walked = rel(&["--by-walking", "--threads", "1"]);
+    assert!(hidden(&walked, 5) > hidden(&straight, 5), "ways through doors are longer");
+    let one = rel(&["--one-moves", "--ladder", "1,2"]);
+    assert!(one["reaches"].as_array().expect("reaches").len() == 3 && hidden(&one, 1) >= hidden(&straight, 3));
+    for (args, why) in [(["--ladder", "2,1"], "not above the reach before it"), (["--ladder", "nan"], "is not finite")] {
+        let run = folder.run(&[&["relevance", "level.pvs", "-o", "bad.rel"], &args[..]].concat());
+        assert!(run.code == 2 && run.err.contains(why), "{}", run.err);
+    }
+}
+
 /// The share of the polygons that a viewer has on average, in the last line of `build`.
 fn polygons_of_a_viewer(out: &str) -> f64 {
     let (_, share) = out.split_once(": a viewer has ").expect("in the last line");
