@@ -5,15 +5,14 @@
 //! late by ours.
 
 use clap::Parser;
-use sightlines::bake::{BakeRequest, Bakeable, Runtime};
-use sightlines::cells::Scene;
-use sightlines::formats::{SceneFile, SceneInfo, Source};
+use sightlines::bake::{BakeInput, BakeRequest, Bakeable, Runtime};
+use sightlines::formats::Source;
+use sightlines::geometry::Random;
 use sightlines::pvs::{PlaceBuffer, Table};
 use sightlines::relevance::{Body, Player, PlayerRole, ReachOptions, Reaches, Relevance, RelevanceOptions, Ways};
 use sightlines::scenes::{TowerOptions, tower};
 use sightlines_benches::program::Common;
 use sightlines_benches::walkers::{Ground, Walkers};
-use sightlines_testkit::Random;
 use std::error::Error;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -90,13 +89,10 @@ fn sweep(args: &Args, ground: &Ground<'_>, table: &Arc<Table>, reaches: &Reaches
     const KEPT: usize = 64;
     let (n, far) = (args.players, STEP * ground.metre);
     let ticks = ((args.reach / STEP).ceil() as usize).clamp(1, KEPT - 1);
-    let mut told = Relevance::new(table.clone(), reaches.clone(), RelevanceOptions::of(table));
+    let options = RelevanceOptions { hold: 0.0, ..RelevanceOptions::of(table) };
+    let mut told = Relevance::new(table.clone(), reaches.clone(), options);
     // No look is left for any body.
-    let mut coarse = Relevance::new(
-        table.clone(),
-        reaches.clone(),
-        RelevanceOptions { looks: 0, hold: 0.0, ..RelevanceOptions::of(table) },
-    );
+    let mut coarse = Relevance::new(table.clone(), reaches.clone(), RelevanceOptions { looks: 0, ..options });
     let mut walkers = Walkers::new(ground, n, args.seed);
     let (mut random, mut place) = (Random::new(args.seed ^ 0x5eed), PlaceBuffer::new());
     let mut since = [vec![u64::MAX; n * n], vec![u64::MAX; n * n]];
@@ -165,7 +161,7 @@ fn withheld(
     random: &mut Random,
     found: &mut Sweep,
 ) {
-    const TRIES: usize = 128;
+    const TRIES: usize = 512;
     let far = args.reach * ground.metre;
     for _ in 0..16 {
         let (i, j) = (random.below(args.players), random.below(args.players));
@@ -181,7 +177,7 @@ fn withheld(
         let with = |p: [f64; 3]| Body { reach: far, ..ground.body(p) };
         let (a, b) = (with(a), with(b));
         let tells = [
-            told.may_see_within(&a, &b),
+            told.is_shown(i as u32, j as u32),
             !told.are_hidden_by_cells(&a, &b),
             by_table(table, &a, &b),
             nine_rays(ground, at[0][i], at[1][j]),
@@ -220,7 +216,7 @@ fn ticks(
     [times.iter().sum::<f64>() / times.len() as f64, times[times.len() * 99 / 100]]
 }
 
-fn of_input(args: &Args, name: &str, input: &Bakeable) -> Result<bool, Box<dyn Error>> {
+fn of_input(args: &Args, name: &str, input: BakeInput<'_>) -> Result<bool, Box<dyn Error>> {
     let runtime = Runtime::default();
     let table = Arc::new(BakeRequest::default().prepare(input, &runtime)?.run(&runtime)?.table);
     let start = Instant::now();
@@ -257,14 +253,13 @@ fn of_input(args: &Args, name: &str, input: &Bakeable) -> Result<bool, Box<dyn E
 fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
     if args.scene.is_empty() {
         let floors = if args.common.test { 2 } else { args.floors };
-        let scene: Scene = tower(TowerOptions { floors, ..TowerOptions::default() })?;
-        let file = SceneFile { scene, info: SceneInfo::default() };
-        return of_input(args, &format!("tower of {floors} floors"), &Bakeable::Scene(file));
+        let scene = tower(TowerOptions { floors, ..TowerOptions::default() })?;
+        return of_input(args, &format!("tower of {floors} floors"), (&scene).into());
     }
     let mut is_right = true;
     for path in &args.scene {
         let input = Bakeable::read(&Source::File(path), args.map.as_deref())?;
-        is_right &= of_input(args, &path.display().to_string(), &input)?;
+        is_right &= of_input(args, &path.display().to_string(), (&input).into())?;
     }
     Ok(is_right)
 }

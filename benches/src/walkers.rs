@@ -1,11 +1,11 @@
 //! People who walk through a scene, a map or a plan at a bounded speed, and segments between them.
 
-use sightlines::bake::Bakeable;
-use sightlines::geometry::{Aabb, Point2};
+use sightlines::bake::BakeInput;
+use sightlines::geometry::{Aabb, Point2, Random};
 use sightlines::isovist::{Touch, WallMesh};
 use sightlines::pvs::{CellId, PlaceBuffer, PlaneChild, Table};
 use sightlines::relevance::Body;
-use sightlines_testkit::{Random, RayScene};
+use sightlines_testkit::RayScene;
 
 /// What is solid, for segments.
 enum Solid {
@@ -21,6 +21,8 @@ pub struct Ground<'a> {
     solid: Solid,
     /// The coordinate that points up; none in a plan.
     up: Option<usize>,
+    /// Which cells bodies can be in.
+    open: Vec<bool>,
     /// A metre, in scene units.
     pub metre: f64,
 }
@@ -34,18 +36,19 @@ const HALF: f64 = 0.3;
 impl<'a> Ground<'a> {
     /// # Errors
     /// A text for what has no places, and for walls that make no plan.
-    pub fn new(table: &'a Table, input: &Bakeable) -> Result<Self, String> {
+    pub fn new(table: &'a Table, input: BakeInput<'_>) -> Result<Self, String> {
         let up = table.up().map(|axis| axis.idx());
+        let is_doom = table.cells().iter().any(|cell| cell.group.is_some());
         let (solid, up, metre) = match input {
-            Bakeable::Scene(file) => (Solid::Scene(RayScene::new(&file.scene)), Some(up.unwrap_or(1)), 1.0),
-            Bakeable::Map(..) => (Solid::Map, Some(2), 32.0),
-            Bakeable::Plan { plan, map } => {
+            BakeInput::Scene(scene, _) => (Solid::Scene(RayScene::new(scene)), Some(up.unwrap_or(1)), 1.0),
+            BakeInput::Map(..) => (Solid::Map, Some(2), 32.0),
+            BakeInput::Plan(plan) => {
                 let mesh = WallMesh::new(plan).map_err(|error| error.to_string())?;
-                (Solid::Plan(mesh), None, if map.is_some() { 32.0 } else { 1.0 })
+                (Solid::Plan(mesh), None, if is_doom { 32.0 } else { 1.0 })
             }
-            Bakeable::Portals(_) => return Err("a portal file has no places".to_owned()),
+            BakeInput::Portals(_) => return Err("a portal file has no places".to_owned()),
         };
-        Ok(Self { table, solid, up, metre })
+        Ok(Self { table, solid, up, open: main_part(table), metre })
     }
 
     /// Whether a segment meets nothing. Exact in scenes and plans; in maps up to rounding.
@@ -98,6 +101,13 @@ impl<'a> Ground<'a> {
         self.table.cells_at(p, place).inside().map_or_else(Vec::new, <[CellId]>::to_vec)
     }
 
+    /// Whether somebody may get to a place: in cells from which most others can be got to through portals. Bodies do not get into the sky of a map, nor into water that
+    /// hides.
+    fn is_open(&self, p: [f64; 3], place: &mut PlaceBuffer) -> bool {
+        let cells = self.cells(p, place);
+        !cells.is_empty() && cells.iter().all(|cell| self.open[cell.idx()])
+    }
+
     /// How far the floor is below a point, at most `most`; rounded.
     fn floor(&self, p: [f64; 3], most: f64) -> Option<f64> {
         let Some(up) = self.up else {
@@ -140,7 +150,7 @@ impl<'a> Ground<'a> {
                 q[side * self.up.map_or(1, |up| if up == 2 { 1 } else { 2 })] += HALF * self.metre;
                 self.is_free(p, q)
             });
-            if room && !self.cells(p, &mut place).is_empty() && self.floor(p, 2.0 * self.metre).is_some() {
+            if room && self.is_open(p, &mut place) && self.floor(p, 2.0 * self.metre).is_some() {
                 return p;
             }
         }
@@ -170,23 +180,43 @@ impl<'a> Ground<'a> {
         tries.into_iter().find(|&q| self.is_free(p, q) && !self.cells(q, &mut place).is_empty()).unwrap_or(p)
     }
 
-    /// A place that somebody gets to within a distance, straight.
+    /// A place that somebody gets to within a distance: straight on, and then another way.
     pub fn within(&self, p: [f64; 3], far: f64, random: &mut Random) -> [f64; 3] {
         let mut place = PlaceBuffer::new();
+        let (mut at, mut left) = (p, far);
         for _ in 0..4 {
-            let (mut way, reach) = (random.direction(), far * random.unit().sqrt());
-            if let Some(up) = self.up {
-                way[up] *= 0.1;
-            } else {
-                way[2] = 0.0;
-            }
-            let q = std::array::from_fn(|k| p[k] + way[k] * reach);
-            if self.is_free(p, q) && !self.cells(q, &mut place).is_empty() {
-                return q;
+            let (mut way, reach) = (random.direction(), left * random.unit().sqrt());
+            way[self.up.unwrap_or(2)] *= if self.up.is_some() { 0.1 } else { 0.0 };
+            let to = std::array::from_fn(|k| at[k] + way[k] * reach);
+            if self.is_free(at, to) && self.is_open(to, &mut place) {
+                (at, left) = (to, left - reach);
             }
         }
-        p
+        at
     }
+}
+
+/// The cells of the largest part of a table that hangs together by portals; all if it has none.
+fn main_part(table: &Table) -> Vec<bool> {
+    if table.portals().is_empty() {
+        return vec![true; table.n_cells()];
+    }
+    let mut part: Vec<usize> = (0..table.n_cells()).collect();
+    let root = |part: &mut Vec<usize>, mut i: usize| {
+        while part[i] != i {
+            part[i] = part[part[i]];
+            i = part[i];
+        }
+        i
+    };
+    for portal in table.portals() {
+        let [a, b] = portal.cells.map(|cell| root(&mut part, cell.idx()));
+        part[a.max(b)] = a.min(b);
+    }
+    let roots: Vec<usize> = (0..part.len()).map(|i| root(&mut part, i)).collect();
+    let size = |r: usize| roots.iter().filter(|&&of| of == r).count();
+    let largest = (0..roots.len()).max_by_key(|&r| if roots[r] == r { size(r) } else { 0 });
+    roots.iter().map(|&r| Some(r) == largest).collect()
 }
 
 /// People on foot.
@@ -216,7 +246,7 @@ impl Walkers {
             // Up and down by at most a third, so that all in all nobody goes farther than `far`.
             (0..3).filter(|&k| flat(k)).for_each(|k| to[k] += heading[k] / length * far * 0.9);
             let Some(up) = ground.up else {
-                if ground.is_free(*at, to) && !ground.cells(to, place).is_empty() {
+                if ground.is_free(*at, to) && ground.is_open(to, place) {
                     *at = to;
                 } else {
                     *heading = random.direction();
@@ -228,7 +258,7 @@ impl Walkers {
             if let (true, Some(below)) = (can, floor) {
                 to[up] += (EYE * ground.metre - below).clamp(-0.4 * far, 0.4 * far);
             }
-            if can && ground.is_free(*at, to) && !ground.cells(to, place).is_empty() {
+            if can && ground.is_free(*at, to) && ground.is_open(to, place) {
                 *at = to;
                 if random.below(200) == 0 {
                     *heading = random.direction();

@@ -56,7 +56,7 @@ impl Relevance {
         }
         for (b, cells) in boxes.iter().zip([here, there]) {
             self.world.touching(b, &mut self.pending, cells);
-            if self.world.may_be_outside(b, cells) {
+            if !self.world.is_known(b, cells) {
                 return None;
             }
         }
@@ -155,7 +155,7 @@ impl Relevance {
             return unknown;
         };
         self.world.touching(&eyes, &mut self.pending, &mut self.found);
-        if speed.is_nan() || speed < 0.0 || self.world.may_be_outside(&eyes, &self.found) {
+        if speed.is_nan() || speed < 0.0 || !self.world.is_known(&eyes, &self.found) {
             return unknown;
         }
         let mut cells: Vec<(f64, u32)> =

@@ -96,6 +96,11 @@ pub(crate) fn widened(b: &Aabb<3>, width: f64) -> Aabb<3> {
     Aabb { min: b.min.map(|x| (x - width).next_down()), max: b.max.map(|x| (x + width).next_up()) }
 }
 
+/// Whether a box is in another.
+pub(crate) fn lies_in(b: &Aabb<3>, other: &Aabb<3>) -> bool {
+    (0..3).all(|k| other.min[k] <= b.min[k] && b.max[k] <= other.max[k])
+}
+
 /// The distance between two boxes, rounded; infinite if a NaN is in the way, which no box here has.
 pub(crate) fn between(a: &Aabb<3>, b: &Aabb<3>) -> f64 {
     let square = |k: usize| {
@@ -128,8 +133,7 @@ impl<'a> Distances<'a> {
     pub(crate) fn each_within(&self, cell: u32, most: f64, walk: &mut Walk, mut visit: impl FnMut(u32, f64)) {
         let here = self.boxes.get(cell);
         if let Some(portals) = &self.portals {
-            portals.walk(cell, most, walk);
-            // Ways through portals are no shorter than the straight one, but for rounding and boxes of portals.
+            portals.walk(cell, here, most, walk);
             for &(other, far) in &walk.found {
                 visit(other, far.max(between(here, self.boxes.get(other))));
             }
@@ -209,8 +213,8 @@ impl Portals {
     }
 
     /// The shortest ways through portals from anywhere in a cell (Dijkstra 1959), as long as they may be within `most`: from portal to portal the distance
-    /// of their boxes counts.
-    fn walk(&self, from: u32, most: f64, walk: &mut Walk) {
+    /// of their boxes counts, and up to each portal at least that on the straight way.
+    fn walk(&self, from: u32, here: &Aabb<3>, most: f64, walk: &mut Walk) {
         walk.far.resize(self.boxes.len(), f64::INFINITY);
         walk.cells.resize(self.first.len() - 1, f64::INFINITY);
         walk.found.clear();
@@ -232,6 +236,7 @@ impl Portals {
                 }
                 for &next in self.of_cell(cell) {
                     let there = far + between(&self.boxes[portal as usize], &self.boxes[next as usize]);
+                    let there = there.max(between(here, &self.boxes[next as usize]));
                     if is_within(there, most) {
                         walk.reach(next, there);
                     }

@@ -1,6 +1,6 @@
 //! The cells that a body is in, and those that it may get into.
 
-use crate::distance::{Boxes, Distances, Walk, Ways, between, is_within, widened};
+use crate::distance::{Boxes, Distances, Walk, Ways, between, is_within, lies_in, widened};
 use crate::reaches::Reaches;
 use sightlines_geometry::Aabb;
 use sightlines_pvs::{CellId, Table, TableKind};
@@ -84,19 +84,16 @@ impl World {
         cells.dedup();
     }
 
-    /// Whether part of a valid box, which touches these cells, may be in air outside of all cells.
-    pub(crate) fn may_be_outside(&self, b: &Aabb<3>, touches: &[u32]) -> bool {
-        if touches.is_empty() {
-            return true;
-        }
-        // Elsewhere what is between cells is solid, and nothing that is seen is there.
+    /// Whether a valid box, which touches these cells, is all where something is known: nothing of it is in air outside of all cells.
+    pub(crate) fn is_known(&self, b: &Aabb<3>, touches: &[u32]) -> bool {
         let placed = self.boxes.place(b);
-        if self.has_gaps { !self.boxes.cover(&placed, touches) } else { !self.is_within_bounds(&placed) }
-    }
-
-    /// Not so if it is wholly beyond a side of the box around all cells.
-    fn is_within_bounds(&self, placed: &Aabb<3>) -> bool {
-        (0..3).all(|k| placed.min[k] <= self.bounds.max[k] && placed.max[k] >= self.bounds.min[k])
+        let covered = if self.has_gaps {
+            self.boxes.cover(&placed, touches)
+        } else {
+            // What is between cells is solid there, and nothing that is seen is in it.
+            lies_in(&placed, &self.bounds)
+        };
+        covered && !touches.is_empty()
     }
 
     /// The cells that somebody in a valid box may get into within a reach; ascending. With the cells that the box touches, on the ways of the reaches.
@@ -131,6 +128,18 @@ impl World {
         if let (Some(walks), Some(here)) = (&self.walks, here) {
             cells.retain(|&cell| walks.may_reach(here, cell, reach));
         }
+    }
+
+    /// Of cells that somebody in a valid box may get into, those into which somebody in a part of it may.
+    pub(crate) fn near_part(&self, b: &Aabb<3>, here: &[u32], reach: f64, cells: &mut Vec<u32>) {
+        let placed = self.boxes.place(b);
+        let walks = |cell: u32| self.walks.as_ref().is_none_or(|walks| walks.may_reach(here, cell, reach));
+        cells.retain(|&cell| is_within(between(&placed, self.boxes.get(cell)), reach) && walks(cell));
+    }
+
+    /// Whether the cells that a box touches are needed, beside those near it.
+    pub(crate) fn has_walks(&self) -> bool {
+        self.walks.is_some()
     }
 
     /// How far a cell is at least from a valid box.

@@ -1,7 +1,7 @@
 //! Who may see whom, tick by tick.
 
-use crate::body::Player;
-use crate::distance::widened;
+use crate::body::{Player, PlayerRole};
+use crate::distance::{lies_in, widened};
 use crate::near::World;
 use crate::reaches::Reaches;
 use sightlines_geometry::Aabb;
@@ -25,11 +25,11 @@ pub struct RelevanceOptions {
 }
 
 impl RelevanceOptions {
-    /// What suits most games: a hold of half a second, 256 bodies a tick, and a slack and a walk of the first and of the fifth of the
-    /// [usual reaches](Reaches::usual_ladder), halved and doubled: an eighth of a metre, and eight.
+    /// What suits most games: a hold of half a second, 256 bodies a tick, a slack of a quarter of a metre, and walks of eight, as the
+    /// [usual reaches](Reaches::usual_ladder) have metres.
     pub fn of(table: &Table) -> Self {
         let usual = Reaches::usual_ladder(table);
-        Self { hold: 0.5, looks: 256, slack: usual[0] / 2.0, walk: 2.0 * usual[4] }
+        Self { hold: 0.5, looks: 256, slack: usual[0], walk: 2.0 * usual[4] }
     }
 }
 
@@ -70,8 +70,10 @@ struct Slot {
     has_arm: bool,
     /// Whether all of the boxes are where cells are known, so that nobody within them is outside.
     is_inside: bool,
-    views: bool,
+    role: PlayerRole,
     here: [Vec<u32>; 2],
+    /// Which of both has the cells that the eyes are in: 1 if these are not asked for by themselves.
+    eyes: usize,
     /// All that is seen from where the eyes may get, as bits.
     sees: Vec<u64>,
     /// Where what is seen of it may get: words of bits that are not 0.
@@ -196,8 +198,9 @@ impl Relevance {
             reaches: [0.0; 2],
             has_arm: false,
             is_inside: false,
-            views: false,
+            role: PlayerRole::THING,
             here: [Vec::new(), Vec::new()],
+            eyes: 0,
             sees: Vec::new(),
             near: Vec::new(),
             is_new: true,
@@ -244,7 +247,10 @@ impl Relevance {
     /// Compares the pairs of which one has changed.
     fn compare(&mut self, now: f64, players: &[Player]) {
         for (to, player) in players.iter().enumerate() {
-            if self.slots[to].is_new {
+            // Of somebody who is told of nobody, and was, a row is left to empty.
+            let row = to * self.stride..(to + 1) * self.stride;
+            let is_asked = player.role.views || self.may[row].iter().any(|&bits| bits != 0);
+            if is_asked && self.slots[to].is_new {
                 for of in 0..players.len() {
                     self.compare_pair(now, players, to, player, of);
                 }
@@ -287,7 +293,7 @@ impl Relevance {
         match (a.known, b.known) {
             (Known::No, _) | (_, Known::No) => true,
             (Known::Near, Known::Near) => b.near.iter().any(|&(word, bits)| a.sees[word as usize] & bits != 0),
-            _ => !self.world.are_hidden(&a.here[0], a.reaches[0], a.has_arm, &b.here[1], b.reaches[1]),
+            _ => !self.world.are_hidden(&a.here[a.eyes], a.reaches[0], a.has_arm, &b.here[1], b.reaches[1]),
         }
     }
 
@@ -309,8 +315,6 @@ impl Slot {
     /// Whether what is known holds for a body as it is now, and is no more than by about the slack too much.
     fn holds(&self, world: &World, player: &Player, slack: f64, pending: &mut Vec<u32>, found: &mut Vec<u32>) -> bool {
         let body = &player.body;
-        let lies_in =
-            |b: &Aabb<3>, in_box: &Aabb<3>| (0..3).all(|k| in_box.min[k] <= b.min[k] && b.max[k] <= in_box.max[k]);
         let (Some(eyes), Some(seen)) = (world.valid(&body.eyes), world.valid(&body.seen)) else {
             return false;
         };
@@ -321,26 +325,16 @@ impl Slot {
                 && reach <= self.reaches[which]
                 && self.reaches[which] <= reach + slack
         };
+        let mut is_known = |b: &Aabb<3>| {
+            world.touching(b, pending, found);
+            world.is_known(b, found)
+        };
         let views = player.role.views;
         self.known == Known::Near
-            && self.views == views
+            && self.role == player.role
             && (!views || fits(0, &eyes, body.eye_reach()) && self.has_arm == (body.arm != 0.0))
             && fits(1, &seen, body.reach)
-            && (self.is_inside || self.is_in_cells(world, views.then_some(&eyes), &seen, pending, found))
-    }
-
-    fn is_in_cells(
-        &self,
-        world: &World,
-        eyes: Option<&Aabb<3>>,
-        seen: &Aabb<3>,
-        pending: &mut Vec<u32>,
-        found: &mut Vec<u32>,
-    ) -> bool {
-        eyes.into_iter().chain([seen]).all(|b| {
-            world.touching(b, pending, found);
-            !world.may_be_outside(b, found)
-        })
+            && (self.is_inside || (is_known(&seen) && (!views || is_known(&eyes))))
     }
 
     /// Places a body: with the cells near it, or without.
@@ -354,8 +348,7 @@ impl Slot {
         found: &mut Vec<u32>,
     ) {
         let body = &player.body;
-        self.known = Known::No;
-        self.views = player.role.views;
+        (self.known, self.role, self.has_arm) = (Known::No, player.role, body.arm != 0.0);
         self.reaches = [body.eye_reach(), body.reach];
         let (Some(eyes), Some(seen)) = (world.valid(&body.eyes), world.valid(&body.seen)) else {
             return;
@@ -363,42 +356,52 @@ impl Slot {
         if self.reaches.iter().any(|r| r.is_nan() || *r < 0.0) {
             return;
         }
-        let eyes = player.role.views.then_some(eyes);
-        if !self.is_in_cells(world, eyes.as_ref(), &seen, pending, found) {
-            return;
-        }
         let slack = if exactly { slack } else { 0.0 };
-        self.has_arm = body.arm != 0.0;
-        let mut is_inside = true;
-        self.near.clear();
-        for (which, b) in [eyes, Some(seen)].into_iter().enumerate() {
-            let Some(b) = b else {
-                continue; // Nobody asks what somebody sees who is told of nobody.
-            };
-            let wide = world.valid(&widened(&b, slack)).unwrap_or(b);
-            self.boxes[which] = wide;
-            world.touching(&wide, pending, &mut self.here[which]);
-            is_inside &= !world.may_be_outside(&wide, &self.here[which]);
-            if !exactly {
+        self.boxes = [eyes, seen].map(|b| world.valid(&widened(&b, slack)).unwrap_or(b));
+        let views = player.role.views;
+        // Where the eyes are within what is seen, as usual, what is found for that serves them as well.
+        let [wide_eyes, wide_seen] = self.boxes;
+        let is_part = lies_in(&wide_eyes, &wide_seen);
+        self.is_inside = true;
+        self.eyes = usize::from(is_part && !world.has_walks() && exactly);
+        for (which, b) in [(1, &seen), (0, &eyes)] {
+            if which == 0 && (!views || self.eyes == 1) {
                 continue;
             }
-            let walks = which == 1 || !self.has_arm;
-            world.near(&wide, walks.then_some(&self.here[which]), self.reaches[which], pending, found);
-            if which == 0 {
-                self.sees.clear();
-                self.sees.resize(world.n_cells().div_ceil(64), 0);
-                found.iter().for_each(|&cell| or_words(&mut self.sees, world.row(cell)));
-            } else {
-                for &cell in found.iter() {
-                    let (word, bit) = (cell / 64, 1 << (cell % 64));
-                    match self.near.last_mut() {
-                        Some((last, bits)) if *last == word => *bits |= bit,
-                        _ => self.near.push((word, bit)),
-                    }
-                }
+            world.touching(&self.boxes[which], pending, &mut self.here[which]);
+            if which == 0 && is_part || world.is_known(&self.boxes[which], &self.here[which]) {
+                continue;
+            }
+            self.is_inside = false;
+            world.touching(b, pending, found);
+            if !world.is_known(b, found) {
+                return;
             }
         }
-        self.is_inside = is_inside;
         self.known = if exactly { Known::Near } else { Known::Cells };
+        if !exactly {
+            return;
+        }
+        world.near(&wide_seen, Some(&self.here[1]), self.reaches[1], pending, found);
+        self.near.clear();
+        for &cell in found.iter() {
+            let (word, bit) = (cell / 64, 1 << (cell % 64));
+            match self.near.last_mut() {
+                Some((last, bits)) if *last == word => *bits |= bit,
+                _ => self.near.push((word, bit)),
+            }
+        }
+        if !views {
+            return;
+        }
+        if is_part && self.reaches[0] <= self.reaches[1] {
+            world.near_part(&wide_eyes, &self.here[0], self.reaches[0], found);
+        } else {
+            let here = (!self.has_arm).then_some(&self.here[0][..]);
+            world.near(&wide_eyes, here, self.reaches[0], pending, found);
+        }
+        self.sees.clear();
+        self.sees.resize(world.n_cells().div_ceil(64), 0);
+        found.iter().for_each(|&cell| or_words(&mut self.sees, world.row(cell)));
     }
 }

@@ -14,9 +14,6 @@ pub(crate) struct RelevanceArgs {
     /// The table
     #[arg(value_name = "FILE.pvs")]
     table: PathBuf,
-    /// The reaches of all pairs of cells to write
-    #[arg(short, long, help_heading = "Output", value_name = "OUT.rel")]
-    output: PathBuf,
     /// Reaches to tell apart, in scene units, ascending, at most 14 [default: 0.25,0.5,1,2,4,8,16; of Quake and Doom maps 32 times
     /// that]
     #[arg(long, help_heading = "Method", value_name = "R,R,...", value_delimiter = ',')]
@@ -31,6 +28,9 @@ pub(crate) struct RelevanceArgs {
     /// Number of threads; 0 uses every core
     #[arg(long, help_heading = "Method", value_name = "N", default_value_t = 0, value_parser = crate::numbers::threads)]
     threads: usize,
+    /// The reaches of all pairs of cells to write
+    #[arg(short, long, help_heading = "Output", value_name = "OUT.rel")]
+    output: PathBuf,
     #[command(flatten)]
     json: JsonArg,
 }

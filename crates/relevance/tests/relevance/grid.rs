@@ -104,7 +104,7 @@ pub(crate) fn square(a: &Aabb<3>, b: &Aabb<3>) -> f64 {
     (0..3).map(|k| (a.min[k] - b.max[k]).max(b.min[k] - a.max[k]).max(0.0).powi(2)).sum()
 }
 
-/// How far cells are from each other, by Floyd and Warshall.
+/// How far cells are from each other.
 pub(crate) fn distances(table: &Table, ways: Ways) -> Vec<Vec<f64>> {
     let n = table.n_cells();
     let straight = |i: usize, j: usize| square(&cell(table, i), &cell(table, j)).sqrt();
@@ -121,18 +121,21 @@ pub(crate) fn distances(table: &Table, ways: Ways) -> Vec<Vec<f64>> {
                 }
             }
         }
-        for k in 0..m {
-            for p in 0..m {
-                for q in 0..m {
-                    of[p][q] = of[p][q].min(of[p][k] + of[k][q]);
+        for i in 0..n {
+            // Bellman and Ford, as distances from the cell count at each portal.
+            let here = cell(table, i);
+            let mut walked: Vec<f64> =
+                (0..m).map(|p| if touches(p, CellId(i as u32)) { 0.0 } else { f64::INFINITY }).collect();
+            for _ in 0..m {
+                for p in 0..m {
+                    for q in 0..m {
+                        walked[q] = walked[q].min((walked[p] + of[p][q]).max(square(&here, &portals[q]).sqrt()));
+                    }
                 }
             }
-        }
-        for i in 0..n {
             for j in 0..n {
-                let by = (0..m).filter(|&p| touches(p, CellId(i as u32)));
-                let pairs = by.flat_map(|p| (0..m).filter(|&q| touches(q, CellId(j as u32))).map(move |q| (p, q)));
-                let walked = pairs.map(|(p, q)| of[p][q]).fold(f64::INFINITY, f64::min);
+                let into = (0..m).filter(|&q| touches(q, CellId(j as u32)));
+                let walked = into.map(|q| walked[q]).fold(f64::INFINITY, f64::min);
                 far[i][j] = if i == j { 0.0 } else { far[i][j].max(walked) };
             }
         }

@@ -295,26 +295,49 @@ fn of_whom_nothing_is_known_is_shown() {
     }
 }
 
-/// In cells that leave gaps a body that is partly outside of them may be seen where nothing is known; elsewhere what is between cells is solid.
+/// In cells that leave gaps a body that is partly outside of them may be seen where nothing is known; elsewhere what is between cells is solid. Beyond all cells
+/// nothing is known in either.
 #[test]
 fn gaps_show() {
     use sightlines_pvs::{SceneMethods, TableKind};
-    let solid = rooms();
-    let mut parts = (*solid).clone().into_parts();
+    let mut parts = (*rooms()).clone().into_parts();
+    parts.cells[1].min[0] = 5.0;
+    parts.locator = sightlines_pvs::Locator::build(&parts.cells.iter().map(|c| (c.min, c.max)).collect::<Vec<_>>(), 3);
+    let solid = Arc::new(Table::new(parts.clone()).expect("a table"));
     parts.kind = TableKind::SceneGivenCells { hidden_by: SceneMethods::default() };
     let gaps = Arc::new(Table::new(parts).expect("a table"));
-    let across = Aabb { min: [0.5, 2.0, 2.0], max: [1.0, 2.5, 4.5] };
-    let inside = Aabb { min: [0.5, 2.0, 2.0], max: [1.0, 2.5, 4.0] };
-    let over_both = Aabb { min: [1.0, 2.0, 2.0], max: [5.0, 2.5, 4.0] };
-    for (table, b, shown, n) in
-        [(&solid, across, false, 0), (&gaps, across, true, 1), (&gaps, inside, false, 0), (&gaps, over_both, true, 0)]
-    {
-        let mut told = relevance(table, Ways::Straight, EXACT);
-        let n_outside = told
-            .update(0.0, &[player(9.0), Player { body: Body::new(point([1.0, 2.0, 2.0]), b), role: PlayerRole::ALONE }])
-            .n_outside;
-        assert_eq!((told.is_shown(0, 1), n_outside), (shown, n), "{b:?}");
+    let from = |x: f64, to: [f64; 3]| Aabb { min: [x, 2.0, 2.0], max: to };
+    let cases = [
+        (from(3.5, [4.5, 2.5, 4.0]), [false, true], [0, 1]),
+        (from(3.5, [4.0, 2.5, 4.0]), [false, false], [0, 0]),
+        (from(0.5, [1.0, 2.5, 4.5]), [true, true], [1, 1]),
+        (from(3.5, [5.5, 2.5, 4.0]), [true, true], [0, 1]),
+        (from(5.5, [9.5, 2.5, 4.0]), [true, true], [0, 0]),
+    ];
+    for (b, shown, n) in cases {
+        for (k, table) in [&solid, &gaps].into_iter().enumerate() {
+            let mut told = relevance(table, Ways::Straight, EXACT);
+            let there = Player { body: Body::new(point([1.0, 2.0, 2.0]), b), role: PlayerRole::ALONE };
+            let n_outside = told.update(0.0, &[player(9.0), there]).n_outside;
+            assert_eq!((told.is_shown(0, 1), n_outside), (shown[k], n[k]), "{b:?}, {k}");
+        }
     }
+}
+
+/// Roles change while nobody moves.
+#[test]
+fn roles_change() {
+    let table = rooms();
+    let mut told = relevance(&table, Ways::Straight, EXACT);
+    let with = |x: f64, role: PlayerRole| Player { role, ..player(x) };
+    let shown = |told: &mut Relevance, roles: [PlayerRole; 2]| {
+        told.update(0.0, &[with(2.0, roles[0]), with(9.0, roles[1])]);
+        (told.is_shown(0, 1), told.is_shown(1, 0))
+    };
+    assert_eq!(shown(&mut told, [PlayerRole::of_team(1), PlayerRole::of_team(2)]), (false, false));
+    assert_eq!(shown(&mut told, [PlayerRole::of_team(1), PlayerRole::of_team(1)]), (true, true));
+    assert_eq!(shown(&mut told, [PlayerRole::THING, PlayerRole::SPECTATOR]), (false, true));
+    assert_eq!(shown(&mut told, [PlayerRole::ALONE, PlayerRole::ALONE]), (false, false));
 }
 
 /// Players that come and go, and those of whom one does not move.
