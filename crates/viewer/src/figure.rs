@@ -15,6 +15,8 @@ pub struct Figure {
     pub(crate) firsts: Vec<u32>,
     /// Triangles that were left out.
     pub(crate) n_left_out: usize,
+    /// Whether some faces that hide have one side.
+    pub(crate) is_single_sided: bool,
 }
 
 /// The difference of two coordinates in single precision.
@@ -27,6 +29,13 @@ impl Figure {
     pub fn of_scene(scene: &Scene) -> Self {
         let objects = scene.objects();
         Self::of_objects(objects.iter().map(|object| (&object.vertices[..], &object.triangles[..])))
+    }
+
+    /// The same, with whether faces that hide have one side in the file: the page draws both, and states where the table is for others that
+    /// do not. A scene that was read as if all had two sides does not tell.
+    #[must_use]
+    pub fn with_single_sided(self, is_single_sided: bool) -> Self {
+        Self { is_single_sided, ..self }
     }
 
     /// Objects that are made of polygons, such as the faces of a Quake map, each polygon as a fan of triangles. O(corners).
@@ -92,7 +101,8 @@ impl Figure {
         by_size.sort_by(|&a, &b| size(b).total_cmp(&size(a)).then(a.cmp(&b)));
         let mut kept = vec![false; self.triangles.len()];
         by_size[..most].iter().for_each(|&t| kept[t as usize] = true);
-        let mut less = Self { origin: self.origin, firsts: vec![0], ..Self::default() };
+        let is_single_sided = self.is_single_sided;
+        let mut less = Self { origin: self.origin, firsts: vec![0], is_single_sided, ..Self::default() };
         let mut renamed = vec![u32::MAX; self.vertices.len()];
         for range in self.firsts.windows(2) {
             for t in (range[0]..range[1]).filter(|&t| kept[t as usize]) {
@@ -156,6 +166,7 @@ mod tests {
         assert_eq!(all.with_at_most(6), all);
         let less = all.with_at_most(3);
         assert_eq!((less.n_triangles(), less.n_left_out, &less.firsts[..]), (3, 3, &[0, 0, 2, 3, 3][..]));
+        assert!(all.clone().with_single_sided(true).with_at_most(3).is_single_sided && !less.is_single_sided);
         let largest = less.triangles[0].map(|i| less.vertices[i as usize]);
         assert_eq!(largest.map(|p| p[0]), [0.0; 3], "the second quad, from the middle of all");
         assert_eq!(all.to_bytes().len(), 4 * (3 * 12 + 3 * 6 + 5));

@@ -132,18 +132,37 @@ struct FigureHead {
 }
 
 impl FigureHead {
-    fn new(figure: &Figure) -> Self {
+    fn new(figure: &Figure, table: &Table) -> Self {
         let n = figure.n_left_out;
         let all = n + figure.n_triangles();
-        let notice = format!("The {n} smallest of {all} triangles are left out of this page to keep it small.");
+        let left_out = format!("The {n} smallest of {all} triangles are left out of this page to keep it small.");
+        let backs = about_backs(table).filter(|_| figure.is_single_sided);
+        let notices: Vec<&str> = (n > 0).then_some(&*left_out).into_iter().chain(backs).collect();
         Self {
             origin: figure.origin,
             walls: figure.walls.len(),
             vertices: figure.vertices.len(),
             triangles: figure.triangles.len(),
             objects: figure.n_objects(),
-            notice: (n > 0).then_some(notice),
+            notice: (!notices.is_empty()).then(|| notices.join(" ")),
         }
+    }
+}
+
+/// How the table and this page, which draws both sides of all faces, go together in a scene with single-sided faces. Nothing, where the table is
+/// right for every engine.
+fn about_backs(table: &Table) -> Option<&'static str> {
+    let (_, backs) = table.info().iter().find(|(key, _)| key == "backs")?;
+    match &**backs {
+        "drawn" => Some(
+            "The table was built with --backs drawn, and the scene has single-sided faces: what is behind their backs counts as hidden. \
+             This page draws these backs; in an engine that does not, what is seen through them may be missing.",
+        ),
+        "culled" => Some(
+            "The table was built with --backs culled, and the scene has single-sided faces: from behind, these count as hidden. \
+             This page draws the backs of what may be seen, and they cover what is seen through them.",
+        ),
+        _ => None,
     }
 }
 
@@ -233,7 +252,7 @@ impl<'a> Page<'a> {
         let head = Head {
             title: self.title,
             table: self.table_name,
-            figure: figure.map(FigureHead::new),
+            figure: figure.map(|figure| FigureHead::new(figure, self.table)),
             walk: &self.walk,
             joined: self.reasons.map(|reasons| [reasons.n_pairs, reasons.n_joined]),
         };

@@ -98,6 +98,53 @@ fn what_does_not_fit_is_left_out_and_said() {
     assert!(page.contains("are left out of this page"));
 }
 
+/// The notice of a page, as its scripts read it.
+fn notice(page: &str) -> Value {
+    let (_, head) = page.split_once(r#"id="head">"#).expect("a head");
+    let (head, _) = head.split_once("</script>").expect("an end");
+    let head: Value = serde_json::from_str(head).expect("JSON");
+    head["figure"]["notice"].clone()
+}
+
+/// A page draws both sides of faces, and tells so where the table is for engines of one kind, and the scene has faces of one side.
+#[test]
+fn pages_state_which_engines_the_table_is_for() {
+    let folder = Folder::new();
+    let scene = parse_glb(&one_floor(1, 0), None).expect("a scene").scene;
+    let all = (0..scene.objects().len() as u32).collect();
+    let two = Scene::new(scene.objects().to_vec()).expect("a scene");
+    let one = two.clone().with_single_sided(all).expect("objects of the scene");
+    folder.write("one.glb", write_glb(&one).expect("single precision"));
+    folder.write("two.glb", write_glb(&two).expect("single precision"));
+    let view = |scene: &str, backs: &[&str], more: &[&str]| {
+        folder.run(&[&["build", scene, "-o", "t.pvs"], backs].concat()).expect(0);
+        folder.run(&[&["view", "t.pvs", "-o", "page.html"], more].concat()).expect(0);
+        String::from_utf8(folder.read("page.html")).expect("a text")
+    };
+    let (drawn, culled) = (&["--backs", "drawn"][..], &["--backs", "culled"][..]);
+    for (backs, end) in [
+        (drawn, "This page draws these backs; in an engine that does not, what is seen through them may be missing."),
+        (culled, "This page draws the backs of what may be seen, and they cover what is seen through them."),
+    ] {
+        let page = view("one.glb", backs, &["--scene", "one.glb"]);
+        let said = notice(&page);
+        let said = said.as_str().expect("a text");
+        let begin = format!("The table was built with {}, and the scene has single-sided faces: ", backs.join(" "));
+        assert!(said.starts_with(&begin) && said.ends_with(end), "{said}");
+        if let Some(browser) = chromium() {
+            let script = "ready.then(() => tell(document.getElementById('notice').textContent))";
+            let told =
+                Opened { html: &page, script, given: &Value::Null, size: [1000, 700], link: "" }.result(&browser);
+            assert_eq!(told, said);
+        }
+        // The twins: no such faces, and no triangles.
+        assert_eq!(notice(&view("two.glb", backs, &["--scene", "two.glb"])), Value::Null);
+        assert_eq!(notice(&view("one.glb", backs, &[])), Value::Null);
+    }
+    // And a table that is right for every engine.
+    assert_eq!(notice(&view("one.glb", &[], &["--scene", "one.glb"])), Value::Null);
+}
+
 #[test]
 fn two_bakes_and_a_walk_are_on_the_page() {
     let folder = Folder::with_office();
