@@ -65,6 +65,8 @@ struct Sweep {
     /// these they are not told, by each way.
     n_unseen: u64,
     withheld: [u64; 4],
+    /// Bodies of which nothing was known, of all in all ticks.
+    n_outside: u64,
 }
 
 /// Whether the eyes of `a` have a free segment to the middle or a corner of the box of `b`.
@@ -105,6 +107,7 @@ fn sweep(args: &Args, ground: &Ground<'_>, table: &Arc<Table>, reaches: &Reaches
             walkers.at.iter().map(|&p| Player { body: body(p), role: PlayerRole::ALONE }).collect();
         for (told, since) in [&mut told, &mut coarse].into_iter().zip(&mut since) {
             let changes = told.update(tick as f64 * 0.05, &players);
+            found.n_outside += changes.n_outside as u64;
             changes.lost.iter().for_each(|&[a, b]| since[a as usize * n + b as usize] = u64::MAX);
             changes.gained.iter().for_each(|&[a, b]| since[a as usize * n + b as usize] = tick);
         }
@@ -233,6 +236,8 @@ fn of_input(args: &Args, name: &str, input: BakeInput<'_>) -> Result<bool, Box<d
         "  {} movements, {} segments to bodies, {} pairs without one within {} m",
         args.movements, found.n_seen, found.n_unseen, args.reach
     );
+    let outside = 100.0 * found.n_outside as f64 / (2 * args.movements).max(1) as f64;
+    println!("  {outside:.2} % of bodies are partly outside of all cells");
     for (way, (late, withheld)) in WAYS.iter().zip(found.late.iter().zip(&found.withheld)) {
         let share = |k: u64, n: u64| 100.0 * k as f64 / n.max(1) as f64;
         println!(

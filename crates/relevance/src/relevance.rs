@@ -290,11 +290,15 @@ impl Relevance {
     }
 
     fn may_see(&self, a: &Slot, b: &Slot) -> bool {
-        match (a.known, b.known) {
-            (Known::No, _) | (_, Known::No) => true,
-            (Known::Near, Known::Near) => b.near.iter().any(|&(word, bits)| a.sees[word as usize] & bits != 0),
-            _ => !self.world.are_hidden(&a.here[a.eyes], a.reaches[0], a.has_arm, &b.here[1], b.reaches[1]),
+        if a.known == Known::No || b.known == Known::No {
+            return true;
         }
+        let are_near = a.known == Known::Near && b.known == Known::Near;
+        if are_near && b.near.iter().all(|&(word, bits)| a.sees[word as usize] & bits == 0) {
+            return false;
+        }
+        // Either way is right alone. That of cells knows ways from each place to each, and takes bodies to be anywhere in their cells.
+        !self.world.are_hidden(&a.here[a.eyes], a.reaches[0], a.has_arm, &b.here[1], b.reaches[1])
     }
 
     /// Ends what was held for long enough.
