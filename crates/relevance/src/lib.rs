@@ -5,7 +5,7 @@
 //! - **Owns**: how far bodies are from the cells of a table ([`Ways`]); the [`Reaches`] of pairs of cells and their file; the
 //!   answers for bodies ([`Relevance`]).
 //! - **Out of scope**: making tables of visibility, the network, files.
-//! - **Invariants**: answers err towards visible; a tick allocates nothing once as many bodies were there before; the same calls give the
+//! - **Invariants**: answers err towards visible; a tick allocates nothing once it is warm; the same calls give the
 //!   same answers on every machine, with any number of threads.
 
 #![forbid(unsafe_code)]

@@ -88,7 +88,7 @@ struct Slot {
 /// they take. So whoever comes to see somebody was shown them for as long as both took for their reach, if nobody was
 /// faster than that. Somebody outside of all cells is shown to all, and all to them, from the tick in which they get there.
 ///
-/// A tick allocates nothing once as many bodies were there before.
+/// A tick allocates nothing once it is warm.
 #[derive(Debug)]
 pub struct Relevance {
     pub(crate) world: World,

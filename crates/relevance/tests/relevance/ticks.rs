@@ -370,3 +370,56 @@ fn reaches_of_one_who_moves_tell_nothing_of_two() {
         assert!(may || !shown, "{reaches:?}");
     }
 }
+
+/// A table along other axes than its scene hides no more than the same table along those of the scene, and not much less.
+#[test]
+fn frames_are_no_matter() {
+    use sightlines_pvs::Frame;
+    let (mut n_same, mut n_more) = (0, 0);
+    for seed in 0..40 {
+        let grid = Grid { size: [6, 3, 1], seed, blind: 120 };
+        let plain = grid.table();
+        let frame = Frame::new([[0.6, 0.8, 0.0], [-0.8, 0.6, 0.0], [0.0, 0.0, 1.0]], 1e-3).expect("a frame");
+        let turned = Arc::new((*plain).clone().with_frame(Some(frame)).expect("a table"));
+        let (mut random, all) = (Random::new(seed), world(&plain));
+        let at: Vec<[f64; 3]> = (0..6).map(|_| random.point(&all)).collect();
+        let with = |p: [f64; 3]| Player { body: Body { reach: 0.5, ..body(p) }, role: PlayerRole::ALONE };
+        for ways in [Ways::Straight, Ways::Portals] {
+            let [mut a, mut b] = [&plain, &turned].map(|table| relevance(table, ways, EXACT));
+            a.update(0.0, &at.iter().map(|&p| with(p)).collect::<Vec<_>>());
+            b.update(0.0, &at.iter().map(|&p| with(frame.to_scene(p))).collect::<Vec<_>>());
+            for (i, j) in (0..6).flat_map(|i| (0..6).map(move |j| (i, j))) {
+                let (plain, turned) = (a.is_shown(i, j), b.is_shown(i, j));
+                assert!(turned || !plain, "seed {seed}: {i} {j}");
+                *(if turned == plain { &mut n_same } else { &mut n_more }) += 1;
+            }
+        }
+    }
+    assert!(n_more * 50 < n_same, "{n_more} of {}", n_same + n_more);
+}
+
+/// In a plan the third coordinate does not count.
+#[test]
+fn plans_are_flat() {
+    use sightlines_pvs::{TableKind, TableParts};
+    let space = rooms();
+    let mut parts = TableParts::empty(2, TableKind::PlanKdTree);
+    parts.cells = space.cells().to_vec();
+    for cell in &mut parts.cells {
+        (cell.min[2], cell.max[2]) = (0.0, 0.0);
+    }
+    parts.rows = space.parts().rows.clone();
+    parts.cell_objects = vec![Vec::new(); 3];
+    let bounds: Vec<_> = parts.cells.iter().map(|c| (c.min, c.max)).collect();
+    parts.locator = sightlines_pvs::Locator::build(&bounds, 2);
+    let plan = Arc::new(Table::new(parts).expect("a table"));
+    let with =
+        |x: f64, z: f64, reach: f64| Player { body: Body { reach, ..body([x, 2.0, z]) }, role: PlayerRole::ALONE };
+    for z in [0.0, -7.0, 1e9, f64::NAN] {
+        for (reach, shown) in [(1.0, false), (3.5, true)] {
+            let mut told = relevance(&plan, Ways::Straight, EXACT);
+            let n_outside = told.update(0.0, &[with(1.0, z, reach), with(10.0, -z, reach)]).n_outside;
+            assert_eq!((told.is_shown(0, 1), n_outside), (shown, 0), "{z} {reach}");
+        }
+    }
+}
