@@ -13,7 +13,8 @@ impl Space for Convex {
     type Portal = Portal3;
 }
 
-/// A convex polyhedron, of which nothing is known but what its portals say.
+/// A convex polyhedron, of which nothing is known but what its portals say. Where leafs of a map were merged it may be of any shape, and
+/// nothing hides inside of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ConvexCell3 {
     /// The box around its portals; empty for a cell without any.

@@ -2,6 +2,7 @@
 
 mod convex_classical;
 mod convex_found;
+mod convex_merged;
 mod convex_worlds;
 mod docs;
 mod doom;

@@ -537,3 +537,23 @@ fn a_cluster_that_winds_back_is_no_mistake() {
     prt.push_portal([2, 3], &further).unwrap();
     assert_eq!(prt.inside_out(), None);
 }
+
+/// Two clusters of merged leafs: each has a dead end beside the other's, and a hall behind that.
+#[test]
+fn clusters_that_lie_on_both_sides_are_no_mistake() {
+    let square = |x: f64| [[x, 0.0, 0.0], [x, 64.0, 0.0], [x, 64.0, 64.0], [x, 0.0, 64.0]];
+    let halls = |n: usize| {
+        let mut prt = Prt::new(6).unwrap();
+        for ([a, b], x) in
+            [([0, 1], 0.0), ([0, 2], 192.0), ([0, 3], 256.0), ([4, 1], -192.0), ([5, 1], -256.0)].iter().take(n)
+        {
+            prt.push_portal([*a, *b], &square(*x)).unwrap();
+        }
+        prt
+    };
+    assert_eq!(halls(5).inside_out(), None);
+    // With one portal elsewhere for each, both might be convex.
+    let mut convex = halls(2);
+    convex.push_portal([4, 1], &square(-192.0)).unwrap();
+    assert_eq!(convex.inside_out(), Some(0));
+}

@@ -288,7 +288,10 @@ impl BeamTracer {
                 self.counted.lines += 1;
                 gates.chain(source, line.a, unit(sub(line.b, line.a)), &mut self.chain);
                 if !self.chain.iter().any(|&g| gates.get(g).to as usize == cell) {
-                    self.chain.clone_from(&self.sequence);
+                    self.chain.clear();
+                    if gates.are_in_order(&self.sequence, [line.a, line.b]) {
+                        self.chain.clone_from(&self.sequence);
+                    }
                 }
             }
         }

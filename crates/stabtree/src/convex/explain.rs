@@ -2,7 +2,8 @@
 //!
 //! # What proves that a cell is hidden
 //! A line that joins two cells passes from cell to cell, through each once, along a chain of gates (portals with a
-//! direction). A [`BlockedConvex`] is a list of gates with a proof that no line passes all of them in this order,
+//! direction). (If it comes back into a cell that is not convex, the gates in between are left out: nothing hides inside of
+//! a cell.) A [`BlockedConvex`] is a list of gates with a proof that no line passes all of them in this order,
 //! whatever lies between. A [`ConvexProof`] is a set of these lists: it proves that `to` is hidden from `from` if
 //! **every chain of gates from one to the other that visits each cell at most once contains one of the lists in
 //! order**. Whether that holds is a question about the graph alone; [`check_convex`] answers it by following all chains
@@ -177,7 +178,7 @@ pub fn explain_convex(graph: &CellGraph<Convex>, from: CellId, to: CellId, limit
 
 /// Whether an explanation holds for two cells, by code that shares nothing with the code that finds explanations. A
 /// path holds if the gates lead from one cell to the other, through each cell at most once, and the line passes them,
-/// exactly. A proof holds if every certificate does, and every chain of gates is stopped. Undecided is `false`.
+/// exactly, and in this order as far as rounding shows. A proof holds if every certificate does, and every chain of gates is stopped. Undecided is `false`.
 ///
 /// `false` too for cells or portals that the graph does not have, and after ten million gates followed.
 /// Cost: that of the certificates, and a walk through the graph for each gate followed.

@@ -211,8 +211,12 @@ impl Gates {
     /// The points that a line may meet after it has passed a gate, judging by the gate's plane.
     pub(super) fn in_front(&self, gate: u32) -> Plane {
         let gate = self.get(gate);
-        let lean = gate.lean * 4.0 * self.largest;
-        Plane { normal: gate.normal, origin: gate.center, offset: gate.flat + gate.uneven + lean }
+        Plane { normal: gate.normal, origin: gate.center, offset: self.in_front_by(gate) }
+    }
+
+    /// How far behind its plane a line may still meet a gate.
+    fn in_front_by(&self, gate: &Gate) -> f64 {
+        gate.flat + gate.uneven + gate.lean * 4.0 * self.largest
     }
 
     /// The points that a line may meet before it passes a gate.
@@ -223,18 +227,43 @@ impl Gates {
     /// Appends the gates that the line passes after `gate`, until it meets a wall or comes so close to an edge that
     /// rounding could matter.
     pub(super) fn follow(&self, gate: u32, origin: Point3, d: Point3, passed: &mut Vec<u32>) {
-        let (mut last, most) = (gate, passed.len() + self.n_cells());
+        let (mut last, mut at, most) = (gate, self.crossing(gate, origin, d), passed.len() + self.n_cells());
         'cells: while passed.len() < most {
             for &exit in self.exits(self.get(last).to) {
                 // The gate in the opposite direction has the line on the wrong side.
                 if exit != last ^ 1 && dot(self.get(exit).normal, d) > 0.0 && self.passes(exit, origin, d) {
+                    let next = self.crossing(exit, origin, d);
+                    // In a cell that is not convex, the line may have passed it before.
+                    if next[1] < at[0] {
+                        continue;
+                    }
                     passed.push(exit);
-                    last = exit;
+                    (last, at) = (exit, next);
                     continue 'cells;
                 }
             }
             return;
         }
+    }
+
+    /// How far along `d`, of length 1, from `origin` the line meets a gate that it passes: at least and at most, as far as
+    /// its corners are off its plane and rounding matters.
+    fn crossing(&self, gate: u32, origin: Point3, d: Point3) -> [f64; 2] {
+        let gate = self.get(gate);
+        let along = dot(gate.normal, d);
+        let at = dot(gate.normal, sub(gate.center, origin));
+        let off = self.in_front_by(gate) + self.largest * 2f64.powi(-44);
+        // A line nearly in the plane may be rounded into it.
+        if along > 0.0 { [(at - off) / along, (at + off) / along] } else { [f64::NEG_INFINITY, f64::INFINITY] }
+    }
+
+    /// Whether a line that passes all of some gates may meet them one after the other: none certainly before the one ahead
+    /// of it. It does in any case if cells are convex.
+    pub(super) fn are_in_order(&self, sequence: &[u32], [a, b]: [Point3; 2]) -> bool {
+        let d = unit(sub(b, a));
+        let crossings: Vec<[f64; 2]> = sequence.iter().map(|&gate| self.crossing(gate, a, d)).collect();
+        // What is not a number shows no order.
+        !crossings.windows(2).any(|pair| pair[1][1] < pair[0][0])
     }
 
     /// The gates that the line through `origin` along `d` passes, in order, `gate` among them; empty if it does not

@@ -8,6 +8,11 @@
 //!    hidden; for most of the rest an exact line is found.
 //! 4. **Pairs** ([`pairs`]): the pairs that beams leave in doubt are decided sequence by sequence.
 //!
+//! Where leafs of a map are merged, cells need not be convex, and a line may come back into one. Nothing is known of the
+//! inside of a cell, so nothing hides there: a line that is in a cell twice may as well have stayed, and the portals that
+//! it passes before the first time and after the last are a chain too. So chains that enter each cell at most once are
+//! enough, whatever cells look like. In a convex cell a line enters before it leaves; in others its order is checked.
+//!
 //! Visibility is symmetric, and each answer counts for both sides. Every stage processes its gates or cells in batches
 //! that do not depend on the number of threads: members of a batch use the results of earlier batches, and not those of
 //! each other. So the answer, the lines tried and the operations counted are the same with any number of threads.

@@ -281,9 +281,12 @@ impl SequenceTracer {
                 if self.chain.contains(&sequence[sequence.len() - 1]) {
                     return true;
                 }
-                self.chain = sequence;
                 self.levels[depth].line = Some(line);
-                goal.is_none()
+                let arrives = goal.is_none() && gates.are_in_order(&sequence, [line.a, line.b]);
+                // Nothing is known of lines that meet the gates in order.
+                self.undecided |= goal.is_none() && !arrives;
+                self.chain = sequence;
+                arrives
             }
             Verdict::Hidden(proof) => {
                 self.learn(&proof, &sequence, depth, goal);
@@ -293,10 +296,11 @@ impl SequenceTracer {
             Verdict::Undecided(_) => {
                 let shapes: Vec<&Portal3> = shapes.iter().map(|known| known.shape()).collect();
                 match self.stabber.stab_finely(&shapes) {
-                    Verdict::Visible(_) => {
+                    Verdict::Visible(line) if gates.are_in_order(&sequence, line.points().map(|p| p.map(|x| x[0]))) => {
                         self.chain = sequence;
                         return true;
                     }
+                    Verdict::Visible(_) => self.undecided = true,
                     Verdict::Hidden(proof) => self.learn(&proof, &sequence, depth, goal),
                     Verdict::Undecided(_) => self.undecided = true,
                 }

@@ -101,6 +101,12 @@ impl PortalWorld {
         clear.then_some(t)
     }
 
+    /// Whether the line `p + t d` passes a gate from one cell into another, clear of its edges, with `t` in a range.
+    pub(super) fn joins(&self, [from, to]: [u32; 2], p: Point3, d: Point3, [low, high]: [f64; 2]) -> bool {
+        let passes = |gate: &Gate| self.pass(gate, p, d).is_some_and(|t| low <= t && t <= high);
+        self.gates[from as usize].iter().any(|gate| gate.to == to && passes(gate))
+    }
+
     /// Follows a line from a cell through gates behind `p`; `visit` gets each cell with the points where the line
     /// enters and leaves it, and returns whether to continue.
     fn follow(&self, from: u32, p: Point3, d: Point3, mut visit: impl FnMut(u32, f64, Option<f64>) -> bool) {

@@ -93,7 +93,7 @@ impl<'a> MapWorld<'a> {
     }
 
     /// Where a segment is for sure, in order, up to the first place where it comes near something solid, near three clusters at once,
-    /// or near two that no portal joins. Also, where that is.
+    /// or near two where it passes no portal between them. Also, where that is.
     fn stays(&self, p: Point3, d: Point3) -> (Vec<Stay>, f64) {
         let mut near = self.stretches(p, d, MARGIN);
         let solid = near.iter().filter(|s| s.cluster.is_none()).map(|s| s.from).fold(f64::INFINITY, f64::min);
@@ -117,8 +117,8 @@ impl<'a> MapWorld<'a> {
             // Each may share places with the one before, and no other.
             for (i, other) in joined[..k].iter().enumerate() {
                 let shares = other.to >= stay.from;
-                let is_joined = self.portals.neighbours()[other.cluster as usize].binary_search(&stay.cluster).is_ok();
-                if shares && (i + 1 < k || !is_joined) {
+                let pair = [other.cluster, stay.cluster];
+                if shares && (i + 1 < k || !self.portals.joins(pair, p, d, [stay.from, other.to])) {
                     end = end.min(stay.from);
                 }
             }

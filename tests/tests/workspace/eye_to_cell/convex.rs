@@ -5,26 +5,25 @@ use crate::eye_to_cell::picture::{Picture, along, dot, minus};
 use crate::eye_to_cell::plans::reachable;
 use sightlines::bake::{StabOptions, from_table, with_stab_trees};
 use sightlines::eye_to_cell::{Doors, View};
-use sightlines::geometry::Point3;
+use sightlines::geometry::{Aabb, Point3};
 use sightlines::pvs::{
     CellId, CellRecord, Locator, ObjectId, ObjectRecord, PortalId, PortalRecord, Table, TableKind, TableParts,
 };
 use sightlines::scenes::world::{
     BspWorldOptions, QuakeLikeOptions, World, WorldLeaf, bsp_world, quake_like, world_families,
 };
-use sightlines::stabtree::{ConvexOptions, ConvexSearch};
 use sightlines_testkit::Random;
+use sightlines_tests::merged::{Merged, exact};
 
-/// The table of a world: boxes around leafs, portals, visibility; every cell is an object as well.
-fn table(world: &World) -> Table {
-    let mut search = ConvexSearch::new(&world.graph, ConvexOptions { threads: 1, ..ConvexOptions::default() });
-    while search.advance() {}
-    let leafs = world.cells();
-    let cell = |leaf: &&WorldLeaf| {
-        let b = leaf.bounds();
-        CellRecord { min: b.min, max: b.max, group: None, polygon: vec![] }
-    };
-    let cells: Vec<CellRecord> = leafs.iter().map(cell).collect();
+/// The table of the clusters of a world: boxes around leafs, portals, visibility; every cell is an object as well.
+fn table(world: &World, Merged { of, graph }: &Merged) -> Table {
+    let mut boxes = vec![Aabb::EMPTY; graph.n_cells()];
+    for (leaf, &cell) in world.cells().iter().zip(of) {
+        let (around, b) = (&mut boxes[cell as usize], leaf.bounds());
+        *around = around.with(b.min).with(b.max);
+    }
+    let cell = |b: &Aabb<3>| CellRecord { min: b.min, max: b.max, group: None, polygon: vec![] };
+    let cells: Vec<CellRecord> = boxes.iter().map(cell).collect();
     let bounds: Vec<_> = cells.iter().map(|c| (c.min, c.max)).collect();
     // Portals of worlds turn about the direction of crossing, those of tables towards who crosses.
     let portal = |p: &sightlines::cells::Portal<sightlines::cells::Convex>| PortalRecord {
@@ -34,8 +33,8 @@ fn table(world: &World) -> Table {
     };
     let object = |c: &CellRecord| ObjectRecord { name: String::new(), min: c.min, max: c.max };
     let parts = TableParts {
-        portals: world.graph.portals().iter().map(portal).collect(),
-        rows: search.finish().cells,
+        portals: graph.portals().iter().map(portal).collect(),
+        rows: exact(graph).cells,
         objects: cells.iter().map(object).collect(),
         cell_objects: (0..cells.len() as u32).map(|id| vec![ObjectId(id)]).collect(),
         locator: Locator::build(&bounds, 3),
@@ -67,16 +66,18 @@ fn inside(leaf: &WorldLeaf, eye: Point3, d: Point3, outwards: f64, range: [f64; 
 
 struct Stage<'w> {
     leafs: Vec<&'w WorldLeaf>,
+    /// The cell of each.
+    of: &'w [u32],
     solids: Vec<&'w WorldLeaf>,
     /// Rays keep this far from what is solid, and come this deep into what they pass.
     clear: f64,
 }
 
 impl<'w> Stage<'w> {
-    fn new(world: &'w World) -> Self {
+    fn new(world: &'w World, of: &'w [u32]) -> Self {
         let b = world.bounds();
         let size = (0..3).map(|k| b.max[k] - b.min[k]).fold(0.0, f64::max);
-        Self { leafs: world.cells(), solids: world.solids().collect(), clear: size / f64::from(1 << 20) }
+        Self { leafs: world.cells(), of, solids: world.solids().collect(), clear: size / f64::from(1 << 20) }
     }
 
     /// Adds the cells that a ray passes before it comes near anything solid. `closed` are portals in the way.
@@ -95,7 +96,8 @@ impl<'w> Stage<'w> {
         });
         let end = solid.chain(doors).fold(f64::INFINITY, f64::min);
         let passed = |leaf: &WorldLeaf| inside(leaf, eye, d, -self.clear, [0.0, end]).is_some();
-        let passed: Vec<u32> = (0..).zip(&self.leafs).filter(|(_, leaf)| passed(leaf)).map(|(id, _)| id).collect();
+        let passed: Vec<u32> =
+            self.of.iter().zip(&self.leafs).filter(|(_, leaf)| passed(leaf)).map(|(id, _)| *id).collect();
         seen.cells.extend(&passed);
         seen.objects.extend(&passed);
     }
@@ -103,7 +105,17 @@ impl<'w> Stage<'w> {
     /// The cells that a viewer is in, all of those that are as near as rounding.
     fn locate(&self, eye: Point3) -> Vec<CellId> {
         let near = |leaf: &WorldLeaf| leaf.depth(eye) > -1e-3 * self.clear;
-        (0..).zip(&self.leafs).filter(|(_, leaf)| near(leaf)).map(|(id, _)| CellId(id)).collect()
+        let mut cells: Vec<CellId> =
+            self.of.iter().zip(&self.leafs).filter(|(_, leaf)| near(leaf)).map(|(id, _)| CellId(*id)).collect();
+        cells.sort_unstable();
+        cells.dedup();
+        cells
+    }
+
+    /// The corners of all leafs of a cell.
+    fn corners(&self, cell: u32) -> Vec<Point3> {
+        let leafs = self.leafs.iter().zip(self.of).filter(|(_, of)| **of == cell);
+        leafs.flat_map(|(leaf, _)| leaf.faces.concat()).collect()
     }
 }
 
@@ -126,8 +138,8 @@ struct Counts {
 }
 
 /// Looks from cells, portals and their corners.
-fn check(world: &World, n_eyes: usize, counts: &mut Counts) -> Result<(), String> {
-    let (stage, table) = (Stage::new(world), table(world));
+fn check(world: &World, merged: &Merged, n_eyes: usize, counts: &mut Counts) -> Result<(), String> {
+    let (stage, table) = (Stage::new(world, &merged.of), table(world, merged));
     if table.portals().is_empty() {
         return Ok(());
     }
@@ -198,7 +210,7 @@ fn check(world: &World, n_eyes: usize, counts: &mut Counts) -> Result<(), String
                 if frame == 2 && kind % 3 == 0 && closed.is_empty() {
                     let mut confirmed = seen.clone();
                     for &cell in &answers[4].cells {
-                        let faces = stage.leafs[cell as usize].faces.concat();
+                        let faces = stage.corners(cell);
                         for _ in 0..40 {
                             if !confirmed.cells.contains(&cell) {
                                 stage.shoot(&[], eye, minus(mean(&faces, &mut random), eye), &mut confirmed);
@@ -220,7 +232,9 @@ fn check(world: &World, n_eyes: usize, counts: &mut Counts) -> Result<(), String
 fn convex_worlds_are_seen_as_rays_see_them() {
     let mut counts = Counts::default();
     let mut look = |name: &str, world: &World, n_eyes: usize| {
-        check(world, n_eyes, &mut counts).unwrap_or_else(|wrong| panic!("{name}: {wrong}"));
+        let leafs: Vec<u32> = (0..world.graph.n_cells() as u32).collect();
+        let leafs = Merged::new(&world.graph, &leafs);
+        check(world, &leafs, n_eyes, &mut counts).unwrap_or_else(|wrong| panic!("{name}: {wrong}"));
     };
     for (name, world) in world_families() {
         look(name, &world, 12);
@@ -239,4 +253,21 @@ fn convex_worlds_are_seen_as_rays_see_them() {
     assert!(counts.n_frames > 2_000 && counts.n_seen > 6_000, "{counts:?}");
     assert!(counts.n_cells.is_sorted_by(|a, b| a > b), "{counts:?}");
     assert!(counts.n_confirmed * 100 > counts.n_exact * 85, "{counts:?}");
+}
+
+/// The same where leafs are merged to clusters that are not convex. What is solid within one hides nothing, so rays pass less of the answer.
+#[test]
+fn merged_clusters_are_seen_as_rays_see_them() {
+    let (mut counts, mut n_bent) = (Counts::default(), 0);
+    for seed in 0..16 {
+        let tilted_percent = if seed % 2 == 0 { 0 } else { 60 };
+        let options = BspWorldOptions { seed, leafs: 40, solid_percent: 45, tilted_percent };
+        let world = bsp_world(options).expect("options within their ranges");
+        let merged = Merged::at_random(&world.graph, &mut Random::new(seed, 5), seed % 4 < 2);
+        n_bent += usize::from(merged.as_if_convex().portals().len() < merged.graph.portals().len());
+        check(&world, &merged, 16, &mut counts).unwrap_or_else(|wrong| panic!("seed {seed}: {wrong}"));
+    }
+    eprintln!("{n_bent} {counts:?}");
+    assert!(n_bent > 12 && counts.n_frames > 1_000 && counts.n_seen > 3_000, "{n_bent} {counts:?}");
+    assert!(counts.n_confirmed * 100 > counts.n_exact * 70, "{counts:?}");
 }

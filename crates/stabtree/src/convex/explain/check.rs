@@ -3,7 +3,7 @@
 use super::{BlockedConvex, Blocking, ConvexExplanation, ConvexGate, ConvexPath, ConvexProof};
 use crate::explanation::{Barrier, Sight};
 use sightlines_cells::{CellGraph, CellId, Convex, Point3, Portal3};
-use sightlines_sightline::Verdict;
+use sightlines_sightline::{Line3, Verdict};
 use std::collections::HashMap;
 
 /// Most gates followed: enough for any explanation that the search finds.
@@ -20,6 +20,7 @@ pub(super) fn holds(explanation: &ConvexExplanation, graph: &CellGraph<Convex>, 
             are_there(gates, graph)
                 && is_chain(gates, graph, from, to)
                 && gates.iter().all(|gate| line.passes(&gate.shape(graph)))
+                && gates.windows(2).all(|pair| may_meet(line, [pair[0].shape(graph), pair[1].shape(graph)]))
         }
         Verdict::Hidden(Barrier::NotConnected) => from != to && are_all_stopped(graph, from, to, &[]),
         Verdict::Hidden(Barrier::Blocked(ConvexProof { start, blocked })) => {
@@ -35,6 +36,22 @@ pub(super) fn holds(explanation: &ConvexExplanation, graph: &CellGraph<Convex>, 
 
 fn are_there(gates: &[ConvexGate], graph: &CellGraph<Convex>) -> bool {
     gates.iter().all(|gate| gate.portal.idx() < graph.portals().len())
+}
+
+/// Whether a line that passes two portals may meet the first before the second, as far as their corners are off their
+/// planes. If the cell between is convex, it does.
+fn may_meet(line: &Line3, portals: [Portal3; 2]) -> bool {
+    let way: Point3 = [0, 1, 2].map(|k| line.b[k] - line.a[k]);
+    let [[from, _], [_, to]] = portals.map(|portal| {
+        let corners = || portal.corners().iter().chain([&line.a, &line.b]).flatten();
+        let off = portal.unevenness() + 2f64.powi(-40) * corners().fold(0.0, |m: f64, x| m.max(x.abs()));
+        let (normal, corner) = (portal.normal(), portal.corners()[0]);
+        let dot = |a: Point3| (0..3).map(|k| a[k] * normal[k]).sum::<f64>();
+        let (at, off) = (dot([0, 1, 2].map(|k| corner[k] - line.a[k])), off * dot(normal).sqrt());
+        let along = dot(way);
+        if along > 0.0 { [(at - off) / along, (at + off) / along] } else { [f64::NEG_INFINITY, f64::INFINITY] }
+    });
+    from <= to
 }
 
 /// Whether gates lead from one cell to another, and into no cell twice.

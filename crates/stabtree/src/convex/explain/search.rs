@@ -125,9 +125,11 @@ impl<'g> Search<'g> {
             None => self.ask(&sequence, None),
         };
         match line {
-            Verdict::Visible(line) => self.visible = Some((sequence, line)),
+            Verdict::Visible(line) if self.gates.are_in_order(&sequence, [line.a, line.b]) => {
+                self.visible = Some((sequence, line));
+            }
             Verdict::Hidden(_) => {}
-            Verdict::Undecided(_) => self.undecided = self.undecided.take().or(Some(sequence)),
+            Verdict::Visible(_) | Verdict::Undecided(_) => self.undecided = self.undecided.take().or(Some(sequence)),
         }
     }
 
@@ -213,7 +215,8 @@ impl<'g> Search<'g> {
         let chain = [&self.chain[..], &passed[..=end]].concat();
         let mut is_met = self.is_met.clone();
         let once = passed[..=end].iter().all(|&g| !std::mem::replace(&mut is_met[self.gates.get(g).to as usize], true));
-        if once && chain.iter().all(|&gate| line.passes(self.gates.shape(gate))) {
+        let passes = |&gate: &u32| line.passes(self.gates.shape(gate));
+        if once && chain.iter().all(passes) && self.gates.are_in_order(&chain, [line.a, line.b]) {
             self.visible = Some((chain, line));
         }
     }
