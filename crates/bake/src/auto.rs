@@ -286,8 +286,8 @@ pub struct Choice {
 /// Chooses the method of a scene whose cells are decided, and puts it into the recipe.
 ///
 /// Cells that are given are few, and worth more work: line space takes the place of sheets for them, and is used in small scenes with walls along
-/// the axes too, of which it finds what several hide together; also where something hides from its front only, of which sheets do not know. Of more
-/// cells than a square of bits has room for, line space decides alone. An observer receives a report of each
+/// the axes too, of which it finds what several hide together; also where something hides from its front only, which hides nothing by sheets from
+/// cells that reach behind it. Of more cells than a square of bits has room for, line space decides alone. An observer receives a report of each
 /// measurement, and cannot cancel.
 pub(crate) fn choose_for(scene: &Scene, recipe: &mut Recipe, progress: Option<&dyn Observer>) -> Choice {
     if matches!(recipe.cells, CellsFrom::EyeLevel(_)) {

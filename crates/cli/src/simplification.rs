@@ -17,7 +17,6 @@ use sightlines::pvs::Table;
 use sightlines::simplify::SimplifyError;
 use sightlines::simplify::{Simplified, SimplifyOptions};
 use sightlines::verify::along_frame;
-use std::borrow::Cow;
 use std::fmt;
 use std::path::Path;
 
@@ -95,9 +94,7 @@ impl HowArgs {
         let options = self.buffers.options();
         let failed = |error| method_failed(path, error);
         options.check().map_err(|error| failed(error.into()))?;
-        // Whatever a face hides is to be hidden from both sides: the picture that is compared shows no other.
-        let both_sides = if scene.front_occluders().is_empty() { Cow::Borrowed(scene) } else { scene.opaque_part() };
-        let prepare = |method| OcclusionMethodFactory::new(method, &both_sides, &options).map_err(failed);
+        let prepare = |method| OcclusionMethodFactory::new(method, scene, &options).map_err(failed);
         Ok((choice_name(self.method), self.method.map(prepare).transpose()?))
     }
 

@@ -159,7 +159,7 @@ impl Umbra for ShaftUmbra<'_> {
 /// segment, still goes all the way round it, or the segment meets the outline itself. In either case it meets the surface,
 /// and does so between the planes' front and back. Exact.
 fn cuts(occluder: &Occluder, eyes: &[Point3], points: &[Point3]) -> bool {
-    let Some(in_front) = occluder.side_of(eyes) else { return false };
+    let Some(in_front) = occluder.hiding_side_of(eyes) else { return false };
     if occluder.side_of(points) != Some(!in_front) {
         return false;
     }

@@ -2,9 +2,8 @@
 
 use crate::conform::conform;
 use sightlines_geometry::vector::{add, dot, length, normal, scale, sub};
-use sightlines_geometry::{Aabb, BoxTree, Point3, orient3d, ray_box, ray_triangle};
+use sightlines_geometry::{Aabb, BoxTree, Point3, ray_box, ray_triangle};
 use sightlines_multifocal::mesh::Mesh;
-use std::collections::HashMap;
 
 /// A mesh with what is looked up for every line. Can be shared by threads.
 #[derive(Debug)]
@@ -39,25 +38,14 @@ impl Surface {
 
     /// The same of triangles that are welded already.
     pub fn of(mesh: Mesh) -> Self {
-        Self::build(mesh, Vec::new())
+        let front_only = mesh.front_only().to_vec();
+        Self::build(mesh, front_only)
     }
 
     /// The same of triangles that block lines in both directions, and of others that block only those that pass them from their front, where
     /// their corners go around counterclockwise, to their back.
     pub fn with_fronts(both_sides: &[[Point3; 3]], fronts: &[[Point3; 3]]) -> Self {
-        if fronts.is_empty() {
-            return Self::new(both_sides);
-        }
-        // Of triangles with the same corners the first stays; two with opposite fronts block in both directions.
-        let mut triangles = both_sides.to_vec();
-        let opposite = with_both_fronts(fronts);
-        triangles.extend(opposite.iter().map(|&k| fronts[k]));
-        let n_both_sides = triangles.len() as u32;
-        triangles.extend(fronts);
-        let mesh = Mesh::weld(&triangles);
-        let n = mesh.triangles().len() as u32;
-        let front_only = (0..n).map(|t| mesh.source(t) >= n_both_sides).collect();
-        Self::build(mesh, front_only)
+        Self::of(Mesh::weld_with_fronts(both_sides, fronts))
     }
 
     fn build(mut mesh: Mesh, mut front_only: Vec<bool>) -> Self {
@@ -99,9 +87,7 @@ impl Surface {
 
     /// Whether no point of a box is behind a triangle. Exact.
     pub(crate) fn is_in_front(&self, triangle: u32, volume: &Aabb<3>) -> bool {
-        let [a, b, c] = self.corners(triangle);
-        let sides = volume.corners().map(|eye| orient3d(a, b, c, eye));
-        sides.iter().all(|&side| side >= 0.0) && sides.iter().any(|&side| side > 0.0)
+        self.mesh.is_in_front(triangle, volume)
     }
 
     /// Whether a line meets the front of a triangle, as doubles have it.
@@ -168,22 +154,4 @@ impl Surface {
             }
         });
     }
-}
-
-/// Of triangles that lie on another one with the opposite front, the first of each such pair, by index.
-fn with_both_fronts(triangles: &[[Point3; 3]]) -> Vec<usize> {
-    let bits = |p: Point3| p.map(|x| (x + 0.0).to_bits());
-    // From the least corner on, the direction tells the front.
-    let key = |t: &[Point3; 3]| {
-        let [p, q, r] = t.map(bits);
-        let turns = [[p, q, r], [q, r, p], [r, p, q]];
-        turns.into_iter().min().unwrap_or([p, q, r])
-    };
-    let mut first: HashMap<[[u64; 3]; 3], usize> = HashMap::new();
-    (0..).zip(triangles).for_each(|(k, t)| _ = first.entry(key(t)).or_insert(k));
-    let is_first = |k: usize| {
-        let [p, q, r] = key(&triangles[k]);
-        first[&[p, q, r]] == k && first.get(&[p, r, q]).is_some_and(|&opposite| k < opposite)
-    };
-    (0..triangles.len()).filter(|&k| is_first(k)).collect()
 }

@@ -44,6 +44,8 @@ impl<'a> BufferJob<'a> {
     /// Checks a job.
     ///
     /// * `planes`: looking the same way, from the nearest to the farthest
+    /// * `occluders`: those that hide [from their front only](Occluder::is_front_only) count if all of the volume is in front of them; of all others
+    ///   backends find out
     /// * `carry`: whether the values of each plane are carried to the next one (re-projection): a texel is also blocked if
     ///   all lines from it to the volume cross blocked texels of the previous plane
     ///
@@ -73,7 +75,9 @@ impl<'a> BufferJob<'a> {
             return Err(BufferJobError::Order(i + 1));
         }
         let unit = unit(&volume, &planes, measure);
-        let occluders = occluders.into_iter().collect();
+        let eyes = volume.corners();
+        let hides = |o: &&Occluder| !o.is_front_only() || o.hiding_side_of(&eyes).is_some();
+        let occluders = occluders.into_iter().filter(hides).collect();
         Ok(Self { volume, planes, occluders, measure, carry, unit })
     }
 
@@ -87,7 +91,7 @@ impl<'a> BufferJob<'a> {
         &self.planes
     }
 
-    /// The occluders.
+    /// The occluders, without those that hide from their front only and have some of the volume not in front of them.
     pub fn occluders(&self) -> &[&'a Occluder] {
         &self.occluders
     }

@@ -36,6 +36,7 @@ pub struct Occluder {
     outline: Vec<Point3>,
     facets: Vec<[Point3; 3]>,
     bounds: Aabb<3>,
+    is_front_only: bool,
 }
 
 impl Occluder {
@@ -79,7 +80,19 @@ impl Occluder {
             }
         }
         let bounds = Aabb::around(outline.iter().chain(triangles.iter().flatten()).copied());
-        Ok(Self { outline, facets, bounds })
+        Ok(Self { outline, facets, bounds, is_front_only: false })
+    }
+
+    /// The same, which hides from eyes in front of all of its facets only: of triangles that hide from their fronts, all of which it turns as
+    /// they do.
+    #[must_use]
+    pub fn from_front(self) -> Self {
+        Self { is_front_only: true, ..self }
+    }
+
+    /// Whether it hides from eyes in front of it only.
+    pub const fn is_front_only(&self) -> bool {
+        self.is_front_only
     }
 
     /// The outline.
@@ -120,6 +133,11 @@ impl Occluder {
         } else {
             None
         }
+    }
+
+    /// The same, but `None` as well if the occluder hides from its front only, and `eyes` are behind it.
+    pub fn hiding_side_of(&self, eyes: &[Point3]) -> Option<bool> {
+        self.side_of(eyes).filter(|&front| front || !self.is_front_only)
     }
 }
 

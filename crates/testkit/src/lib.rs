@@ -25,6 +25,7 @@ mod exact;
 pub mod eye;
 pub mod eye_boxes;
 pub mod from_region;
+pub mod fronts;
 pub mod lp;
 pub mod meshes;
 pub mod mutate;

@@ -1,10 +1,12 @@
 //! Simplified scenes against rays: by tables, in levels, and on real scenes.
 
+use proptest::prelude::*;
+use sightlines::bake::methods::{BufferOptions, OcclusionMethod, OcclusionMethodFactory};
 use sightlines::bake::{SceneBakeOptions, bake_scene};
-use sightlines::cells::{CellId, Scene};
+use sightlines::cells::{CellId, Scene, SceneObject};
 use sightlines::formats::scene::{BackFaces, SceneReadOptions, read_scene_with};
 use sightlines::formats::view_cells::read_view_cells;
-use sightlines::geometry::{Aabb, Point3};
+use sightlines::geometry::{Aabb, Point3, Random};
 use sightlines::kdtree::SceneOptions;
 use sightlines::multifocal::mesh::{SheetMethod, Sheets};
 use sightlines::multifocal::{FromRegion, Volume};
@@ -14,6 +16,9 @@ use sightlines::simplify::{
     HiddenBy, Level, LevelOptions, MeasureOptions, Simplified, SimplifyError, SimplifyOptions, Views, ViewsError,
     estimate, levels, measure, simplify,
 };
+use sightlines_testkit::draw;
+use sightlines_testkit::fronts::{Mixed, mixed};
+use sightlines_testkit::meshes::boxes;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -140,6 +145,68 @@ fn what_does_not_fit_is_refused() {
     let by = HiddenBy { method: None, table: Some(&coarse) };
     let error = simplify(&scene, &views, &by, &SimplifyOptions::default()).unwrap_err();
     assert_eq!(error, SimplifyError::OtherTable { cell: last.0 });
+}
+
+/// A scene of what hides from both sides, the first object, and of what hides from its front.
+fn scene_of(mixed: &Mixed) -> Scene {
+    let object = |soup: &[[Point3; 3]]| SceneObject {
+        name: String::new(),
+        vertices: soup.concat(),
+        triangles: (0..soup.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect(),
+    };
+    let scene = Scene::new(vec![object(&mixed.both_sides), object(&mixed.fronts)]).unwrap();
+    scene.with_front_occluders(vec![1]).unwrap()
+}
+
+/// How many triangles are removed as hidden from a box of eyes, and one that a segment reaches past backs all the same.
+///
+/// * `occluders`: the scene that hides
+fn removed(mixed: &Mixed, occluders: &Scene, eyes: &Aabb<3>, seed: u64) -> (usize, Option<String>) {
+    let method = OcclusionMethod::ALL[seed as usize % OcclusionMethod::ALL.len()];
+    let buffers = BufferOptions { planes: 3, texels: 32, ..BufferOptions::default() };
+    let factory = OcclusionMethodFactory::new(method, occluders, &buffers).unwrap();
+    let make = || factory.instance();
+    let by = HiddenBy { method: Some(&make), table: None };
+    let views = Views::new([Volume::new(*eyes).unwrap()]).unwrap();
+    let left = simplify(&scene_of(mixed), &views, &by, &SimplifyOptions { threads: 1, ..SimplifyOptions::default() });
+    let hidden = left.unwrap().hidden;
+    let mut random = Random::new(seed);
+    let mut wrong = None;
+    for (object, k) in hidden.iter().enumerate().flat_map(|(object, all)| all.iter().map(move |&k| (object, k))) {
+        let mut others = mixed.clone();
+        let soup = if object == 0 { &mut others.both_sides } else { &mut others.fronts };
+        let [a, b, c] = soup.remove(k as usize);
+        // Parts of sixteenths, so that points of most triangles are exact.
+        let part = |u: f64, v: f64| std::array::from_fn(|i| a[i] + (b[i] - a[i]) * u + (c[i] - a[i]) * v);
+        let inner = (1..15).flat_map(|i| (1..16 - i).map(move |j| part(f64::from(i) / 16.0, f64::from(j) / 16.0)));
+        let free = inner.map(|p| [random.point(eyes), p]).find(|&segment| others.is_free(segment));
+        wrong = wrong.or(free.map(|free| format!("{method:?} removes {:?}: {free:?}", [a, b, c])));
+    }
+    (hidden.concat().len(), wrong)
+}
+
+proptest! {
+    /// Invariant: no segment that passes triangles with one side from behind only reaches a triangle that is removed as hidden.
+    #[test]
+    fn nothing_that_is_seen_past_backs_is_removed(mixed in mixed(), [eyes, _] in boxes(), seed in any::<u64>()) {
+        let (_, wrong) = removed(&mixed, &scene_of(&mixed), &eyes, seed);
+        prop_assert!(wrong.is_none(), "{wrong:?}");
+    }
+}
+
+/// The twin: what hides from its front removes triangles that the rest does not; and the impostor: what hides from both sides removes some that
+/// are seen past backs.
+#[test]
+fn triangles_behind_fronts_are_removed() {
+    let [mut n_with, mut n_without, mut n_wrong] = [0; 3];
+    for (seed, (mixed, [eyes, _])) in (0..).zip(draw(&(mixed(), boxes()), 150)) {
+        let scene = scene_of(&mixed);
+        let both_sides = Scene::new(scene.objects().to_vec()).unwrap();
+        n_with += removed(&mixed, &scene, &eyes, seed).0;
+        n_without += removed(&mixed, &scene.opaque_part(), &eyes, seed).0;
+        n_wrong += usize::from(removed(&mixed, &both_sides, &eyes, seed).1.is_some());
+    }
+    assert!(n_with > n_without * 3 / 2 && n_wrong > 20, "{n_with} {n_without} {n_wrong}");
 }
 
 fn real(scene: &str, file: &str) -> Option<PathBuf> {

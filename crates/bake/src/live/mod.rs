@@ -4,7 +4,8 @@
 //! The scene is cut with what the last one leaves of its faces ([`SceneCutter`]); [`LiveAxial`] updates the visibility
 //! where walls differ. The table is the one that [`bake_scene`](crate::bake_scene) makes of the new scene, byte for
 //! byte, unless pairs are given up ([`SceneReport::n_assumed`](crate::SceneReport::n_assumed)): an update may know from
-//! an easier earlier search that these are hidden.
+//! an easier earlier search that these are hidden. Walls with one side hide nothing in it, but where two stand back to back: it is the table of
+//! [`SceneOptions::only_both_sides`].
 //!
 //! Doors at run time are portals, named by their ids. A portal that is closed is a wall, for the rows of the table only: its
 //! portals stay, so that ids mean the same when it is opened.

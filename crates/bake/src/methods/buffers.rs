@@ -1,9 +1,9 @@
 //! Multifocal buffers and sheets as a method by name.
 
-use super::{Backend, Entry, OpenBackend, Prepared, triangles};
+use super::{Backend, Entry, OpenBackend, Prepared, welded};
 use sightlines_cells::Scene;
 use sightlines_geometry::Aabb;
-use sightlines_multifocal::mesh::{Mesh, PatchOptions, SheetMethod, Sheets, patches};
+use sightlines_multifocal::mesh::{PatchOptions, SheetMethod, Sheets, patches_of};
 use sightlines_multifocal::{FromRegion, Layout, Measure, Multifocal, OccluderSelection, UnionMethod};
 use std::sync::Arc;
 
@@ -106,19 +106,13 @@ struct Buffers {
 impl Buffers {
     fn new(scene: &Scene, options: &BufferOptions) -> Result<Self, super::MethodError> {
         let backend = options.backend.open(options.warn)?;
-        let triangles = triangles(scene);
-        let patches = if options.planes > 0 { patches(&triangles, &PatchOptions::default()) } else { Vec::new() };
-        let sheets = (options.sheets > 0).then(|| (Arc::new(Sheets::new(&triangles)), options.sheets as usize));
-        let fronts: Vec<_> = scene.front_occluding_triangles().collect();
-        let with_fronts = options.line_space && !fronts.is_empty();
-        let with_fronts = with_fronts.then(|| super::line_space::with_fronts(&triangles, &fronts));
-        let mesh = (options.line_space && fronts.is_empty()).then(|| Mesh::weld(&triangles));
-        // Large scenes need the room for what line space prepares.
-        drop(triangles);
+        let mesh = welded(scene);
+        let patches = if options.planes > 0 { patches_of(&mesh, &PatchOptions::default()) } else { Vec::new() };
+        let sheets = (options.sheets > 0).then(|| (Arc::new(Sheets::of(mesh.clone())), options.sheets as usize));
         Ok(Self {
             chosen: Arc::new(OccluderSelection::new(patches, options.occluders as usize)),
             sheets,
-            line_space: with_fronts.or_else(|| mesh.map(super::line_space::prepared)),
+            line_space: options.line_space.then(|| super::line_space::prepared(mesh)),
             scene: scene.bounds(),
             layout: options.layout(),
             backend,

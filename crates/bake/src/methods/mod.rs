@@ -16,6 +16,7 @@ use sightlines_cells::Scene;
 use sightlines_geometry::Point3;
 use sightlines_line_space::Surface;
 use sightlines_multifocal::FromRegion;
+use sightlines_multifocal::mesh::Mesh;
 use std::fmt;
 use std::str::FromStr;
 use std::sync::Arc;
@@ -151,9 +152,11 @@ impl OcclusionMethodFactory {
     }
 }
 
-/// The triangles of all objects that hide.
-fn triangles(scene: &Scene) -> Vec<[Point3; 3]> {
-    scene.occluding_triangles().collect()
+/// The triangles of all objects that hide, with the sides that they hide from.
+fn welded(scene: &Scene) -> Mesh {
+    let [both_sides, fronts]: [Vec<[Point3; 3]>; 2] =
+        [scene.occluding_triangles().collect(), scene.front_occluding_triangles().collect()];
+    Mesh::weld_with_fronts(&both_sides, &fronts)
 }
 
 #[cfg(test)]

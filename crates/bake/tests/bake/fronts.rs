@@ -3,10 +3,14 @@
 use crate::places::{block, scene};
 use sightlines_bake::methods::{BufferOptions, OcclusionMethod, OcclusionMethodFactory};
 use sightlines_bake::region::pack_regions;
-use sightlines_bake::{BakeRequest, CellsFrom, RegionBakeOptions, Runtime, SceneMethod, bake_regions};
+use sightlines_bake::{
+    BakeRequest, CellsFrom, LiveScene, RegionBakeOptions, Runtime, SceneBakeOptions, SceneMethod, bake_regions,
+    bake_scene,
+};
 use sightlines_cells::{CellId, Scene, SceneObject};
 use sightlines_formats::{ViewCell, ViewCells};
 use sightlines_geometry::Aabb;
+use sightlines_kdtree::SceneOptions;
 use sightlines_packed::{PackOptions, SizeClass, pack};
 use sightlines_progress::Budget;
 use sightlines_pvs::{ObjectId, Table};
@@ -146,4 +150,20 @@ fn rows_one_by_one_make_the_same_packed_table() {
     assert!(bytes == pack(&table, &large).unwrap());
     let n = N as u64;
     assert!(report.n_visible_pairs < n * (n - 1) / 2, "nothing is hidden");
+}
+
+/// A table that is kept up to date takes nothing from walls with one side, as one without them.
+#[test]
+fn live_tables_take_nothing_from_walls_with_one_side() {
+    let only = |only_both_sides| {
+        let cut = SceneOptions { detail_below: Some(0.0), only_both_sides, ..SceneOptions::default() };
+        SceneBakeOptions { cut, ..SceneBakeOptions::default() }
+    };
+    let scene = hall([true, false, true, true], true);
+    let mut live = LiveScene::new(hall([true; N - 1], true), &only(false)).expect("a table");
+    live.update(scene.clone()).expect("a table");
+    let [all, both_sides] = [false, true].map(|only_both| bake_scene(&scene, &only(only_both)).expect("a table").table);
+    assert!(live.table().to_bytes() == both_sides.to_bytes());
+    // The impostor hides more.
+    assert!(all.to_bytes() != both_sides.to_bytes());
 }

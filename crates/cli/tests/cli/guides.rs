@@ -89,7 +89,9 @@ fn the_guide_for_engines_works() {
 fn the_guide_for_servers_works() {
     let folder = Folder::new();
     assert_eq!(follow(&folder, "servers.md"), 3);
-    let rel = |args: &[&str]| folder.run(&[&["relevance", "level.pvs", "-o", "out.rel", "--json"], args].concat()).expect(0).json();
+    let rel = |args: &[&str]| {
+        folder.run(&[&["relevance", "level.pvs", "-o", "out.rel", "--json"], args].concat()).expect(0).json()
+    };
     let hidden = |reply: &serde_json::Value, i: usize| reply["reaches"][i]["hidden"].as_f64().expect("a share");
     let straight = rel(&[]);
     let n = straight["n_cells"].as_f64().expect("a number");
@@ -100,7 +102,8 @@ fn the_guide_for_servers_works() {
     assert!(hidden(&walked, 5) > hidden(&straight, 5), "ways through doors are longer");
     let one = rel(&["--one-moves", "--ladder", "1,2"]);
     assert!(one["reaches"].as_array().expect("reaches").len() == 3 && hidden(&one, 1) >= hidden(&straight, 3));
-    for (args, why) in [(["--ladder", "2,1"], "not above the reach before it"), (["--ladder", "nan"], "is not finite")] {
+    for (args, why) in [(["--ladder", "2,1"], "not above the reach before it"), (["--ladder", "nan"], "is not finite")]
+    {
         let run = folder.run(&[&["relevance", "level.pvs", "-o", "bad.rel"], &args[..]].concat());
         assert!(run.code == 2 && run.err.contains(why), "{}", run.err);
     }

@@ -1,4 +1,5 @@
-//! Walls that hide from their front only, where nothing but the borders of cells is asked: in proofs and explanations.
+//! Walls that hide from their front only: where nothing but the borders of cells is asked, in proofs and explanations; and where scenes are
+//! simplified.
 
 use crate::common::Folder;
 use sightlines::cells::{Scene, SceneObject};
@@ -84,4 +85,41 @@ fn explanations_know_of_walls_of_one_side() {
     folder.write("t.pvs", Table::new(parts).expect("symmetric").to_bytes());
     let out = explain(0);
     assert!(out.ends_with("the table says that they do not: it is wrong\n"), "{out}");
+}
+
+/// What is behind a wall of one side goes for eyes in front of it, as behind a wall with two sides, and stays for eyes behind it; those on both sides
+/// see everything.
+#[test]
+fn walls_of_one_side_simplify_what_is_behind_them() {
+    let folder = Folder::new();
+    // Its front is towards lower x; the ends of the hall have two triangles each.
+    folder.write("hall.glb", hall(&[(5.0, false)]));
+    for method in ["multifocal", "shafts", "line-space"] {
+        let n_hidden = |volume: &str, backs: &str| {
+            let args =
+                ["simplify", "hall.glb", "--volume", volume, "--backs", backs, "--method", method, "-o", "out.glb"];
+            folder.run(&[&args[..], &["--json"]].concat()).expect(0).json()["n_hidden"].as_u64().expect("a number")
+        };
+        let [before, behind, across] = ["1,1,1,2,2,2", "8,1,1,9,2,2", "1,1,1,9,2,2"];
+        assert_eq!([before, behind, across].map(|eyes| n_hidden(eyes, "either")), [2, 0, 0], "{method}");
+        assert_eq!([before, behind, across].map(|eyes| n_hidden(eyes, "drawn")), [2, 2, 0], "{method}");
+    }
+}
+
+/// The buffer of a scene has walls of one side in it for volumes in front of them.
+#[test]
+fn buffers_show_walls_of_one_side_from_their_front() {
+    let folder = Folder::new();
+    folder.write("hall.glb", hall(&[(5.0, false)]));
+    for each in [&[][..], &["--triangles"]] {
+        let n_blocked = |volume: &str, backs: &str| {
+            let args =
+                ["multifocal", "hall.glb", "--volume", volume, "--plane", "x=9.5", "--backs", backs, "-o", "out.png"];
+            let reply = folder.run(&[&args[..], each, &["--json"]].concat()).expect(0).json();
+            reply["n_blocked"].as_u64().expect("a number")
+        };
+        let [before, behind] = ["1,1,1,2,2,2", "6,1,1,7,2,2"];
+        assert!(n_blocked(before, "either") > 0 && n_blocked(behind, "either") == 0);
+        assert_eq!(n_blocked(before, "either"), n_blocked(before, "drawn"));
+    }
 }

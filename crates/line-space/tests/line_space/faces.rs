@@ -1,6 +1,5 @@
 //! Questions about the sides of boxes: together they are the question about the box.
 
-use crate::fronts::{Mixed, corner, lattice, mixed};
 use proptest::prelude::*;
 use sightlines_geometry::{Aabb, Point3, Random};
 use sightlines_line_space::{FaceEffort, FaceExit, FaceSearch, FaceTarget, LineSpace, Surface};
@@ -8,6 +7,7 @@ use sightlines_multifocal::{BackendError, FromRegion, Guarantee, Umbra, Volume};
 use sightlines_testkit::conformance::from_regions::wrong;
 use sightlines_testkit::conformance::{FromRegions, RegionScene, Suite};
 use sightlines_testkit::draw;
+use sightlines_testkit::fronts::{Mixed, corner, lattice, mixed};
 use sightlines_testkit::meshes::{boxes, quad, soup};
 use std::sync::Arc;
 

@@ -25,7 +25,7 @@ use std::collections::BTreeSet;
 /// An edge, by its ends, at which the coverage by triangles changes.
 type Border = [Point2; 2];
 
-/// Triangles on one plane that are connected by edges.
+/// Triangles on one plane that are connected by edges, and hide from the same sides.
 #[derive(Debug)]
 struct Piece {
     axis: usize,
@@ -64,18 +64,35 @@ pub(super) fn convex_polygons(mesh: &Mesh, options: &PatchOptions) -> Found {
     found
 }
 
+/// The sides that a triangle across an axis hides from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Sides {
+    Both,
+    Low,
+    High,
+}
+
+fn sides(mesh: &Mesh, triangle: u32, axis: usize) -> Sides {
+    let [a, b, c] = mesh.corners(triangle).map(|p| flat(axis, p));
+    match mesh.is_front_only(triangle) {
+        false => Sides::Both,
+        true if orient2d(a, b, c) > 0.0 => Sides::High,
+        true => Sides::Low,
+    }
+}
+
 /// The pieces of all planes with at least two triangles.
 fn pieces(mesh: &Mesh) -> Vec<Piece> {
-    let mut on_planes: Vec<(usize, u64, u32)> = Vec::new();
+    let mut on_planes: Vec<(usize, u64, Sides, u32)> = Vec::new();
     for t in 0..mesh.triangles().len() as u32 {
         let [a, b, c] = mesh.corners(t);
         let axis = (0..3).find(|&k| a[k] == b[k] && b[k] == c[k]);
-        on_planes.extend(axis.map(|k| (k, a[k].to_bits(), t)));
+        on_planes.extend(axis.map(|k| (k, a[k].to_bits(), sides(mesh, t, k), t)));
     }
     on_planes.sort_unstable();
     let mut pieces = Vec::new();
-    for plane in on_planes.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
-        let triangles: Vec<u32> = plane.iter().map(|p| p.2).collect();
+    for plane in on_planes.chunk_by(|a, b| (a.0, a.1, a.2) == (b.0, b.1, b.2)) {
+        let triangles: Vec<u32> = plane.iter().map(|p| p.3).collect();
         split(mesh, plane[0].0, f64::from_bits(plane[0].1), &triangles, &mut pieces);
     }
     pieces
@@ -186,7 +203,7 @@ impl Piece {
                 covered.extend(self.triangles.iter().copied().filter(inside));
                 let key: Vec<[u64; 2]> = rotated(&polygon).iter().map(|p| [p.x.to_bits(), p.y.to_bits()]).collect();
                 if known.insert(key) {
-                    found.occluders.extend(self.occluder(&polygon));
+                    found.occluders.extend(self.occluder(mesh, &polygon));
                 }
             }
         }
@@ -246,16 +263,20 @@ impl Piece {
         is_good(&smaller).then_some(smaller)
     }
 
-    fn occluder(&self, polygon: &[Point2]) -> Option<Occluder> {
+    fn occluder(&self, mesh: &Mesh, polygon: &[Point2]) -> Option<Occluder> {
         let lifted = |p: &Point2| {
             let mut q = [self.at; 3];
             q[(self.axis + 1) % 3] = p.x;
             q[(self.axis + 2) % 3] = p.y;
             q
         };
-        let outline: Vec<Point3> = polygon.iter().map(lifted).collect();
+        let mut outline: Vec<Point3> = polygon.iter().map(lifted).collect();
+        let triangle = self.triangles[0];
+        if sides(mesh, triangle, self.axis) == Sides::Low {
+            outline.reverse();
+        }
         let fan: Vec<[Point3; 3]> = outline[1..].windows(2).map(|w| [outline[0], w[0], w[1]]).collect();
-        Occluder::patch(outline, &fan).ok()
+        Some(mesh.sided(triangle, Occluder::patch(outline, &fan).ok()?))
     }
 }
 

@@ -190,6 +190,10 @@ impl<'a> Grower<'a> {
         let n = self.outline.len();
         // Neighbours that turn alike run along their edge in opposite directions.
         let turned = ring[there] == self.outline[at];
+        let is_front_only = self.mesh.is_front_only(triangle);
+        if is_front_only != self.mesh.is_front_only(self.triangles[0].0) || is_front_only && turned {
+            return None;
+        }
         let own = self.normals[triangle as usize].map(|x| if turned { -x } else { x });
         let cosine = dot(own, self.normal);
         if cosine < self.options.least_cosine * (dot(own, own) * dot(self.normal, self.normal)).sqrt() {
@@ -321,7 +325,7 @@ impl<'a> Grower<'a> {
             if turned { [a, c, b] } else { [a, b, c] }
         };
         let triangles: Vec<[Point3; 3]> = patch.triangles.iter().map(corners).collect();
-        Occluder::patch(straightened(&outline), &triangles).ok()
+        Some(self.mesh.sided(patch.triangles[0].0, Occluder::patch(straightened(&outline), &triangles).ok()?))
     }
 }
 

@@ -9,6 +9,7 @@
 //! Every choice is heuristic; every claim is checked by exact predicates.
 
 mod flat;
+mod fronts;
 mod grow;
 mod method;
 mod patch;
@@ -22,7 +23,7 @@ mod vector;
 mod weld;
 
 pub use method::SheetMethod;
-pub use patch::patches;
+pub use patch::{patches, patches_of};
 pub use patch_options::PatchOptions;
 pub use select::{Chooser, select};
 pub use shaft::avoids;

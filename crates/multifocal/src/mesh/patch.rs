@@ -21,8 +21,9 @@ pub fn patches(triangles: &[[Point3; 3]], options: &PatchOptions) -> Vec<Occlude
     patches_of(&Mesh::weld(triangles), options)
 }
 
-/// The patches of a mesh; see [`patches`].
-fn patches_of(mesh: &Mesh, options: &PatchOptions) -> Vec<Occluder> {
+/// The [`patches`] of a mesh. Of [triangles that hide from their fronts only](Mesh::is_front_only) there are patches of their own, which
+/// [do so too](Occluder::is_front_only): neighbours are joined whose fronts are on one side of the surface.
+pub fn patches_of(mesh: &Mesh, options: &PatchOptions) -> Vec<Occluder> {
     let found = convex_polygons(mesh, options);
     let mut occluders = found.occluders;
     let n = mesh.triangles().len();
@@ -38,7 +39,7 @@ fn patches_of(mesh: &Mesh, options: &PatchOptions) -> Vec<Occluder> {
             continue;
         }
         if grower.work > most_work {
-            occluders.extend(Occluder::triangle(mesh.corners(seed)));
+            occluders.extend(alone(mesh, seed));
             continue;
         }
         let patch = grower.grow(seed);
@@ -46,7 +47,7 @@ fn patches_of(mesh: &Mesh, options: &PatchOptions) -> Vec<Occluder> {
         occluders.extend(grower.occluder(&patch));
         // The starting triangle may have ended up in a notch.
         if !is_covered[seed as usize] {
-            occluders.extend(Occluder::triangle(mesh.corners(seed)));
+            occluders.extend(alone(mesh, seed));
         }
     }
     let area = |o: &Occluder| length(vector_area(o.outline()));
@@ -56,4 +57,9 @@ fn patches_of(mesh: &Mesh, options: &PatchOptions) -> Vec<Occluder> {
     sorted.sort_by(|a, b| b.0.total_cmp(&a.0));
     sorted.truncate(options.limit);
     sorted.into_iter().map(|o| o.1).collect()
+}
+
+/// A triangle as a patch.
+fn alone(mesh: &Mesh, triangle: u32) -> Option<Occluder> {
+    Some(mesh.sided(triangle, Occluder::triangle(mesh.corners(triangle)).ok()?))
 }

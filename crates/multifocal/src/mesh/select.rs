@@ -16,6 +16,7 @@ struct Sketch {
     /// Directions of length 1 in its plane, and its total extent along each.
     axes: [Point3; 2],
     widths: [f64; 2],
+    is_front_only: bool,
 }
 
 /// Sketches of many occluders, to choose from for many volumes.
@@ -27,7 +28,7 @@ pub struct Chooser {
 impl Chooser {
     /// Examines each once. O(corners).
     pub fn new(occluders: &[Occluder]) -> Self {
-        Self { sketches: occluders.iter().map(|o| Sketch::of(o.outline())).collect() }
+        Self { sketches: occluders.iter().map(Sketch::of).collect() }
     }
 
     /// The up to `n` occluders that hide most space in front of `plane` from all of `volume`, best first. Estimated, as
@@ -85,7 +86,8 @@ fn middle_of(volume: &Volume) -> Point3 {
 }
 
 impl Sketch {
-    fn of(outline: &[Point3]) -> Self {
+    fn of(occluder: &Occluder) -> Self {
+        let outline = occluder.outline();
         let area = vector_area(outline);
         let middle = scale(outline.iter().fold([0.0; 3], |s, &p| add(s, p)), 1.0 / outline.len() as f64);
         // Along the longest edge, as rectangles have it.
@@ -99,17 +101,17 @@ impl Sketch {
             let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
             high - low
         });
-        Self { middle, area, normal, axes, widths }
+        Self { middle, area, normal, axes, widths, is_front_only: occluder.is_front_only() }
     }
 
-    /// How it looks from the volume; `None` if the volume is not on one side of it.
+    /// How it looks from the volume; `None` if the volume is not on one side of it, or is on one that it does not hide from.
     fn shadow(&self, volume: &Volume, eye: Point3) -> Option<Shadow> {
         let b = volume.bounds();
         // The total extent of the volume along a direction.
         let reach = |a: Point3| (0..3).map(|k| (b.max[k] - b.min[k]) * a[k].abs()).sum::<f64>();
         let way = sub(self.middle, eye);
-        let facing = dot(self.normal, way).abs();
-        if facing <= reach(self.normal) / 2.0 {
+        let facing = dot(self.normal, way);
+        if facing.abs() <= reach(self.normal) / 2.0 || self.is_front_only && facing > 0.0 {
             return None;
         }
         // From one eye the shadow grows with the distance; eyes apart from each other reduce it on both sides.

@@ -17,6 +17,9 @@
 //! meets `F` as `F` is closed; not at its end in `E` (1), so before. It may meet `F` at its other end: an eye that
 //! touches a wall sees nothing through it.
 //!
+//! Triangles that hide from their fronts only are in `F` if no point of `V` is behind them, and some are before: whoever meets one comes
+//! from its front. For this volume the others are not there.
+//!
 //! `F` is arbitrary. Here it is found by walking over the surface that the eyes see, from each triangle that a segment
 //! hits first, around open or shared edges, to the next triangle on the same side; triangles visited on both sides are
 //! left out. Soundness does not depend on the walk: the three conditions are checked afterwards.
@@ -54,7 +57,7 @@ impl Sheets {
         Self::of(Mesh::weld(triangles))
     }
 
-    /// Of a mesh. O(n log² n).
+    /// Of a mesh, with the sides that its triangles hide from. O(n log² n).
     pub fn of(mesh: Mesh) -> Self {
         let n = mesh.triangles().len() as u32;
         let boxes: Vec<Aabb<3>> = (0..n).map(|t| Aabb::around(mesh.corners(t))).collect();
@@ -115,17 +118,24 @@ impl Sheets {
     }
 
     /// The next side on the same side of the surface, around an edge: in a turn around the edge, the upper side of a
-    /// triangle is followed by the lower side of the next one.
-    fn next_side(&self, side: Side, at: usize) -> Side {
+    /// triangle is followed by the lower side of the next one. Also whether any were passed over that are not `there`.
+    fn next_side(&self, side: Side, at: usize, mut there: impl FnMut(u32) -> bool) -> (Side, bool) {
         let edge = self.mesh.outline_edges(side.triangle)[at];
         let up = side.front == self.is_forward(side.triangle, at);
         let around = self.around(edge);
         let n = around.len();
-        let i = around.iter().position(|&t| t == side.triangle).expect("an edge of a triangle lists it");
-        let triangle = around[if up { (i + 1) % n } else { (i + n - 1) % n }];
-        let there = self.mesh.outline_edges(triangle).iter().position(|&e| e == edge);
-        let there = there.expect("a triangle of an edge has it");
-        Side { triangle, front: self.is_forward(triangle, there) != up }
+        let mut i = around.iter().position(|&t| t == side.triangle).expect("an edge of a triangle lists it");
+        let mut next = || {
+            i = if up { (i + 1) % n } else { (i + n - 1) % n };
+            around[i]
+        };
+        let (mut triangle, mut passed_any) = (next(), false);
+        while !there(triangle) {
+            (triangle, passed_any) = (next(), true);
+        }
+        let at = self.mesh.outline_edges(triangle).iter().position(|&e| e == edge);
+        let at = at.expect("a triangle of an edge has it");
+        (Side { triangle, front: self.is_forward(triangle, at) != up }, passed_any)
     }
 }
 
@@ -200,7 +210,7 @@ pub struct SheetTester<'a> {
     from_volume: Vec<u32>,
     /// The volume of the current queries, and its mark.
     volume: (Aabb<3>, u32),
-    /// Whether the walk met an edge without exactly two triangles.
+    /// Whether the walk met an edge without exactly two triangles that are there.
     forked: bool,
     chain: Vec<u32>,
 }
@@ -308,8 +318,10 @@ impl SheetTester<'_> {
                 if self.misses(pair, sheets.mesh.outline_edges(side.triangle)[at]) {
                     continue;
                 }
-                let next = sheets.next_side(side, at);
-                self.forked |= sheets.around(sheets.mesh.outline_edges(side.triangle)[at]).len() != 2;
+                let (mark, from_volume) = (self.volume.1, &mut self.from_volume);
+                let is_there = |t: u32| sheets.is_there(pair.v, t, mark, &mut from_volume[t as usize]);
+                let (next, passed_any) = sheets.next_side(side, at, is_there);
+                self.forked |= passed_any || sheets.around(sheets.mesh.outline_edges(side.triangle)[at]).len() != 2;
                 if next == start.other() {
                     self.walked[next.index()] = self.epoch;
                     return false;
@@ -375,17 +387,28 @@ impl SheetTester<'_> {
 }
 
 impl Sheets {
-    /// Whether a triangle may hide `e` from `v`: it touches neither `e` nor the inside of `v`.
+    /// Whether a triangle may hide something from `v`: it does not touch the inside of `v`, which is before it if it hides from its front only.
     ///
     /// * `mark`: that of the volume
     /// * `known`: the mark of the last volume that was asked about, and the answer in the lowest bit
-    fn may_hide(&self, v: &Aabb<3>, e: &Aabb<3>, triangle: u32, mark: u32, known: &mut u32) -> bool {
+    fn may_hide_from(&self, v: &Aabb<3>, triangle: u32, mark: u32, known: &mut u32) -> bool {
         if *known >> 1 != mark {
-            *known = mark << 1 | u32::from(avoids(&self.mesh.corners(triangle), v, true));
+            let faces = || !self.mesh.is_front_only(triangle) || self.mesh.is_in_front(triangle, v);
+            *known = mark << 1 | u32::from(avoids(&self.mesh.corners(triangle), v, true) && faces());
         }
+        *known & 1 == 1
+    }
+
+    /// Whether walks from `v` meet a triangle: those that hide from their front only have to hide something.
+    fn is_there(&self, v: &Aabb<3>, triangle: u32, mark: u32, known: &mut u32) -> bool {
+        !self.mesh.is_front_only(triangle) || self.may_hide_from(v, triangle, mark, known)
+    }
+
+    /// Whether a triangle may hide `e` from `v`: it may hide something, and does not touch `e`.
+    fn may_hide(&self, v: &Aabb<3>, e: &Aabb<3>, triangle: u32, mark: u32, known: &mut u32) -> bool {
         let b = &self.boxes[triangle as usize];
         let is_apart = || (0..3).any(|k| b.min[k] > e.max[k] || b.max[k] < e.min[k]);
-        if *known & 1 == 0 {
+        if !self.may_hide_from(v, triangle, mark, known) {
             return false;
         }
         let corners = || self.mesh.corners(triangle);

@@ -29,6 +29,8 @@ pub struct Mesh {
     /// Where the triangles of each edge start, and the end.
     around_starts: Vec<u32>,
     around: Vec<u32>,
+    /// For each triangle whether it hides from its front only; empty if none does.
+    pub(super) front_only: Vec<bool>,
 }
 
 impl Mesh {

@@ -2,6 +2,7 @@
 
 mod benchmark;
 mod common;
+mod fronts;
 mod pieces;
 mod random;
 mod tables;

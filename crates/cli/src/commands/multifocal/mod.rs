@@ -15,7 +15,7 @@ use crate::surfaces::SurfaceArgs;
 use outcome::{FieldInfo, Outcome};
 use sightlines::bake::methods::{Backend, NotBuiltIn};
 use sightlines::geometry::Point3;
-use sightlines::multifocal::mesh::{PatchOptions, patches};
+use sightlines::multifocal::mesh::{Mesh, PatchOptions, patches_of};
 use sightlines::multifocal::{
     Buffer, BufferJob, BufferPlane, Measure, Occluder, PlaneChoice, Texels, Volume, render_by_first,
 };
@@ -81,11 +81,12 @@ pub(crate) fn run(args: &MultifocalArgs, _: Verbosity) -> Result<Done> {
     input::check_is_scene(&args.scene)?;
     let file = input::occluders(&args.scene, &args.surfaces.options_of_walls())?;
     let (up, scene) = (file.info.up, file.scene);
-    let triangles: Vec<[Point3; 3]> = scene.occluding_triangles().collect();
+    let both_sides: Vec<[Point3; 3]> = scene.occluding_triangles().collect();
+    let fronts: Vec<[Point3; 3]> = scene.front_occluding_triangles().collect();
     let volume = Volume::new(args.volume.0).about("--volume")?;
     let about = format!("--plane {}", args.plane);
     let plane = args.plane.plane(&volume, &scene.bounds(), args.texels).about(&about)?;
-    let occluders = occluders(&triangles, args.triangles);
+    let occluders = occluders(&both_sides, &fronts, args.triangles);
     let job = BufferJob::new(volume, vec![plane], &occluders, args.measure, false).about(&about)?;
     let failed = |error: NotBuiltIn| method_failed(&args.scene, error.into());
     let chain = args.backend.open(|text| tracing::warn!("{text}")).map_err(failed)?.chain();
@@ -93,15 +94,15 @@ pub(crate) fn run(args: &MultifocalArgs, _: Verbosity) -> Result<Done> {
     let by = render_by_first(chain, &job, &mut buffers, taken_over).in_file(&args.scene)?;
     let buffer = buffers.pop().expect("a backend fills a buffer for each plane, and there is one");
     let fields = (args.voronoi.is_some() || args.distance.is_some()).then(|| {
-        let features = Features::new(triangles.iter().copied());
+        let features = Features::new(both_sides.iter().chain(&fronts).copied());
         let field = NearestField::new(&features, &plane);
         (features, field)
     });
     let white = white(&buffer);
     let outcome = Outcome {
         scene: args.scene.display().to_string(),
-        n_triangles: triangles.len(),
-        n_occluders: occluders.len(),
+        n_triangles: both_sides.len() + fronts.len(),
+        n_occluders: job.occluders().len(),
         volume: [args.volume.0.min, args.volume.0.max],
         axis: plane.axis(),
         at: plane.at(),
@@ -143,11 +144,13 @@ fn check_outputs(args: &MultifocalArgs) -> Result<()> {
 }
 
 /// What hides: patches, or each triangle that has an area.
-fn occluders(triangles: &[[Point3; 3]], each: bool) -> Vec<Occluder> {
+fn occluders(both_sides: &[[Point3; 3]], fronts: &[[Point3; 3]], each: bool) -> Vec<Occluder> {
     if each {
-        triangles.iter().filter_map(|&corners| Occluder::triangle(corners).ok()).collect()
+        let occluder = |&corners: &[Point3; 3]| Occluder::triangle(corners).ok();
+        let fronts = fronts.iter().filter_map(occluder).map(Occluder::from_front);
+        both_sides.iter().filter_map(occluder).chain(fronts).collect()
     } else {
-        patches(triangles, &PatchOptions::default())
+        patches_of(&Mesh::weld_with_fronts(both_sides, fronts), &PatchOptions::default())
     }
 }
 
