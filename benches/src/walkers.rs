@@ -105,7 +105,19 @@ impl<'a> Ground<'a> {
     /// hides.
     fn is_open(&self, p: [f64; 3], place: &mut PlaceBuffer) -> bool {
         let cells = self.cells(p, place);
-        !cells.is_empty() && cells.iter().all(|cell| self.open[cell.idx()])
+        !cells.is_empty() && cells.iter().all(|cell| self.open[cell.idx()]) && self.has_room(p)
+    }
+
+    /// Whether a body with eyes at a point has room: as far as the corners of its box at the height of its eyes.
+    fn has_room(&self, p: [f64; 3]) -> bool {
+        let b = self.body(p).seen;
+        let flat = |mut q: [f64; 3]| {
+            if let Some(up) = self.up {
+                q[up] = p[up];
+            }
+            q
+        };
+        b.corners().into_iter().map(flat).all(|q| self.is_free(p, q))
     }
 
     /// How far the floor is below a point, at most `most`; rounded.
@@ -144,13 +156,7 @@ impl<'a> Ground<'a> {
             if let Some(up) = self.up {
                 p[up] += EYE * self.metre - far;
             }
-            // With some room around.
-            let room = [0, 1].iter().all(|&side| {
-                let mut q = p;
-                q[side * self.up.map_or(1, |up| if up == 2 { 1 } else { 2 })] += HALF * self.metre;
-                self.is_free(p, q)
-            });
-            if room && self.is_open(p, &mut place) && self.floor(p, 2.0 * self.metre).is_some() {
+            if self.is_open(p, &mut place) && self.floor(p, 2.0 * self.metre).is_some() {
                 return p;
             }
         }
