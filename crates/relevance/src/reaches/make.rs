@@ -151,9 +151,8 @@ mod tests {
         let before: [u64; 64] = std::array::from_fn(|_| random.bits());
         let mut after = before;
         transpose(&mut after);
-        for i in 0..64 {
-            assert!((0..64).all(|j| before[i] >> j & 1 == after[j] >> i & 1), "row {i}");
-        }
+        let bit = |rows: &[u64; 64], i: usize, j: usize| rows[i] >> j & 1;
+        assert!((0..64).all(|i| (0..64).all(|j| bit(&before, i, j) == bit(&after, j, i))));
         let n = 130;
         let mut square = Square::new(n);
         (0..n).for_each(|i| {

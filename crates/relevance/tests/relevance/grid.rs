@@ -121,7 +121,7 @@ pub(crate) fn distances(table: &Table, ways: Ways) -> Vec<Vec<f64>> {
                 }
             }
         }
-        for i in 0..n {
+        for (i, row) in far.iter_mut().enumerate() {
             // Bellman and Ford, as distances from the cell count at each portal.
             let here = cell(table, i);
             let mut walked: Vec<f64> =
@@ -133,10 +133,10 @@ pub(crate) fn distances(table: &Table, ways: Ways) -> Vec<Vec<f64>> {
                     }
                 }
             }
-            for j in 0..n {
+            for (j, far) in row.iter_mut().enumerate() {
                 let into = (0..m).filter(|&q| touches(q, CellId(j as u32)));
                 let walked = into.map(|q| walked[q]).fold(f64::INFINITY, f64::min);
-                far[i][j] = if i == j { 0.0 } else { far[i][j].max(walked) };
+                *far = if i == j { 0.0 } else { far.max(walked) };
             }
         }
     }

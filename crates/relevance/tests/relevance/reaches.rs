@@ -36,8 +36,6 @@ fn options() -> impl Strategy<Value = ReachOptions> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(300))]
-
     #[test]
     fn rungs_are_those_of_the_definition(grid in grids(), options in options()) {
         let table = grid.table();

@@ -7,8 +7,6 @@ use sightlines_pvs::CellId;
 use sightlines_relevance::{ReachOptions, Reaches, Relevance, RelevanceOptions};
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(200))]
-
     /// The time is that of the best pair of cells, and no look within it finds anything.
     #[test]
     fn times_are_those_of_the_definition(grid in grids(), seed: u64) {
