@@ -140,15 +140,7 @@ fn sweep(args: &Args, ground: &Ground<'_>, table: &Arc<Table>, reaches: &Reaches
             found.late[3] += u64::from(!was(&|a, b| nine_rays(ground, a, b)));
         }
         if tick % 50 == 0 {
-            withheld(
-                ground,
-                table,
-                &mut told,
-                [&walkers.at, before.last().expect("a tick")],
-                args,
-                &mut random,
-                &mut found,
-            );
+            withheld(ground, table, &mut told, &walkers.at, args, &mut random, &mut found);
         }
     }
     found
@@ -159,7 +151,7 @@ fn withheld(
     ground: &Ground<'_>,
     table: &Table,
     told: &mut Relevance,
-    at: [&Vec<[f64; 3]>; 2],
+    at: &[[f64; 3]],
     args: &Args,
     random: &mut Random,
     found: &mut Sweep,
@@ -168,7 +160,7 @@ fn withheld(
     let far = args.reach * ground.metre;
     for _ in 0..16 {
         let (i, j) = (random.below(args.players), random.below(args.players));
-        let (a, b) = (at[0][i], at[1][j]);
+        let (a, b) = (at[i], at[j]);
         let mut sees = || {
             let (a, b) = (ground.within(a, far, random), ground.within(b, far, random));
             ground.is_free(a, ground.part_of(b, random))
@@ -183,7 +175,7 @@ fn withheld(
             told.is_shown(i as u32, j as u32),
             !told.are_hidden_by_cells(&a, &b),
             by_table(table, &a, &b),
-            nine_rays(ground, at[0][i], at[1][j]),
+            nine_rays(ground, at[i], at[j]),
         ];
         found.withheld.iter_mut().zip(tells).for_each(|(withheld, tells)| *withheld += u64::from(!tells));
     }

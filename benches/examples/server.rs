@@ -37,13 +37,14 @@ struct Args {
     /// Who is told of whom.
     #[arg(long, value_enum, default_value = "relevance")]
     way: Way,
-    #[arg(long, default_value_t = 64)]
-    bots: usize,
+    /// At most as many as fit into a packet.
+    #[arg(long, default_value_t = 64, value_parser = clap::value_parser!(u16).range(2..=4096))]
+    bots: u16,
     #[arg(long, default_value_t = 10.0)]
     seconds: f64,
-    /// Ticks a second; 0 for as many as the machine can.
-    #[arg(long, default_value_t = 128.0)]
-    rate: f64,
+    /// Ticks as fast as the machine can, in place of 128 a second.
+    #[arg(long)]
+    fast: bool,
     /// Round trip and interpolation, in seconds.
     #[arg(long, default_value_t = 0.22)]
     latency: f64,
@@ -64,7 +65,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let table = Arc::new(BakeRequest::default().prepare(input, &runtime)?.run(&runtime)?.table);
     let reaches = Reaches::of(&table, &ReachOptions::default())?;
     let ground = Ground::new(&table, input)?;
-    let n = args.bots;
+    let n = usize::from(args.bots);
     let mut relevance = Relevance::new(table.clone(), reaches, RelevanceOptions::of(&table));
     let mut walkers = Walkers::new(&ground, n, 1);
     let (mut random, mut place) = (Random::new(2), PlaceBuffer::new());
@@ -134,8 +135,8 @@ fn main() -> Result<(), Box<dyn Error>> {
                 }
             }
         }
-        if args.rate > 0.0 {
-            let due = Duration::from_secs_f64((tick + 1) as f64 / args.rate);
+        if !args.fast {
+            let due = Duration::from_secs_f64((tick + 1) as f64 / HZ);
             std::thread::sleep(due.saturating_sub(start.elapsed()));
         }
     }

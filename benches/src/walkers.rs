@@ -249,7 +249,7 @@ impl Walkers {
             let mut to = *at;
             let flat = |k: usize| Some(k) != ground.up && (ground.up.is_some() || k < 2);
             let length = (0..3).filter(|&k| flat(k)).map(|k| heading[k] * heading[k]).sum::<f64>().sqrt().max(1e-9);
-            // Up and down by at most a third, so that all in all nobody goes farther than `far`.
+            // Up and down by at most 0.4 of it, so that all in all nobody goes farther than `far`.
             (0..3).filter(|&k| flat(k)).for_each(|k| to[k] += heading[k] / length * far * 0.9);
             let Some(up) = ground.up else {
                 if ground.is_free(*at, to) && ground.is_open(to, place) {

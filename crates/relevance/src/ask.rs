@@ -1,6 +1,7 @@
 //! Answers about single bodies, times and paths.
 
 use crate::body::Body;
+use crate::distance::rounded_down;
 use crate::relevance::Relevance;
 use sightlines_geometry::Aabb;
 use sightlines_pvs::bits::or_words;
@@ -22,12 +23,12 @@ pub struct Exposure {
 }
 
 impl Exposure {
-    /// At most so many seconds are they seen.
+    /// An upper bound of the seconds in which they are seen.
     pub fn seconds(&self) -> f64 {
         self.spans.iter().map(|s| s.to - s.from).sum()
     }
 
-    /// They are not seen before; none if never.
+    /// When they may first be seen; none if never.
     pub fn first(&self) -> Option<f64> {
         self.spans.first().map(|s| s.from)
     }
@@ -51,7 +52,7 @@ impl Relevance {
         there: &mut Vec<u32>,
     ) -> Option<[Aabb<3>; 2]> {
         let boxes = [self.world.valid(&a.eyes)?, self.world.valid(&b.seen)?];
-        if [a.eye_reach(), b.reach].iter().any(|r| r.is_nan() || *r < 0.0) {
+        if !a.has_lengths() || !b.has_lengths() {
             return None;
         }
         for (b, cells) in boxes.iter().zip([here, there]) {
@@ -112,7 +113,7 @@ impl Relevance {
         let n = self.world.n_cells() as u32;
         let times = |b: &Aabb<3>, arm: f64, speed: f64| {
             let mut times: Vec<(f64, u32)> =
-                (0..n).map(|cell| (time(self.world.far(b, cell) - arm, speed), cell)).collect();
+                (0..n).map(|cell| (time(rounded_down(self.world.far(b, cell)) - arm, speed), cell)).collect();
             times.sort_unstable_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
             times
         };
@@ -155,15 +156,16 @@ impl Relevance {
             return unknown;
         };
         self.world.touching(&eyes, &mut self.pending, &mut self.found);
-        if speed.is_nan() || speed < 0.0 || !self.world.is_known(&eyes, &self.found) {
+        if speed.is_nan() || speed < 0.0 || !a.has_lengths() || !self.world.is_known(&eyes, &self.found) {
             return unknown;
         }
-        let mut cells: Vec<(f64, u32)> =
-            (0..self.world.n_cells() as u32).map(|cell| (self.world.far(&eyes, cell) - a.arm, cell)).collect();
+        let mut cells: Vec<(f64, u32)> = (0..self.world.n_cells() as u32)
+            .map(|cell| (rounded_down(self.world.far(&eyes, cell)) - a.arm, cell))
+            .collect();
         cells.sort_unstable_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
         let mut deadlines = vec![f64::INFINITY; table.objects().len()];
         for (far, cell) in cells {
-            let at = if far <= 0.0 { 0.0 } else { far / speed * (1.0 - 1.0 / (1u64 << 40) as f64) };
+            let at = if far <= 0.0 { 0.0 } else { rounded_down(far / speed) };
             for object in table.visible_objects(sightlines_pvs::CellId(cell)) {
                 let known = &mut deadlines[object.idx()];
                 *known = known.min(at);
@@ -179,11 +181,14 @@ impl Relevance {
     /// * `speed`: how fast watchers may move from the first time on, scene units a second
     pub fn exposure(&mut self, path: &[(f64, Aabb<3>)], watchers: &[Body], speed: f64) -> Exposure {
         let mut exposure = Exposure::default();
-        for leg in path.windows(2) {
-            let [(from, start), (to, end)] = [leg[0], leg[1]];
-            let there = Body::new(start.united(end), start.united(end));
+        // A path of one place is a moment.
+        let legs = path.windows(2).map(|leg| [leg[0], leg[1]]).chain((path.len() == 1).then(|| [path[0]; 2]));
+        for [(from, start), (to, end)] in legs {
             let moved = speed * (to - path[0].0);
-            if watchers.iter().any(|w| self.may_see_within(&Body { reach: moved, ..*w }, &there)) {
+            let is_known = self.world.valid(&start).is_some() && self.world.valid(&end).is_some();
+            let there = Body::new(start.united(end), start.united(end));
+            let sees = |w: &Body, told: &mut Self| told.may_see_within(&Body { reach: moved, ..*w }, &there);
+            if !watchers.is_empty() && (!is_known || watchers.iter().any(|w| sees(w, self))) {
                 match exposure.spans.last_mut() {
                     Some(last) if last.to == from => last.to = to,
                     _ => exposure.spans.push(Span { from, to }),

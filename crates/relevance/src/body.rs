@@ -4,7 +4,7 @@ use sightlines_geometry::Aabb;
 
 /// Somebody who sees and is seen, and how far they may move until the answer counts.
 ///
-/// All lengths are in scene units; in a plan the third coordinate does not count. A box with a NaN or without points, and a reach that is NaN or
+/// All lengths are in scene units; in a plan the third coordinate does not count. A box with a NaN or without points, and a reach or an arm that is NaN or
 /// negative, is somebody of whom nothing is known: everybody sees them, and they see everybody.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Body {
@@ -38,6 +38,11 @@ impl Body {
         self
     }
 
+    /// Whether the reach and the arm are lengths.
+    pub(crate) fn has_lengths(&self) -> bool {
+        self.reach >= 0.0 && self.arm >= 0.0
+    }
+
     /// How far the camera may get.
     pub(crate) fn eye_reach(&self) -> f64 {
         self.reach + self.arm
@@ -47,9 +52,9 @@ impl Body {
 /// What somebody is in the game.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PlayerRole {
-    /// Their team, 0 to 63.
+    /// Their team, 1 to 63; 0 for none.
     pub team: u8,
-    /// The teams that they are shown wherever these are, as bits: bit `t` for team `t`. All bits for spectators who see everything.
+    /// The teams that they are shown wherever these are, as bits: bit `t` for team `t`, bit 0 for those without one. All bits for spectators who see everything.
     pub sees_always: u64,
     /// Whether they are told of others.
     pub views: bool,
@@ -61,9 +66,9 @@ impl PlayerRole {
     /// A player of a team, who is always told of their own team.
     ///
     /// # Panics
-    /// If the team is above 63.
+    /// If the team is 0, or above 63.
     pub const fn of_team(team: u8) -> Self {
-        assert!(team < 64, "teams are numbered from 0 to 63");
+        assert!(0 < team && team < 64, "teams are numbered from 1 to 63");
         Self { team, sees_always: 1 << team, views: true, is_seen: true }
     }
 
@@ -78,7 +83,7 @@ impl PlayerRole {
 
     /// Whether somebody with this role is told of the other wherever that is.
     pub(crate) const fn always_sees(&self, other: &Self) -> bool {
-        self.sees_always >> (other.team & 63) & 1 == 1
+        other.team < 64 && self.sees_always >> other.team & 1 == 1
     }
 }
 

@@ -16,7 +16,7 @@ pub enum Ways {
     Portals,
 }
 
-/// A unit of rounding more than any sum or product here is off by: few operations, each within 2^-53.
+/// A factor above 1 by more than the relative rounding error of any distance here: few operations, each within 2^-53.
 const MORE: f64 = 1.0 + 1.0 / (1u64 << 40) as f64;
 
 /// Boxes that contain the cells of a table, along its axes.
@@ -28,10 +28,7 @@ pub(crate) struct Boxes {
 
 impl Boxes {
     pub(crate) fn of(table: &Table) -> Self {
-        let frame = table.frame().copied();
-        // Maps of Quake state the boxes of their leafs in whole units.
-        let rounded = if table.kind().is_quake() { 1.0 } else { 0.0 };
-        let gap = frame.map_or(rounded, |f| f.gap());
+        let (frame, gap) = (table.frame().copied(), gap_of(table));
         let boxes = table.cells().iter().map(|c| widened(&Aabb { min: c.min, max: c.max }, gap)).collect();
         Self { boxes, frame }
     }
@@ -87,6 +84,12 @@ impl Boxes {
     }
 }
 
+/// How far cells and portals may be from where the table has them, along each axis. Maps of Quake state the boxes of their leafs in whole units, and compilers move
+/// corners of portals by less.
+fn gap_of(table: &Table) -> f64 {
+    table.frame().map_or(if table.kind().is_quake() { 1.0 } else { 0.0 }, |frame| frame.gap())
+}
+
 /// A box with everything within a width of it along each axis.
 pub(crate) fn widened(b: &Aabb<3>, width: f64) -> Aabb<3> {
     if width == 0.0 {
@@ -101,13 +104,16 @@ pub(crate) fn lies_in(b: &Aabb<3>, other: &Aabb<3>) -> bool {
     (0..3).all(|k| other.min[k] <= b.min[k] && b.max[k] <= other.max[k])
 }
 
-/// The distance between two boxes, rounded; infinite if a NaN is in the way, which no box here has.
+/// The distance between two boxes, rounded, or less where its square is too large for a double.
 pub(crate) fn between(a: &Aabb<3>, b: &Aabb<3>) -> f64 {
-    let square = |k: usize| {
-        let apart = (a.min[k] - b.max[k]).max(b.min[k] - a.max[k]).max(0.0);
-        apart * apart
-    };
-    (square(0) + square(1) + square(2)).sqrt()
+    let apart: [f64; 3] = std::array::from_fn(|k| (a.min[k] - b.max[k]).max(b.min[k] - a.max[k]).max(0.0));
+    let square = apart.iter().map(|x| x * x).sum::<f64>();
+    if square.is_finite() { square.sqrt() } else { apart.into_iter().fold(0.0, f64::max) }
+}
+
+/// A lower bound of the true distance, for one by [`between`].
+pub(crate) fn rounded_down(distance: f64) -> f64 {
+    distance / MORE
 }
 
 /// Whether what is this far by [`between`], or by a sum of a few thousand such distances, may be within a reach.
@@ -191,7 +197,7 @@ struct Portals {
 
 impl Portals {
     fn of(table: &Table) -> Self {
-        let gap = table.frame().map_or(0.0, |f| f.gap());
+        let gap = gap_of(table);
         let boxes = table.portals().iter().map(|p| widened(&Aabb::around(p.points.iter().copied()), gap)).collect();
         let cells: Vec<[u32; 2]> = table.portals().iter().map(|p| p.cells.map(|c| c.idx() as u32)).collect();
         let mut first = vec![0; table.n_cells() + 1];

@@ -14,6 +14,7 @@ mod ask;
 mod body;
 mod distance;
 mod near;
+mod pairs;
 mod reaches;
 mod relevance;
 

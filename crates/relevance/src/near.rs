@@ -53,6 +53,8 @@ impl World {
     /// `walks`: up to which distance ways through portals are kept, where they count
     pub(crate) fn new(table: Arc<Table>, reaches: Reaches, walks: f64) -> Self {
         let boxes = Boxes::of(&table);
+        // A distance of which nothing can be said is none: then ways through portals count by cells alone.
+        let walks = if walks >= 0.0 { walks } else { 0.0 };
         let walks = (reaches.ways() == Ways::Portals).then(|| Walks::of(&table, &boxes, walks));
         let bounds = (0..boxes.len() as u32).fold(Aabb::EMPTY, |all, cell| all.united(*boxes.get(cell)));
         let has_gaps = table.kind().leaves_gaps() || table.kind() == TableKind::Unspecified;

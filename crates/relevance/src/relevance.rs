@@ -3,6 +3,7 @@
 use crate::body::{Player, PlayerRole};
 use crate::distance::{lies_in, widened};
 use crate::near::World;
+use crate::pairs::Pairs;
 use crate::reaches::Reaches;
 use sightlines_geometry::Aabb;
 use sightlines_pvs::Table;
@@ -94,12 +95,7 @@ pub struct Relevance {
     pub(crate) world: World,
     options: RelevanceOptions,
     slots: Vec<Slot>,
-    /// Bits, row by row: who may be seen, and who is shown.
-    may: Vec<u64>,
-    shown: Vec<u64>,
-    stride: usize,
-    /// Pairs that are shown and may not be seen, and until when.
-    held: Vec<([u32; 2], f64)>,
+    pairs: Pairs,
     changes: Changes,
     /// Whose turn it is to be placed.
     next: usize,
@@ -109,19 +105,18 @@ pub struct Relevance {
 }
 
 impl Relevance {
+    /// Of a table and its reaches.
+    ///
     /// # Panics
-    /// If the reaches are of a table with another number of cells.
+    /// If the reaches are not [those of the table](Reaches::are_of).
     pub fn new(table: impl Into<Arc<Table>>, reaches: Reaches, options: RelevanceOptions) -> Self {
         let table = table.into();
-        assert_eq!(table.n_cells(), reaches.n_cells(), "reaches are those of the table");
+        assert!(reaches.are_of(&table), "reaches are those of the table");
         Self {
             world: World::new(table, reaches, options.walk),
             options,
             slots: Vec::new(),
-            may: Vec::new(),
-            shown: Vec::new(),
-            stride: 0,
-            held: Vec::new(),
+            pairs: Pairs::default(),
             changes: Changes::default(),
             next: 0,
             dirty: Vec::new(),
@@ -141,12 +136,12 @@ impl Relevance {
     }
 
     /// Who is shown to whom from now on. A body is told by its place in the list, from tick to tick; where somebody else takes a place, it is as if the
-    /// former had jumped there. With another number of players than before, those that went are lost without a word, and nothing is kept of
-    /// the pairs of others but that they are shown.
+    /// former had jumped there. With fewer players than before, pairs with those that went are dropped and not listed in [`Changes::lost`].
     ///
     /// * `now`: seconds, of any beginning, not descending
     ///
-    /// Cost: O(cells near it) for each body that has moved by more than the slack, O(n / 64) at worst for each pair with one that has.
+    /// Cost: O(cells near it) for each body that has moved by more than the slack, O(n / 64) at worst for each pair with one that has, for n cells. Memory: a
+    /// quarter of a byte for each who is told and each other; for each body the cells near it, and a bit for each cell if it is told of others.
     pub fn update(&mut self, now: f64, players: &[Player]) -> &Changes {
         self.resize(players);
         self.changes.gained.clear();
@@ -154,24 +149,18 @@ impl Relevance {
         (self.changes.n_looks, self.changes.n_coarse, self.changes.n_outside) = (0, 0, 0);
         self.place(players);
         self.compare(now, players);
-        self.release(now);
+        self.pairs.release(now, &mut self.changes.lost);
         &self.changes
     }
 
     /// Whether a pair was shown in the last tick.
     pub fn is_shown(&self, to: u32, of: u32) -> bool {
-        let [to, of] = [to as usize, of as usize];
-        to < self.slots.len() && of < self.slots.len() && self.shown[to * self.stride + of / 64] >> (of % 64) & 1 == 1
+        self.pairs.shown_to(to).get(of as usize / 64).is_some_and(|bits| bits >> (of % 64) & 1 == 1)
     }
 
     /// Who was shown to somebody in the last tick, ascending.
     pub fn shown_to(&self, to: u32) -> impl Iterator<Item = u32> + '_ {
-        let row = if (to as usize) < self.slots.len() {
-            &self.shown[to as usize * self.stride..][..self.stride]
-        } else {
-            &[]
-        };
-        ones(row).map(|of| of as u32)
+        ones(self.pairs.shown_to(to)).map(|of| of as u32)
     }
 
     fn resize(&mut self, players: &[Player]) {
@@ -179,19 +168,7 @@ impl Relevance {
         if n == self.slots.len() {
             return;
         }
-        let stride = n.div_ceil(64);
-        let mut shown = vec![0; n * stride];
-        for to in 0..n.min(self.slots.len()) {
-            for of in ones(&self.shown[to * self.stride..][..self.stride]).filter(|&of| of < n) {
-                shown[to * stride + of / 64] |= 1 << (of % 64);
-            }
-        }
-        (self.may, self.shown, self.stride) = (shown.clone(), shown, stride);
-        self.held.retain(|&([to, of], _)| (to as usize) < n && (of as usize) < n);
-        // Held pairs may not be seen.
-        for &([to, of], _) in &self.held {
-            self.may[to as usize * stride + of as usize / 64] &= !(1 << (of % 64));
-        }
+        self.pairs.resize(n);
         self.slots.resize_with(n, || Slot {
             known: Known::No,
             boxes: [Aabb::EMPTY; 2],
@@ -205,9 +182,6 @@ impl Relevance {
             near: Vec::new(),
             is_new: true,
         });
-        self.slots.iter_mut().for_each(|slot| slot.is_new = true);
-        self.changes.gained.reserve(64);
-        self.dirty.reserve(n);
     }
 
     /// Finds where bodies are, of which that does not hold any more.
@@ -226,17 +200,23 @@ impl Relevance {
             if !was_new && slot.holds(&self.world, player, slack, &mut self.pending, &mut self.found) {
                 continue;
             }
-            let exactly = left > 0;
-            if exactly {
-                left -= 1;
-                self.changes.n_looks += 1;
-            } else {
-                self.changes.n_coarse += 1;
-                if self.changes.n_coarse == 1 {
-                    self.next = i;
+            let was_unknown = !was_new && slot.known == Known::No && slot.role == player.role;
+            slot.place(&self.world, player, slack, left > 0, &mut self.pending, &mut self.found);
+            match slot.known {
+                // It is shown to all, as before.
+                Known::No if was_unknown => continue,
+                Known::No => {}
+                Known::Near => {
+                    left -= 1;
+                    self.changes.n_looks += 1;
+                }
+                Known::Cells => {
+                    if self.changes.n_coarse == 0 {
+                        self.next = i;
+                    }
+                    self.changes.n_coarse += 1;
                 }
             }
-            slot.place(&self.world, player, slack, exactly, &mut self.pending, &mut self.found);
             slot.is_new = true;
             self.dirty.push(i as u32);
         }
@@ -247,10 +227,12 @@ impl Relevance {
     /// Compares the pairs of which one has changed.
     fn compare(&mut self, now: f64, players: &[Player]) {
         for (to, player) in players.iter().enumerate() {
-            // Of somebody who is told of nobody, and was, a row is left to empty.
-            let row = to * self.stride..(to + 1) * self.stride;
-            let is_asked = player.role.views || self.may[row].iter().any(|&bits| bits != 0);
-            if is_asked && self.slots[to].is_new {
+            if player.role.views {
+                self.pairs.open(to);
+            } else if !self.pairs.has_row(to) {
+                continue;
+            }
+            if self.slots[to].is_new {
                 for of in 0..players.len() {
                     self.compare_pair(now, players, to, player, of);
                 }
@@ -271,22 +253,8 @@ impl Relevance {
         let may = to != of && player.role.views && role.is_seen && {
             player.role.always_sees(role) || self.may_see(&self.slots[to], &self.slots[of])
         };
-        let (word, bit) = (to * self.stride + of / 64, 1 << (of % 64));
-        if may == (self.may[word] & bit != 0) {
-            return;
-        }
-        self.may[word] ^= bit;
-        let pair = [to as u32, of as u32];
-        if may {
-            if self.shown[word] & bit == 0 {
-                self.shown[word] |= bit;
-                self.changes.gained.push(pair);
-            } else if let Some(at) = self.held.iter().position(|&(held, _)| held == pair) {
-                self.held.swap_remove(at);
-            }
-        } else {
-            self.held.push((pair, now + self.options.hold.max(0.0)));
-        }
+        let until = now + self.options.hold.max(0.0);
+        self.pairs.set([to, of], may, until, &mut self.changes.gained);
     }
 
     fn may_see(&self, a: &Slot, b: &Slot) -> bool {
@@ -299,19 +267,6 @@ impl Relevance {
         }
         // Either way is right alone. That of cells knows ways from each place to each, and takes bodies to be anywhere in their cells.
         !self.world.are_hidden(&a.here[a.eyes], a.reaches[0], a.has_arm, &b.here[1], b.reaches[1])
-    }
-
-    /// Ends what was held for long enough.
-    fn release(&mut self, now: f64) {
-        let (shown, stride, lost) = (&mut self.shown, self.stride, &mut self.changes.lost);
-        self.held.retain(|&([to, of], until)| {
-            let goes = until <= now;
-            if goes {
-                shown[to as usize * stride + of as usize / 64] &= !(1 << (of % 64));
-                lost.push([to, of]);
-            }
-            !goes
-        });
     }
 }
 
@@ -357,7 +312,7 @@ impl Slot {
         let (Some(eyes), Some(seen)) = (world.valid(&body.eyes), world.valid(&body.seen)) else {
             return;
         };
-        if self.reaches.iter().any(|r| r.is_nan() || *r < 0.0) {
+        if !body.has_lengths() {
             return;
         }
         let slack = if exactly { slack } else { 0.0 };

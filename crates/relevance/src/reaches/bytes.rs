@@ -10,7 +10,7 @@
 //!     11     1  ways: 0 straight, 1 through portals
 //!     12     4  number of cells, n
 //!     16     4  number of reaches, from 0 on, m
-//!     20     4  checksum of the table: CRC-32 of the boxes and rows of its cells
+//!     20     4  checksum of the table: CRC-32 of its cells, rows and portals
 //!     24    8m  the reaches, IEEE doubles
 //!  24+8m     *  rungs, four bits each, compressed (RFC 1950): if both move, row i has those of cells 0 to i, else of all; each row begins with a byte
 //!   end-4    4  CRC-32 of all bytes before
@@ -34,8 +34,8 @@ pub enum ReachFileError {
     /// They begin with something else.
     #[error("not a file of reaches: it begins with other bytes")]
     Magic,
-    /// A later version of the format.
-    #[error("version {version} of the format, which is newer than version 1")]
+    /// Another version of the format.
+    #[error("version {version} of the format; only version 1 is read")]
     Version {
         /// Which.
         version: u16,
@@ -53,12 +53,19 @@ pub enum ReachFileError {
     },
 }
 
-/// The checksum of what reaches depend on.
+/// The checksum of what reaches depend on: cells, what they see, portals, and how precise their places are.
 pub(super) fn checksum(table: &Table) -> u32 {
     let mut crc = crc32fast::Hasher::new();
-    for cell in table.cells() {
-        cell.min.iter().chain(&cell.max).for_each(|x| crc.update(&x.to_le_bytes()));
+    let mut point = |p: &[f64; 3]| p.iter().for_each(|x| crc.update(&x.to_le_bytes()));
+    table.cells().iter().for_each(|cell| [cell.min, cell.max].iter().for_each(&mut point));
+    table.portals().iter().for_each(|portal| portal.points.iter().for_each(&mut point));
+    if let Some(frame) = table.frame() {
+        frame.axes().iter().for_each(&mut point);
+        point(&[frame.gap(); 3]);
     }
+    let joined = table.portals().iter().flat_map(|portal| portal.cells.map(|cell| cell.0));
+    joined.for_each(|cell| crc.update(&cell.to_le_bytes()));
+    crc.update(&[table.dimension(), u8::from(table.kind().is_quake())]);
     for i in 0..table.n_cells() {
         table.row(sightlines_pvs::CellId(i as u32)).iter().for_each(|word| crc.update(&word.to_le_bytes()));
     }
@@ -116,7 +123,7 @@ impl Reaches {
             return damaged(bytes.len(), "the file ends within its head");
         };
         let version = u16::from_le_bytes([bytes[8], bytes[9]]);
-        if version > VERSION {
+        if version != VERSION {
             return Err(ReachFileError::Version { version });
         }
         let end = bytes.len() - 4;

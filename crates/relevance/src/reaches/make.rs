@@ -75,7 +75,7 @@ pub(super) fn first_rungs(table: &Table, boxes: &Boxes, reaches: &[f64], options
     let n = table.n_cells();
     let threads = match options.threads {
         0 => std::thread::available_parallelism().map_or(1, NonZero::get),
-        some => some,
+        some => some.min(n.max(1)),
     };
     let none = reaches.len() as u8;
     let mut first = Nibbles::new(n, none);

@@ -48,7 +48,7 @@ pub enum ReachError {
         reach: f64,
     },
     /// More reaches than four bits number.
-    #[error("{n} reaches, and at most 15 are possible")]
+    #[error("{n} reaches, and at most 14 are possible")]
     TooMany {
         /// How many.
         n: usize,
@@ -157,20 +157,25 @@ impl Reaches {
         self.first.row(a.idx())
     }
 
-    /// The share of ordered pairs of different cells that do not see each other within each reach, from 0 to 1.
+    /// The share of ordered pairs of different cells that do not see each other within each reach, from 0 to 1; 0 if there are no pairs.
     pub fn hidden_shares(&self) -> Vec<f64> {
         let n = self.n_cells();
         let mut count = vec![0u64; self.ladder.len() + 1];
         for i in 0..n {
             (0..n).filter(|&j| j != i).for_each(|j| count[self.first.get(i, j) as usize] += 1);
         }
-        let all = (n as u64 * (n as u64).saturating_sub(1)).max(1);
+        let all = n as u64 * (n as u64).saturating_sub(1);
         let mut seen = 0;
         let share = |c: &u64| {
             seen += c;
-            (all.saturating_sub(seen)) as f64 / all as f64
+            (all - seen) as f64 / all.max(1) as f64
         };
         count[..self.ladder.len()].iter().map(share).collect()
+    }
+
+    /// Whether these are the reaches of a table: of its cells, portals and rows. O(table).
+    pub fn are_of(&self, table: &Table) -> bool {
+        self.n_cells() == table.n_cells() && self.table == bytes::checksum(table)
     }
 
     /// Whether bodies in these cells cannot see each other while they move no farther than `reach`, both or the first alone.
