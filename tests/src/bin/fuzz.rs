@@ -26,6 +26,7 @@ use sightlines::formats::{LumpName, PlanReadOptions, Wad, WadBuilder};
 use sightlines::geometry::check_coordinate;
 use sightlines::kdtree::{SceneOptions, subdivide_scene};
 use sightlines::pvs::{CellId, PlaceBuffer, Table};
+use sightlines::relevance::{ReachOptions, Reaches, WhoMoves};
 use sightlines::scenes::world::{BspWorldOptions, bsp_world};
 use sightlines::scenes::{self, TowerOptions, tower};
 use sightlines::stabtree::{Zones, shoot_axial_chords};
@@ -56,7 +57,7 @@ struct Target {
     check: fn(&[u8]) -> bool,
 }
 
-const TARGETS: [Target; 26] = [
+const TARGETS: [Target; 27] = [
     Target { name: "wad", seeds: wads, check: check_wad },
     Target { name: "reject", seeds: wads, check: check_reject },
     Target { name: "textmap", seeds: texts, check: check_text },
@@ -74,6 +75,7 @@ const TARGETS: [Target; 26] = [
     Target { name: "surfaces", seeds: small_worlds, check: check_surfaces },
     Target { name: "pvs", seeds: tables, check: check_pvs },
     Target { name: "packed", seeds: packed_tables, check: check_packed },
+    Target { name: "reaches", seeds: reaches, check: check_reaches },
     Target { name: "prt", seeds: prts, check: check_prt },
     Target { name: "bsp", seeds: maps, check: check_map },
     Target { name: "portals", seeds: map_worlds, check: check_made_portals },
@@ -271,6 +273,34 @@ fn packed_tables() -> Vec<Vec<u8>> {
     };
     let both = |table: Table| [SizeClass::Small, SizeClass::Large].map(|class| pack(&table, class));
     tables().into_iter().map(table).flat_map(both).collect()
+}
+
+/// A small table, of which the reaches are.
+fn table_of_reaches() -> Table {
+    Table::from_bytes(&tables()[0]).expect("a table")
+}
+
+fn reaches() -> Vec<Vec<u8>> {
+    let table = table_of_reaches();
+    let of = |movers| Reaches::of(&table, &ReachOptions { movers, ..ReachOptions::default() }).expect("reaches");
+    [WhoMoves::Both, WhoMoves::One].map(|movers| of(movers).to_bytes()).into()
+}
+
+/// Reaches, also with a right checksum, are refused, or tell who sees whom as the table does and come back as they are.
+fn check_reaches(bytes: &[u8]) -> bool {
+    let table = table_of_reaches();
+    let mut patched = bytes.to_vec();
+    if let Some(end) = patched.len().checked_sub(4) {
+        let crc = crc32fast::hash(&patched[..end]);
+        patched[end..].copy_from_slice(&crc.to_le_bytes());
+    }
+    let ids = || (0..table.n_cells() as u32).map(CellId);
+    [bytes, &patched].into_iter().any(|bytes| {
+        let Ok(reaches) = Reaches::from_bytes(bytes, &table) else { return false };
+        assert!(ids().all(|a| ids().all(|b| (reaches.rung(a, b) == 0) == table.sees(a, b))));
+        assert_eq!(Reaches::from_bytes(&reaches.to_bytes(), &table), Ok(reaches));
+        true
+    })
 }
 
 fn prts() -> Vec<Vec<u8>> {
