@@ -93,8 +93,8 @@ impl Relevance {
             return 0.0;
         }
         let straight = self.straight_time(a, b, speeds);
-        // A level holds for all places in both cells; on ways through portals it says more than the straight distance.
-        let slower_than = |reach: f64| (reach - a.arm) / speeds[0].max(speeds[1]);
+        // A rung holds for all places in both cells; on ways through portals it says more than the straight distance.
+        let slower_than = |reach: f64| rounded_down(rounded_down(reach) - a.arm) / speeds[0].max(speeds[1]);
         let [mut here, mut there] = [Vec::new(), Vec::new()];
         if self.boxes_in_cells(&still(a), &still(b), &mut here, &mut there).is_none() {
             return 0.0;

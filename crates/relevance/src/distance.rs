@@ -116,7 +116,7 @@ pub(crate) fn rounded_down(distance: f64) -> f64 {
     distance / MORE
 }
 
-/// Whether what is this far by [`between`], or by a sum of a few thousand such distances, may be within a reach.
+/// Whether what is this far by [`between`], or by such distances added and rounded down, may be within a reach.
 pub(crate) fn is_within(distance: f64, reach: f64) -> bool {
     distance <= reach * MORE
 }
@@ -241,7 +241,9 @@ impl Portals {
                     walk.found.push((cell, far));
                 }
                 for &next in self.of_cell(cell) {
-                    let there = far + between(&self.boxes[portal as usize], &self.boxes[next as usize]);
+                    let step = between(&self.boxes[portal as usize], &self.boxes[next as usize]);
+                    // A sum is off by half a place, however many there are on a way.
+                    let there = if step > 0.0 { (far + step).next_down() } else { far };
                     let there = there.max(between(here, &self.boxes[next as usize]));
                     if is_within(there, most) {
                         walk.reach(next, there);

@@ -139,11 +139,6 @@ impl World {
         cells.retain(|&cell| is_within(between(&placed, self.boxes.get(cell)), reach) && walks(cell));
     }
 
-    /// Whether the cells that a box touches are needed, beside those near it.
-    pub(crate) fn has_walks(&self) -> bool {
-        self.walks.is_some()
-    }
-
     /// How far a cell is at least from a valid box.
     pub(crate) fn far(&self, b: &Aabb<3>, cell: u32) -> f64 {
         between(&self.boxes.place(b), self.boxes.get(cell))

@@ -72,9 +72,8 @@ struct Slot {
     /// Whether all of the boxes are where cells are known, so that nobody within them is outside.
     is_inside: bool,
     role: PlayerRole,
+    /// The cells that these touch.
     here: [Vec<u32>; 2],
-    /// Which of both has the cells that the eyes are in: 1 if these are not asked for by themselves.
-    eyes: usize,
     /// All that is seen from where the eyes may get, as bits.
     sees: Vec<u64>,
     /// Where what is seen of it may get: words of bits that are not 0.
@@ -177,7 +176,6 @@ impl Relevance {
             is_inside: false,
             role: PlayerRole::THING,
             here: [Vec::new(), Vec::new()],
-            eyes: 0,
             sees: Vec::new(),
             near: Vec::new(),
             is_new: true,
@@ -266,7 +264,7 @@ impl Relevance {
             return false;
         }
         // Either way is right alone. That of cells knows ways from each place to each, and takes bodies to be anywhere in their cells.
-        !self.world.are_hidden(&a.here[a.eyes], a.reaches[0], a.has_arm, &b.here[1], b.reaches[1])
+        !self.world.are_hidden(&a.here[0], a.reaches[0], a.has_arm, &b.here[1], b.reaches[1])
     }
 }
 
@@ -277,7 +275,8 @@ impl Slot {
         let (Some(eyes), Some(seen)) = (world.valid(&body.eyes), world.valid(&body.seen)) else {
             return false;
         };
-        // Comparisons with NaN are false.
+        // It holds within its boxes. From twice the slack on, and some more for rounding, it is found anew, as it shows too much; no answer depends on that. Comparisons
+        // with NaN are false.
         let fits = |which: usize, b: &Aabb<3>, reach: f64| {
             lies_in(b, &self.boxes[which])
                 && lies_in(&self.boxes[which], &widened(b, 3.0 * slack))
@@ -322,13 +321,19 @@ impl Slot {
         let [wide_eyes, wide_seen] = self.boxes;
         let is_part = lies_in(&wide_eyes, &wide_seen);
         self.is_inside = true;
-        self.eyes = usize::from(is_part && !world.has_walks() && exactly);
         for (which, b) in [(1, &seen), (0, &eyes)] {
-            if which == 0 && (!views || self.eyes == 1) {
+            if which == 0 && !views {
                 continue;
             }
             world.touching(&self.boxes[which], pending, &mut self.here[which]);
-            if which == 0 && is_part || world.is_known(&self.boxes[which], &self.here[which]) {
+            if which == 0 && is_part {
+                // Eyes in a wall are in no cell.
+                if self.here[0].is_empty() {
+                    return;
+                }
+                continue;
+            }
+            if world.is_known(&self.boxes[which], &self.here[which]) {
                 continue;
             }
             self.is_inside = false;
@@ -353,7 +358,7 @@ impl Slot {
         if !views {
             return;
         }
-        if is_part && self.reaches[0] <= self.reaches[1] {
+        if is_part && !self.has_arm {
             world.near_part(&wide_eyes, &self.here[0], self.reaches[0], found);
         } else {
             let here = (!self.has_arm).then_some(&self.here[0][..]);

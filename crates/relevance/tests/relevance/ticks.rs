@@ -355,17 +355,45 @@ fn numbers_of_players_change() {
 
 #[test]
 fn reaches_of_one_who_moves_tell_nothing_of_two() {
-    let table = rooms();
-    let reaches =
-        Reaches::of(&table, &ReachOptions { ladder: vec![1.0, 2.0], movers: WhoMoves::One, ..ReachOptions::default() })
-            .expect("reaches");
+    // All cells are blind but for themselves, and the outer ones 4 apart.
+    let mut parts = (*rooms()).clone().into_parts();
+    parts.rows = sightlines_pvs::BitMatrix::identity(3);
+    let table = Arc::new(Table::new(parts).expect("a table"));
+    let options = ReachOptions { ladder: vec![1.0, 2.0], movers: WhoMoves::One, ..ReachOptions::default() };
+    let reaches = Reaches::of(&table, &options).expect("reaches");
     let mut told = Relevance::new(table, reaches, RelevanceOptions { looks: 0, ..EXACT });
-    for (reaches, shown) in [([0.0, 1.0], false), ([1.0, 0.0], false), ([0.5, 0.5], true), ([0.0, 3.0], true)] {
+    for (reaches, shown) in
+        [([0.0, 1.0], false), ([2.0, 0.0], false), ([0.5, 0.5], true), ([0.0, 3.0], true), ([5.0, 0.0], true)]
+    {
         let with = |x: f64, reach: f64| Player { body: Body { reach, ..body([x, 2.0, 2.0]) }, role: PlayerRole::ALONE };
         told.update(0.0, &[with(1.0, reaches[0]), with(9.0, reaches[1])]);
-        // The second room touches both, so a mover gets there at once: a rung is a matter of cells.
-        let may = told.is_shown(0, 1);
-        assert!(may || !shown, "{reaches:?}");
+        assert_eq!(told.is_shown(0, 1), shown, "{reaches:?}");
+    }
+}
+
+/// Whose eyes are in a wall sees everything, however much is looked at and on whatever ways.
+#[test]
+fn eyes_in_a_wall_see_everything() {
+    let mut parts = Grid { size: [3, 1, 1], seed: 0, blind: usize::MAX }.parts();
+    let first = parts.cells[0].max[0];
+    parts.cells[0].max[0] = first - 0.5;
+    let bounds: Vec<_> = parts.cells.iter().map(|c| (c.min, c.max)).collect();
+    parts.locator = sightlines_pvs::Locator::build(&bounds, 3);
+    let table = Arc::new(Table::new(parts).expect("a table"));
+    let far = cell(&table, 2).max;
+    let eyes =
+        |x: f64| Body::new(point([x, 0.5, 0.5]), Aabb { min: [0.25, 0.25, 0.25], max: [first - 0.1, 0.75, 0.75] });
+    for (ways, looks) in [(Ways::Straight, 9), (Ways::Straight, 0), (Ways::Portals, 9), (Ways::Portals, 0)] {
+        if ways == Ways::Portals && table.portals().is_empty() {
+            continue;
+        }
+        for (x, shown) in [(first - 0.25, true), (first - 0.75, false)] {
+            let mut told = relevance(&table, ways, RelevanceOptions { looks, ..EXACT });
+            let who = |body: Body| Player { body, role: PlayerRole::ALONE };
+            told.update(0.0, &[who(eyes(x)), who(body(far))]);
+            assert_eq!(told.is_shown(0, 1), shown, "{ways:?}, {looks} looks, {x}");
+            assert_eq!(told.may_see_within(&eyes(x), &body(far)), shown);
+        }
     }
 }
 
