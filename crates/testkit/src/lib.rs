@@ -36,6 +36,7 @@ pub mod sampled;
 pub mod sector_plans;
 pub mod sectors;
 pub mod sees;
+mod siblings;
 pub mod stab;
 pub mod units;
 
@@ -54,6 +55,7 @@ pub use sampled::{Chord, chord_is_clear, clear_chords, sampled_sector_visibility
 pub use sector_plans::{Sectors, small_sector_plan, small_sectors};
 pub use sectors::sector_visibility_brute_force;
 pub use sees::sees_brute_force;
+pub use siblings::siblings;
 pub use stab::{Stab, stabbable_brute_force};
 
 use proptest::strategy::{Strategy, ValueTree};
