@@ -10,10 +10,10 @@ pub(crate) fn line_end(text: &[u8]) -> u8 {
     if text.contains(&b'\n') { b'\n' } else { b'\r' }
 }
 
-/// The lines of a text; those that end in CR and LF with their CR.
+/// The lines of a text, without their ends: LF, CR and LF, or CR alone, each wherever it stands.
 pub(crate) fn text_lines(text: &[u8]) -> impl Iterator<Item = &[u8]> {
-    let end = line_end(text);
-    text.split(move |&byte| byte == end)
+    let lines = text.split(|&byte| byte == b'\n').map(|line| line.strip_suffix(b"\r").unwrap_or(line));
+    lines.flat_map(|line| line.split(|&byte| byte == b'\r'))
 }
 
 /// The bytes at `at`, which the caller knows to be inside.

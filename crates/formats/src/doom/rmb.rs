@@ -8,6 +8,7 @@
 //! `NOMAP`, `PERFECT`, `PREPROCESS` and `PROCESS` steer the work of RMB only and mean nothing here; as with `PERFECT`, an effect is on the
 //! sectors that are named, and not on those inside them. All other options are refused.
 
+use crate::bytes::text_lines;
 use crate::error::{Malformed, Within, in_file, malformed};
 use crate::wad::LumpName;
 use crate::{ReadError, RejectTable};
@@ -58,10 +59,10 @@ impl RmbFile {
     /// # Errors
     /// [`Malformed`] with the first line that is wrong, or that has an option that is not taken.
     pub fn parse(text: &[u8]) -> Result<Self, Malformed> {
-        let text = String::from_utf8_lossy(text);
         let mut map = None;
         let mut effects = Vec::new();
-        for (line, content) in (1..).zip(text.lines()) {
+        for (line, content) in (1..).zip(text_lines(text)) {
+            let content = String::from_utf8_lossy(content);
             let content = content.split('#').next().unwrap_or_default().trim().to_ascii_uppercase();
             let (word, rest) = content.split_once(|c: char| c.is_whitespace() || c == '(').unwrap_or((&content, ""));
             if word.is_empty() && rest.is_empty() {

@@ -1,6 +1,7 @@
 //! Lines of values.
 
 use super::NamedPoint;
+use crate::bytes::text_lines;
 use crate::error::{Malformed, malformed};
 use sightlines_geometry::{Point2, check_coordinate};
 use std::borrow::Cow;
@@ -25,9 +26,9 @@ pub(super) fn parse(text: &[u8]) -> Result<Vec<NamedPoint>, Malformed> {
     let mut points = Vec::new();
     // Both are decided by the first line.
     let mut form: Option<(char, Columns)> = None;
-    for (line, bytes) in (1..).zip(text.split(|&byte| byte == b'\n')) {
+    for (line, bytes) in (1..).zip(text_lines(text)) {
         let at = |(column, what): (usize, Malformed)| what.within(format_args!("line {line} column {column}"));
-        let row = std::str::from_utf8(bytes.strip_suffix(b"\r").unwrap_or(bytes))
+        let row = std::str::from_utf8(bytes)
             .map_err(|error| at((error.valid_up_to() + 1, malformed!("this is not UTF-8"))))?;
         if row.trim().is_empty() || row.trim_start().starts_with('#') {
             continue;

@@ -2,6 +2,7 @@
 //!
 //! A text with a line for each pair: `show A B` or `hide A B`, with the numbers of two leafs in the map. `#` begins a comment.
 
+use crate::bytes::text_lines;
 use crate::error::{Malformed, malformed};
 
 /// What should be said of a pair of leafs. It counts for all leafs of their clusters.
@@ -19,7 +20,7 @@ pub struct Override {
 /// [`Malformed`] with the line.
 pub fn parse_overrides(text: &[u8]) -> Result<Vec<Override>, Malformed> {
     let mut found = Vec::new();
-    for (line, bytes) in (1..).zip(text.split(|&byte| byte == b'\n')) {
+    for (line, bytes) in (1..).zip(text_lines(text)) {
         let wrong = || malformed!("neither `show A B` nor `hide A B`, with the numbers of two leafs").on_line(line);
         let text = std::str::from_utf8(bytes).map_err(|_| wrong())?;
         let words: Vec<&str> = text.split('#').next().unwrap_or_default().split_ascii_whitespace().collect();

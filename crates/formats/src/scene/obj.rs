@@ -166,12 +166,7 @@ impl Surfaces {
                 }
             }
         }
-        if let Some(first) = missing.first() {
-            warnings.push(format!(
-                "the material library {first:?} cannot be read: put it beside the OBJ; without it, faces with its materials \
-                 hide nothing"
-            ));
-        }
+        warnings.extend(missing_libraries(&missing));
         let n_faces = obj.faces.iter().filter(|face| face.material.is_some()).count();
         if let (true, Some(first), true) = (obj.libraries.is_empty(), obj.materials.first(), n_faces > 0) {
             let faces = match n_faces {
@@ -197,6 +192,29 @@ impl Surfaces {
             None => self.unknown.clone(),
         }
     }
+}
+
+/// What a user should hear of libraries that cannot be read.
+fn missing_libraries(missing: &[&str]) -> Option<String> {
+    /// How many of them are named.
+    const MANY: usize = 8;
+    let mut names: Vec<&str> = Vec::new();
+    for &name in missing {
+        if names.len() <= MANY && !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    let others = if names.len() > MANY { " and others" } else { "" };
+    names.truncate(MANY);
+    let [it, its, libraries] = if names.len() > 1 { ["them", "their", "libraries"] } else { ["it", "its", "library"] };
+    let names: Vec<String> = names.iter().map(|name| format!("{name:?}")).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "the material {libraries} {}{others} cannot be read: put {it} beside the OBJ; without {it}, faces with {its} materials \
+             hide nothing",
+            names.join(", ")
+        )
+    })
 }
 
 /// The contents of the libraries that a line names, one, whose name may have spaces, or several; and the names of those that cannot be read.

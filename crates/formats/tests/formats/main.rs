@@ -30,6 +30,7 @@ mod scene_mutations;
 mod scene_oracles;
 mod scene_writers;
 mod scenes;
+mod siblings;
 mod transforms;
 mod udmf;
 mod view_cells;
