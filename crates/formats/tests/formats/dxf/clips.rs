@@ -5,14 +5,14 @@ use crate::common::dxf::Dxf;
 use proptest::prelude::*;
 
 /// An insert whose extension dictionary has this handle.
-fn clipped(insert: &Dxf, handle: u32) -> Dxf {
+pub(super) fn clipped(insert: &Dxf, handle: u32) -> Dxf {
     insert.clone().put(102, "{ACAD_XDICTIONARY").put(360, format!("{handle:X}")).put(102, "}")
 }
 
-const IDENTITY: [f64; 12] = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+pub(super) const IDENTITY: [f64; 12] = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0];
 
 /// The objects that clip the insert with this handle; `change` is put into the clip before its maps.
-fn filter(handle: u32, corners: &[[f64; 2]], change: &Dxf, maps: [[f64; 12]; 2]) -> Dxf {
+pub(super) fn filter(handle: u32, corners: &[[f64; 2]], change: &Dxf, maps: [[f64; 12]; 2]) -> Dxf {
     let dictionary = |own: u32, key: &str, entry: u32| {
         Dxf::new().put(0, "DICTIONARY").put(5, format!("{own:X}")).put(3, key).put(350, format!("{entry:X}"))
     };
@@ -23,7 +23,7 @@ fn filter(handle: u32, corners: &[[f64; 2]], change: &Dxf, maps: [[f64; 12]; 2])
 }
 
 /// A file with these blocks, entities of the model and objects.
-fn file(blocks: &Dxf, model: &Dxf, objects: &Dxf) -> Vec<u8> {
+pub(super) fn file(blocks: &Dxf, model: &Dxf, objects: &Dxf) -> Vec<u8> {
     let sections = [("BLOCKS", blocks), ("ENTITIES", model), ("OBJECTS", objects)];
     sections.iter().fold(Dxf::new(), |dxf, (name, section)| dxf.add(&section.as_section(name))).as_file()
 }

@@ -1,5 +1,6 @@
 //! Drawings as plans: every entity, curves against their formulas, inserts against another way to place points, damaged files.
 
+mod clip_siblings;
 mod clips;
 mod compound;
 mod curves;
