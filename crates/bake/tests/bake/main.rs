@@ -20,6 +20,7 @@ mod plan;
 mod quake;
 mod reject;
 mod reject_engines;
+mod reject_siblings;
 mod reject_text;
 mod reject_units;
 mod reject_wads;

@@ -14,7 +14,7 @@ fn table(map: &DoomMap, game: Option<Game>) -> RejectTable {
 }
 
 /// The map in Hexen's format, its lines with these specials.
-fn hexen(sketch: &Sketch, special: impl Fn(usize) -> u8) -> DoomMap {
+pub(crate) fn hexen(sketch: &Sketch, special: impl Fn(usize) -> u8) -> DoomMap {
     let mut sketch = sketch.clone();
     sketch.0.hexen = true;
     let wad = wad_of(&sketch);
@@ -25,7 +25,7 @@ fn hexen(sketch: &Sketch, special: impl Fn(usize) -> u8) -> DoomMap {
 }
 
 /// The map in Doom's format, its lines with these specials, and with a thing of this kind.
-fn binary(sketch: &Sketch, thing: u16, special: impl Fn(usize) -> u16) -> DoomMap {
+pub(crate) fn binary(sketch: &Sketch, thing: u16, special: impl Fn(usize) -> u16) -> DoomMap {
     let wad = wad_of(sketch);
     let [lines, things] = [MapLump::Linedefs, MapLump::Things].map(|lump| list_maps(&wad)[0].lump(lump).unwrap());
     let mut bytes = wad.lump_bytes(lines).to_vec();
@@ -38,7 +38,7 @@ fn binary(sketch: &Sketch, thing: u16, special: impl Fn(usize) -> u16) -> DoomMa
 }
 
 /// The map as text in a namespace, its lines with these specials.
-fn text<N: std::fmt::Display>(sketch: &Sketch, namespace: &str, special: impl Fn(usize) -> N) -> DoomMap {
+pub(crate) fn text<N: std::fmt::Display>(sketch: &Sketch, namespace: &str, special: impl Fn(usize) -> N) -> DoomMap {
     let text = udmf::text_of(&read(&wad_of(sketch))).replace("\"zdoom\"", &format!("\"{namespace}\""));
     let mut k = 0;
     let lines = text.lines().map(|line| match line.strip_prefix("LineDef") {
