@@ -16,6 +16,11 @@ pub(crate) fn text_lines(text: &[u8]) -> impl Iterator<Item = &[u8]> {
     lines.flat_map(|line| line.split(|&byte| byte == b'\r'))
 }
 
+/// Whether a text begins with another, in any case of letters.
+pub(crate) fn begins_with(text: &[u8], with: &str) -> bool {
+    text.get(..with.len()).is_some_and(|begin| begin.eq_ignore_ascii_case(with.as_bytes()))
+}
+
 /// The bytes at `at`, which the caller knows to be inside.
 pub(crate) fn bytes_at<const N: usize>(bytes: &[u8], at: usize) -> [u8; N] {
     let mut out = [0; N];

@@ -16,6 +16,7 @@
 
 mod beside;
 mod bytes;
+mod cursor;
 mod debris;
 pub mod doom;
 pub mod dxf;

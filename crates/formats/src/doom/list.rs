@@ -1,6 +1,7 @@
 //! Finding the maps of a WAD: a marker, and the lumps that follow it.
 
 use super::{MapFormat, MapLump};
+use crate::bytes::begins_with;
 use crate::error::{Malformed, malformed};
 use crate::wad::{LumpName, Wad};
 use std::ops::Range;
@@ -134,8 +135,9 @@ fn end_of_text(wad: &Wad, marker: usize) -> usize {
 fn is_member(name: &LumpName) -> bool {
     const OTHER: [&str; 9] =
         ["SEGS", "SSECTORS", "NODES", "BLOCKMAP", "BEHAVIOR", "SCRIPTS", "LEAFS", "LIGHTS", "MACROS"];
-    let gl = name.text().get(..3).is_some_and(|start| start.eq_ignore_ascii_case(b"GL_"));
-    gl || MapLump::ALL.iter().any(|l| name.is(l.name())) || OTHER.iter().any(|other| name.is(other))
+    begins_with(name.text(), "GL_")
+        || MapLump::ALL.iter().any(|l| name.is(l.name()))
+        || OTHER.iter().any(|other| name.is(other))
 }
 
 /// `MAP` and digits, or `E`, digits, `M`, digits.

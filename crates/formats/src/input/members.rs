@@ -1,6 +1,7 @@
 //! The members of a JSON object, looked at without reading all of it.
 
 use crate::bytes::without_mark;
+use crate::cursor::closing_quotes;
 use crate::geojson::is_sequence;
 
 /// Whether a text begins as a JSON object, or as a sequence of them.
@@ -22,7 +23,7 @@ pub(super) fn has_member(head: &[u8], name: &str) -> bool {
         rest = behind;
         match byte {
             b'"' => {
-                let Some(end) = end_of_text(rest) else { return false };
+                let Some(end) = closing_quotes(rest) else { return false };
                 if depth == 0 && is_name && &rest[..end] == name.as_bytes() {
                     return true;
                 }
@@ -37,16 +38,6 @@ pub(super) fn has_member(head: &[u8], name: &str) -> bool {
         }
     }
     false
-}
-
-/// Where the quote is that ends a text.
-fn end_of_text(text: &[u8]) -> Option<usize> {
-    let mut is_escaped = false;
-    text.iter().position(|&byte| {
-        let ends = byte == b'"' && !is_escaped;
-        is_escaped = byte == b'\\' && !is_escaped;
-        ends
-    })
 }
 
 #[cfg(test)]

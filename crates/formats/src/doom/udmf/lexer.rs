@@ -1,20 +1,8 @@
 //! Words, strings and marks of a text, and where they are.
 
-use crate::bytes::line_end;
-use crate::error::{Malformed, malformed};
-
-/// A place in the text; both count from 1.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Place {
-    line: u32,
-    column: u32,
-}
-
-impl Place {
-    pub(super) fn error(self, what: Malformed) -> Malformed {
-        what.within(format_args!("line {}, column {}", self.line, self.column))
-    }
-}
+use crate::bytes::{line_end, without_mark};
+use crate::cursor::{Cursor, Place, closing_quotes};
+use crate::error::Malformed;
 
 /// A piece of the text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -43,102 +31,54 @@ impl Piece<'_> {
     }
 }
 
-/// The pieces of a text, one after the other. No memory, whatever the text; each byte is looked at once or twice.
+/// The pieces of a text, one after the other. Each byte is looked at a few times at most.
 #[derive(Debug)]
 pub(super) struct Lexer<'t> {
-    text: &'t [u8],
-    at: usize,
-    line: u32,
-    line_start: usize,
+    cursor: Cursor<'t>,
+    line_end: u8,
 }
 
 impl<'t> Lexer<'t> {
     /// Without a byte order mark, and without the zeros that fill lumps up.
     pub(super) fn new(text: &'t [u8]) -> Self {
-        let text = text.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(text);
+        let text = without_mark(text);
         let text = &text[..text.iter().rposition(|&byte| byte != 0).map_or(0, |last| last + 1)];
-        Self { text, at: 0, line: 1, line_start: 0 }
+        Self { cursor: Cursor::new(text), line_end: line_end(text) }
     }
 
     /// The next piece and its place; comments and space before it are skipped.
     pub(super) fn next(&mut self) -> Result<(Piece<'t>, Place), Malformed> {
         self.skip()?;
-        let place = self.place();
-        let Some(&first) = self.text.get(self.at) else { return Ok((Piece::End, place)) };
+        let (place, rest) = (self.cursor.place(), self.cursor.rest());
+        let Some(&first) = rest.first() else { return Ok((Piece::End, place)) };
         if first == b'"' {
-            return Ok((Piece::Quoted(self.string(place)?), place));
+            let quoted = self.cursor.take_to(closing_quotes(&rest[1..]).map(|end| end + 2), "string")?;
+            return Ok((Piece::Quoted(&quoted[1..quoted.len() - 1]), place));
         }
         if is_mark(first) {
-            self.at += 1;
+            self.cursor.take(1);
             return Ok((Piece::Mark(first), place));
         }
-        let rest = &self.text[self.at..];
         let ends = |k: &usize| !is_word(rest[*k]) || rest[*k..].starts_with(b"//") || rest[*k..].starts_with(b"/*");
-        let word = &rest[..(1..rest.len()).find(ends).unwrap_or(rest.len())];
-        self.at += word.len();
-        Ok((Piece::Word(word), place))
-    }
-
-    fn place(&self) -> Place {
-        // A lump has fewer than 2^31 bytes.
-        Place { line: self.line, column: (self.at - self.line_start + 1) as u32 }
-    }
-
-    /// Goes past one byte.
-    fn step(&mut self) {
-        if self.text[self.at] == b'\n' {
-            self.line += 1;
-            self.line_start = self.at + 1;
-        }
-        self.at += 1;
+        Ok((Piece::Word(self.cursor.take((1..rest.len()).find(ends).unwrap_or(rest.len()))), place))
     }
 
     /// Goes past space and comments.
     fn skip(&mut self) -> Result<(), Malformed> {
         loop {
-            let rest = &self.text[self.at..];
+            let rest = self.cursor.rest();
             match rest {
-                [first, ..] if first.is_ascii_whitespace() => self.step(),
+                [first, ..] if first.is_ascii_whitespace() => self.cursor.take(1),
                 [b'/', b'/', ..] => {
-                    let end = line_end(self.text);
-                    self.at += rest.iter().position(|&b| b == end).unwrap_or(rest.len());
+                    self.cursor.take(rest.iter().position(|&b| b == self.line_end).unwrap_or(rest.len()))
                 }
-                [b'/', b'*', ..] => self.comment()?,
+                [b'/', b'*', inside @ ..] => {
+                    let end = inside.windows(2).position(|pair| pair == b"*/");
+                    self.cursor.take_to(end.map(|end| end + 4), "comment")?
+                }
                 _ => return Ok(()),
-            }
+            };
         }
-    }
-
-    fn comment(&mut self) -> Result<(), Malformed> {
-        let place = self.place();
-        self.at += 2;
-        while !self.text[self.at..].starts_with(b"*/") {
-            if self.at == self.text.len() {
-                return Err(place.error(malformed!("this comment has no end")));
-            }
-            self.step();
-        }
-        self.at += 2;
-        Ok(())
-    }
-
-    /// Goes past a string; `\` takes its meaning from the character behind it.
-    fn string(&mut self, place: Place) -> Result<&'t [u8], Malformed> {
-        self.at += 1;
-        let start = self.at;
-        loop {
-            match self.text[self.at..] {
-                [b'"', ..] => break,
-                [b'\\', _, ..] => {
-                    self.at += 1;
-                    self.step();
-                }
-                [_, ..] => self.step(),
-                [] => return Err(place.error(malformed!("this string has no end"))),
-            }
-        }
-        self.at += 1;
-        Ok(&self.text[start..self.at - 1])
     }
 }
 

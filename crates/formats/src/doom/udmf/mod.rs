@@ -9,8 +9,9 @@ mod values;
 
 use super::content::{Content, LineDef, Numbering, Thing};
 use super::{Game, ML_TWOSIDED};
+use crate::cursor::Place;
 use crate::error::{Malformed, malformed};
-use lexer::{Lexer, Piece, Place};
+use lexer::{Lexer, Piece};
 use values::Value;
 
 /// Reads a text. Memory within a small multiple of its length; each byte is looked at once or twice.

@@ -1,7 +1,8 @@
 //! Values of assignments: coordinates, numbers of blocks, flags.
 
 use super::Block;
-use super::lexer::{Piece, Place};
+use super::lexer::Piece;
+use crate::cursor::Place;
 use crate::error::{Malformed, malformed};
 use sightlines_geometry::check_coordinate;
 
@@ -59,18 +60,20 @@ impl<const N: usize> Block<'_, N> {
         check_coordinate(number).map_err(|error| value.place.error(Malformed::from(error).within(key)))
     }
 
+    fn whole<T: TryFrom<i64>>(&self, k: usize, wanted: &str) -> Result<T, Malformed> {
+        let value = self.require(k)?;
+        let number = value.integer().and_then(|n| T::try_from(n).ok());
+        number.ok_or_else(|| value.refuse(self.keys[k], wanted))
+    }
+
     /// A whole number of 32 bits.
     pub(super) fn integer(&self, k: usize) -> Result<i32, Malformed> {
-        let value = self.require(k)?;
-        let number = value.integer().and_then(|n| i32::try_from(n).ok());
-        number.ok_or_else(|| value.refuse(self.keys[k], "a whole number"))
+        self.whole(k, "a whole number")
     }
 
     /// The number of a block.
     pub(super) fn index(&self, k: usize) -> Result<u32, Malformed> {
-        let value = self.require(k)?;
-        let number = value.integer().and_then(|n| u32::try_from(n).ok());
-        number.ok_or_else(|| value.refuse(self.keys[k], "the number of a block"))
+        self.whole(k, "the number of a block")
     }
 
     /// The number of a block; `None` for -1 and where nothing is said.

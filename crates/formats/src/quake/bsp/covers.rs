@@ -2,8 +2,8 @@
 
 use super::Bsp;
 use super::faces::{TEXTURES, texture_name};
-use super::layout::FaceForm;
-use crate::bytes::{i32_at, u16_at, u32_at};
+use super::layout::{FaceForm, Records};
+use crate::bytes::{begins_with, i32_at, u16_at, u32_at};
 use crate::error::Malformed;
 use sightlines_geometry::Point3;
 
@@ -48,32 +48,28 @@ impl Bsp {
             return Ok(None);
         }
         let has_flags = self.format().has_clusters();
-        let (info_lump, info_len) = if has_flags { (5, 76) } else { (6, 40) };
-        let (own, len) = (layout.faces.lump, layout.faces.len);
-        let is_wide = len == 28;
-        let faces = self.records(own, len)?;
-        let infos = self.records(info_lump, info_len)?;
-        let planes = self.records(layout.planes.lump, layout.planes.len)?;
-        let (n_planes, n_infos) = (planes.len() / layout.planes.len, infos.len() / info_len);
+        let is_wide = layout.faces.len == 28;
+        let faces = self.records(layout.faces)?;
+        let infos =
+            self.records(if has_flags { Records { lump: 5, len: 76 } } else { Records { lump: 6, len: 40 } })?;
+        let planes = self.records(layout.planes)?;
         let cover = |k: usize| -> Result<FaceCover, Malformed> {
-            let face = &faces[k * len..][..len];
+            let (face, by) = (faces.get(k), (faces.lump, k));
             let (plane, side, info) = match is_wide {
                 true => (i64::from(i32_at(face, 0)), i32_at(face, 4), i64::from(i32_at(face, 16))),
                 false => (i64::from(u16_at(face, 0)), i32::from(u16_at(face, 2)), i64::from(u16_at(face, 10))),
             };
-            let plane = self.named((own, k), plane, layout.planes.lump, n_planes)?;
-            let info = self.named((own, k), info, info_lump, n_infos)?;
-            let record = &infos[info * info_len..][..info_len];
+            let plane = planes.get(planes.named(by, plane)?);
+            let record = infos.get(infos.named(by, info)?);
             let is_opaque = match has_flags {
                 true => u32_at(record, SAID) & SEE_THROUGH == 0,
                 false => self.is_opaque_texture(i32_at(record, SAID)),
             };
-            let number = |k: usize| f64::from(f32::from_bits(u32_at(planes, layout.planes.len * plane + 4 * k)));
+            let number = |k: usize| f64::from(f32::from_bits(u32_at(plane, 4 * k)));
             let normal = [number(0), number(1), number(2)];
             Ok(FaceCover { normal, distance: number(3), side: u8::from(side != 0), is_opaque })
         };
-        let world = self.world_face_run(faces.len() / len)?;
-        world.map(cover).collect::<Result<_, _>>().map(Some)
+        self.world_face_run(&faces)?.map(cover).collect::<Result<_, _>>().map(Some)
     }
 
     /// Whether a texture of Quake hides what is behind it, by its name.
@@ -84,8 +80,6 @@ impl Bsp {
             let index = usize::try_from(index).ok().filter(|&index| index < n)?;
             texture_name(lump, i32_at(lump[4..].chunks_exact(4).nth(index)?, 0))
         };
-        let begins =
-            |name: &[u8], with: &str| name.get(..with.len()).is_some_and(|n| n.eq_ignore_ascii_case(with.as_bytes()));
-        !name().is_some_and(|name| NOT_OPAQUE.into_iter().any(|with| begins(name, with)))
+        !name().is_some_and(|name| NOT_OPAQUE.into_iter().any(|with| begins_with(name, with)))
     }
 }

@@ -1,7 +1,7 @@
 //! What can be heard in a leaf: its faces of water, sky and lava.
 
 use super::Bsp;
-use crate::bytes::{i32_at, u16_at, u32_at};
+use crate::bytes::{begins_with, i32_at, u16_at, u32_at};
 use crate::error::{Malformed, malformed};
 
 /// The lump of textures.
@@ -54,18 +54,14 @@ impl AmbientTexture {
     /// # Source
     /// The manual of ericw-tools' vis (its options that turn sounds off) names the beginnings.
     pub fn of_name(name: &[u8]) -> Option<Self> {
-        let begins = |with: &str| name.get(..with.len()).is_some_and(|n| n.eq_ignore_ascii_case(with.as_bytes()));
-        if begins("sky") {
-            Some(Self::Sky)
-        } else if begins("*lava") {
-            Some(Self::Lava)
-        } else if begins("*slime") {
-            Some(Self::Slime)
-        } else if ["*water", "*04water"].into_iter().any(begins) {
-            Some(Self::Water)
-        } else {
-            None
-        }
+        const BEGINNINGS: [(&str, AmbientTexture); 5] = [
+            ("sky", AmbientTexture::Sky),
+            ("*lava", AmbientTexture::Lava),
+            ("*slime", AmbientTexture::Slime),
+            ("*water", AmbientTexture::Water),
+            ("*04water", AmbientTexture::Water),
+        ];
+        BEGINNINGS.into_iter().find(|(with, _)| begins_with(name, with)).map(|(_, texture)| texture)
     }
 
     /// What it sounds like.

@@ -16,8 +16,17 @@ impl Bsp {
         self.over_leafs().filter(|_| changes).map_or(Ok(()), |other| Err(self.shared(other)))
     }
 
-    /// As [`Self::with_visibility`] says, from the parts of a visibility lump.
-    pub(in crate::quake) fn rewritten(&self, new: &NewVisibility<'_>) -> Result<Vec<u8>, Malformed> {
+    /// The file with another visibility lump, and with the places of rows and the loudness that go with it in the
+    /// leafs that can be seen. Everything else keeps its bytes: what lies behind the lump is moved by a multiple
+    /// of four, and the directories (BSPX too) follow. A lump of the same length is replaced in place.
+    ///
+    /// The lump stays where the directory has it. Where that is no place for a lump (inside another, or not at a
+    /// multiple of four), it goes behind the last of all, and the bytes of the old one stay where they are.
+    ///
+    /// # Errors
+    /// [`Malformed`] for a lump that was made for another number of leafs, if leafs would have to change under another lump, and for a
+    /// file that would be too large.
+    pub fn with_visibility(&self, new: &VisibilityLump) -> Result<Vec<u8>, Malformed> {
         let vis = self.format.visibility_lump();
         let splice = self.splice(new.bytes.len());
         let (old, pad) = (splice.old.clone(), splice.pad);
@@ -30,7 +39,7 @@ impl Bsp {
         out.extend_from_slice(&self.bytes[..old.start]);
         out.resize(out.len() + splice.lead, 0);
         let start = out.len();
-        out.extend_from_slice(new.bytes);
+        out.extend_from_slice(&new.bytes);
         out.resize(out.len() + pad, 0);
         out.extend_from_slice(&self.bytes[old.end..]);
 
@@ -107,7 +116,7 @@ impl Bsp {
     }
 
     /// The lump of leafs with new places and loudness, or with its old bytes where nothing is to change.
-    fn changed_leafs(&self, new: &NewVisibility<'_>) -> Result<Vec<u8>, Malformed> {
+    fn changed_leafs(&self, new: &VisibilityLump) -> Result<Vec<u8>, Malformed> {
         let index = self.format.leaf_lump();
         let mut leafs = self.lump_bytes(index).to_vec();
         let layout = self.format.layout();
@@ -119,12 +128,12 @@ impl Bsp {
             }
         }
         let mut records: Vec<&mut [u8]> = leafs.chunks_exact_mut(layout.leafs.len).skip(1).collect();
-        for (record, &row) in records.iter_mut().zip(new.leaf_rows) {
+        for (record, &row) in records.iter_mut().zip(&new.leaf_rows) {
             // A lump that fits a file has no row past what 31 bits can say.
             put(record, LEAF_ROW, row as usize);
         }
         if let Some(at) = layout.leaf_ambient {
-            records.iter_mut().zip(new.ambient).for_each(|(record, level)| record[at..at + 4].copy_from_slice(level));
+            records.iter_mut().zip(&new.ambient).for_each(|(record, level)| record[at..at + 4].copy_from_slice(level));
         }
         match self.over_leafs().filter(|_| leafs != self.lump_bytes(index)) {
             Some(other) => Err(self.shared(other)),
@@ -149,11 +158,16 @@ impl Bsp {
 /// Where a leaf has the place of its row, in all formats whose leafs have one.
 const LEAF_ROW: usize = 4;
 
-/// What a map is written again with; see [`VisibilityLump`](crate::quake::VisibilityLump).
-pub(in crate::quake) struct NewVisibility<'a> {
-    pub(in crate::quake) bytes: &'a [u8],
-    pub(in crate::quake) leaf_rows: &'a [u32],
-    pub(in crate::quake) ambient: &'a [[u8; 4]],
+/// A visibility lump, and what goes with it in the leafs; [`Bsp::with_visibility`] puts it into a map.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct VisibilityLump {
+    /// The lump.
+    pub bytes: Vec<u8>,
+    /// For each leaf that can be seen where its row begins in the lump; empty for Quake II and III.
+    pub leaf_rows: Vec<u32>,
+    /// For each of those leafs how loud water, sky, slime and lava are; empty for formats
+    /// [without such sounds](super::BspFormat::has_sounds).
+    pub ambient: Vec<[u8; 4]>,
 }
 
 /// `old` gives way to `lead` zeros, the new lump, and `pad` zeros.

@@ -1,6 +1,7 @@
 //! The tree of planes that a map's world was cut along, down to its leafs.
 
 use super::layout::Layout;
+use super::records::{By, Records};
 use super::{Bsp, MAX_TREE_DEPTH};
 use crate::bytes::{i32_at, u16_at, u32_at};
 use crate::error::{Malformed, malformed};
@@ -68,10 +69,9 @@ impl Bsp {
     /// 16 bits is how engines read maps with more than 32767 nodes; for others it is the same as a sign.
     pub fn world_tree(&self) -> Result<BspTree, Malformed> {
         let layout = self.format().layout();
-        let planes = self.records(layout.planes.lump, layout.planes.len)?;
-        let nodes = self.records(layout.nodes.lump, layout.nodes.len)?;
-        let file = NodesOfFile { bsp: self, layout, planes, nodes };
-        let mut tree = Growing { nodes: Vec::new(), depths: Vec::new(), is_reached: vec![false; file.n_nodes()] };
+        let (planes, nodes) = (self.records(layout.planes)?, self.records(layout.nodes)?);
+        let file = NodesOfFile { layout, planes, nodes, leafs: self.records(layout.leafs)? };
+        let mut tree = Growing { nodes: Vec::new(), depths: Vec::new(), is_reached: vec![false; nodes.n()] };
         let model = self.world_model()?;
         let named = layout.model_root.map_or(0, |at| i64::from(i32_at(model, at)));
         let root = tree.add(&file, file.found(named, (layout.models.lump, 0))?, 0)?;
@@ -89,23 +89,8 @@ impl Bsp {
 
     /// The record of model 0, which is the world.
     pub(super) fn world_model(&self) -> Result<&[u8], Malformed> {
-        let super::layout::Records { lump, len } = self.format().layout().models;
-        let models = self.records(lump, len)?;
-        models.get(..len).ok_or_else(|| malformed!("{}: there is no model 0", self.format().label(lump)))
-    }
-
-    /// The bytes of a lump of records of `record` bytes.
-    pub(super) fn records(&self, lump: usize, record: usize) -> Result<&[u8], Malformed> {
-        self.format().whole_records(lump, record, self.lump_bytes(lump))
-    }
-
-    /// An index that a record of a lump names, if the other lump has so many records.
-    pub(super) fn named(&self, by: (usize, usize), found: i64, of: usize, n: usize) -> Result<usize, Malformed> {
-        let index = usize::try_from(found).ok().filter(|&k| k < n);
-        index.ok_or_else(|| {
-            let [lump, of] = [by.0, of].map(|k| self.format().label(k));
-            malformed!("{lump}: record {} names record {found} of {of}, which has {n}", by.1)
-        })
+        let models = self.records(self.format().layout().models)?;
+        models.iter().next().ok_or_else(|| malformed!("{}: there is no model 0", models.label()))
     }
 }
 
@@ -125,7 +110,7 @@ impl Growing {
             BspChild::Leaf(_) => return Ok(found),
             BspChild::Node(index) => index,
         };
-        let nodes = || file.bsp.format().label(file.layout.nodes.lump);
+        let nodes = || file.nodes.label();
         if std::mem::replace(&mut self.is_reached[index as usize], true) {
             return Err(malformed!("{}: node {index} is reached twice, so this is no tree", nodes()));
         }
@@ -142,29 +127,20 @@ impl Growing {
 
 /// The lumps that a tree is read from.
 struct NodesOfFile<'b> {
-    bsp: &'b Bsp,
     layout: &'static Layout,
-    planes: &'b [u8],
-    nodes: &'b [u8],
+    planes: Records<'b>,
+    nodes: Records<'b>,
+    leafs: Records<'b>,
 }
 
 impl NodesOfFile<'_> {
-    fn n_nodes(&self) -> usize {
-        self.nodes.len() / self.layout.nodes.len
-    }
-
-    fn node(&self, node: u32) -> &[u8] {
-        let len = self.layout.nodes.len;
-        &self.nodes[node as usize * len..][..len]
-    }
-
     /// The children as numbers: nodes from 0, leafs from -1 downwards.
     fn children(&self, node: u32) -> [i64; 2] {
-        let record = self.node(node);
+        let record = self.nodes.get(node as usize);
         [0, 1].map(|side| {
             if self.layout.short_children {
                 let child = i64::from(u16_at(record, 4 + 2 * side));
-                if child < self.n_nodes() as i64 { child } else { child - 0x1_0000 }
+                if child < self.nodes.n() as i64 { child } else { child - 0x1_0000 }
             } else {
                 i64::from(i32_at(record, 4 + 4 * side))
             }
@@ -173,22 +149,19 @@ impl NodesOfFile<'_> {
 
     /// The normal and the distance of a node's plane.
     fn plane(&self, node: u32) -> Result<(Point3, f64), Malformed> {
-        let (planes, by) = (self.layout.planes, (self.layout.nodes.lump, node as usize));
-        let found = i64::from(u32_at(self.node(node), 0));
-        let plane = self.bsp.named(by, found, planes.lump, self.planes.len() / planes.len)?;
-        plane_of(&self.planes[planes.len * plane..]).ok_or_else(|| {
-            let lump = self.bsp.format().label(planes.lump);
+        let found = i64::from(u32_at(self.nodes.get(node as usize), 0));
+        let plane = self.planes.named((self.nodes.lump, node as usize), found)?;
+        plane_of(self.planes.get(plane)).ok_or_else(|| {
+            let lump = self.planes.label();
             malformed!("{lump}: plane {plane} has no normal of unit length, or no finite distance")
         })
     }
 
     /// A child as the file has it, checked.
-    fn found(&self, child: i64, by: (usize, usize)) -> Result<BspChild, Malformed> {
-        if child < 0 {
-            let (leafs, n) = (self.layout.leafs.lump, self.bsp.leafs().len());
-            Ok(BspChild::Leaf(self.bsp.named(by, -1 - child, leafs, n)? as u32))
-        } else {
-            Ok(BspChild::Node(self.bsp.named(by, child, self.layout.nodes.lump, self.n_nodes())? as u32))
+    fn found(&self, child: i64, by: By) -> Result<BspChild, Malformed> {
+        match child {
+            ..0 => Ok(BspChild::Leaf(self.leafs.named(by, -1 - child)? as u32)),
+            _ => Ok(BspChild::Node(self.nodes.named(by, child)? as u32)),
         }
     }
 }

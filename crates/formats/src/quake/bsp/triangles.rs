@@ -1,7 +1,9 @@
 //! Faces of Quake III: runs of vertices, as triangles or as the grid of a curved face.
 
-use super::Bsp;
+use super::records::Records;
+use super::surfaces::Vertices;
 use super::world_faces::WorldFaces;
+use super::{Bsp, layout};
 use crate::bytes::i32_at;
 use crate::error::{Malformed, malformed};
 use sightlines_geometry::Point3;
@@ -26,37 +28,34 @@ pub(super) fn faces(
     bsp: &Bsp,
     indices: usize,
     world: Range<usize>,
-    faces: &[u8],
-    vertices: &[Point3],
+    faces: &Records<'_>,
+    vertices: &Vertices<'_>,
 ) -> Result<WorldFaces, Malformed> {
-    let layout = bsp.format().layout();
-    let (own, lump) = (layout.faces.lump, layout.vertices.lump);
-    let listed = bsp.records(indices, 4)?;
-    let n_listed = listed.len() / 4;
+    let listed = bsp.records(layout::Records { lump: indices, len: 4 })?;
     let (mut n_controls, mut n_corners) = (0, 0);
     let mut found = WorldFaces::new(world.start as u32);
     for k in world {
-        let face = &faces[k * layout.faces.len..][..layout.faces.len];
-        let number = |at: usize| i64::from(i32_at(face, at));
-        let run = bsp.run((own, k), [number(VERTICES), number(VERTICES + 4)], lump, vertices.len())?;
+        let (face, by) = (faces.get(k), (faces.lump, k));
+        let pair = |at: usize| [i32_at(face, at), i32_at(face, at + 4)].map(i64::from);
+        let run = vertices.records.run(by, pair(VERTICES))?;
         if i32_at(face, KIND) == CURVED {
             n_controls += run.len() as u64;
-            bsp.refuse_shared(own, n_controls, lump, vertices.len())?;
-            let [width, height] = [number(GRID), number(GRID + 4)];
+            vertices.records.refuse_shared(faces.lump, n_controls)?;
+            let [width, height] = pair(GRID);
             let is_grid = width > 0 && height > 0 && width.checked_mul(height) == Some(run.len() as i64);
             if !is_grid {
-                let (lump, n) = (bsp.format().label(own), run.len());
+                let (lump, n) = (faces.label(), run.len());
                 return Err(malformed!("{lump}: face {k}: a grid of {width} by {height} has not its {n} points"));
             }
-            grid(&vertices[run], width as usize, &mut found);
+            grid(&vertices.points[run], width as usize, &mut found);
         } else {
-            let named = bsp.run((own, k), [number(INDICES), number(INDICES + 4)], indices, n_listed)?;
+            let named = listed.run(by, pair(INDICES))?;
             n_corners += named.len() as u64;
-            bsp.refuse_shared(own, n_corners, indices, n_listed)?;
+            listed.refuse_shared(faces.lump, n_corners)?;
             for (at, k) in named.zip(1..) {
-                let index = i64::from(i32_at(listed, 4 * at));
+                let index = i64::from(i32_at(listed.get(at), 0));
                 let index = if index < 0 { index } else { run.start as i64 + index };
-                found.corners.push(vertices[bsp.named((indices, at), index, lump, vertices.len())?]);
+                found.corners.push(vertices.named((listed.lump, at), index)?);
                 if k % 3 == 0 {
                     found.end_polygon();
                 }

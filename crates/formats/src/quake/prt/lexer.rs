@@ -1,5 +1,6 @@
 //! Pieces of a text with their places.
 
+use crate::cursor::{Cursor, Place};
 use crate::error::{Malformed, malformed};
 use std::fmt::Display;
 
@@ -8,24 +9,16 @@ use std::fmt::Display;
 pub(super) struct Token<'t> {
     /// Its bytes; `None` at the end of the text.
     pub(super) bytes: Option<&'t [u8]>,
-    /// The line, from 1.
-    pub(super) line: usize,
-    /// The byte in the line, from 1.
-    pub(super) column: usize,
+    pub(super) place: Place,
 }
 
 /// Most characters of a piece that an error shows.
 const SHOWN: usize = 40;
 
 impl Token<'_> {
-    /// An error of this piece.
-    pub(super) fn error(&self, what: Malformed) -> Malformed {
-        what.within(format_args!("line {}, column {}", self.line, self.column))
-    }
-
     /// The error where something else should stand.
     pub(super) fn unexpected(&self, expected: impl Display) -> Malformed {
-        self.error(match self.bytes {
+        self.place.error(match self.bytes {
             Some(_) => malformed!("expected {expected}, found {:?}", self.shown()),
             None => malformed!("expected {expected}, found the end of the file"),
         })
@@ -40,44 +33,16 @@ impl Token<'_> {
     }
 }
 
-/// Cuts a text into parentheses and words between whitespace.
-#[derive(Debug, Clone)]
-pub(super) struct Lexer<'t> {
-    text: &'t [u8],
-    at: usize,
-    line: usize,
-    line_start: usize,
-}
-
-impl<'t> Lexer<'t> {
-    pub(super) fn new(text: &'t [u8]) -> Self {
-        Self { text, at: 0, line: 1, line_start: 0 }
-    }
-
-    /// Number of bytes that are not cut yet.
-    pub(super) fn n_left(&self) -> usize {
-        self.text.len() - self.at
-    }
-
-    /// The next piece. O(its length and the whitespace before it).
-    pub(super) fn next(&mut self) -> Token<'t> {
-        while let Some(&byte) = self.text.get(self.at).filter(|&&b| is_space(b)) {
-            self.at += 1;
-            if byte == b'\n' {
-                (self.line, self.line_start) = (self.line + 1, self.at);
-            }
-        }
-        let start = self.at;
-        let is_end = |&b: &u8| is_space(b) || matches!(b, b'(' | b')');
-        let len = match self.text[start..].first() {
-            None => 0,
-            Some(b'(' | b')') => 1,
-            Some(_) => self.text[start..].iter().position(is_end).unwrap_or(self.text.len() - start),
-        };
-        self.at += len;
-        let bytes = Some(&self.text[start..self.at]).filter(|b| !b.is_empty());
-        Token { bytes, line: self.line, column: start - self.line_start + 1 }
-    }
+/// The next piece of a text: a parenthesis, or a word between whitespace. O(its length and the whitespace before it).
+pub(super) fn next<'t>(text: &mut Cursor<'t>) -> Token<'t> {
+    text.take(text.rest().iter().take_while(|&&b| is_space(b)).count());
+    let is_end = |&b: &u8| is_space(b) || matches!(b, b'(' | b')');
+    let (place, rest) = (text.place(), text.rest());
+    let len = match rest {
+        [b'(' | b')', ..] => 1,
+        _ => rest.iter().position(is_end).unwrap_or(rest.len()),
+    };
+    Token { bytes: Some(text.take(len)).filter(|b| !b.is_empty()), place }
 }
 
 fn is_space(byte: u8) -> bool {

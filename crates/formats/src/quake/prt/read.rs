@@ -1,7 +1,8 @@
 //! From text to portals.
 
-use super::lexer::{Lexer, Token};
+use super::lexer::{Token, next};
 use super::{LeafList, MAX_CLUSTERS, PORTAL_POINTS, Prt, PrtDialect, SolidFace, beyond};
+use crate::cursor::{Cursor, Place};
 use crate::error::{Malformed, Within, malformed};
 use crate::point::check_point;
 use sightlines_cells::Point3;
@@ -24,9 +25,9 @@ use std::ops::RangeInclusive;
 ///
 /// [`PrtPortal::is_degenerate`]: super::PrtPortal::is_degenerate
 pub fn parse_prt(text: &[u8]) -> Result<Prt, Malformed> {
-    let mut reader = Reader { lexer: Lexer::new(text) };
+    let mut reader = Reader(Cursor::new(text));
     let (magic, header) = reader.header()?;
-    let mut prt = Prt::new(header.n_clusters).map_err(|what| magic.error(what))?;
+    let mut prt = Prt::new(header.n_clusters).map_err(|what| magic.place.error(what))?;
     let (mut points, mut places, mut hints) = (Vec::new(), Vec::new(), Vec::new());
     for portal in 0..header.n_portals as usize {
         let (place, hint) = reader.portal(portal, header.dialect, &mut prt, &mut points)?;
@@ -49,15 +50,15 @@ pub fn parse_prt(text: &[u8]) -> Result<Prt, Malformed> {
             prt.with_faces(hints, faces.collect::<Result<_, _>>()?)
         }
     };
-    let prt = prt.map_err(|what| magic.error(what))?;
-    let end = reader.lexer.next();
+    let prt = prt.map_err(|what| magic.place.error(what))?;
+    let end = next(&mut reader.0);
     if end.bytes.is_some() { Err(end.unexpected("the end of the file")) } else { Ok(prt) }
 }
 
 /// The line on which a portal of a portal file begins, counted from 1; `None` if the text has no such portal that can be read. For messages about
 /// portals after the text was read.
 pub fn line_of_portal(text: &[u8], portal: usize) -> Option<usize> {
-    let mut reader = Reader { lexer: Lexer::new(text) };
+    let mut reader = Reader(Cursor::new(text));
     let (_, header) = reader.header().ok()?;
     let mut prt = Prt::new(header.n_clusters).ok()?;
     let n_before = (portal < header.n_portals as usize).then_some(portal)?;
@@ -78,14 +79,12 @@ struct Header {
     clusters: Vec<u32>,
 }
 
-struct Reader<'t> {
-    lexer: Lexer<'t>,
-}
+struct Reader<'t>(Cursor<'t>);
 
 impl<'t> Reader<'t> {
     /// The first piece, and the header.
     fn header(&mut self) -> Result<(Token<'t>, Header), Malformed> {
-        let magic = self.lexer.next();
+        let magic = next(&mut self.0);
         let named = PrtDialect::ALL.into_iter().find(|d| d.magic().is_some_and(|m| magic.bytes == Some(m.as_bytes())));
         let is_number = magic.bytes.is_some_and(|bytes| bytes.iter().all(u8::is_ascii_digit));
         let dialect = named.or(is_number.then_some(PrtDialect::HalfLife));
@@ -116,10 +115,10 @@ impl<'t> Reader<'t> {
 
     /// Whether a `PRT1` is that of Quake III, told by the pieces behind its two counts; see [`PrtDialect::Quake3`].
     fn has_faces(&self, n_portals: u32) -> bool {
-        let mut ahead = self.lexer.clone();
+        let mut ahead = self.0.clone();
         let is_number = |token: Token<'_>| token.bytes.is_some_and(|bytes| bytes.iter().all(u8::is_ascii_digit));
         let n_numbers = if n_portals == 0 { 1 } else { 5 };
-        (0..n_numbers).all(|_| is_number(ahead.next())) && (n_portals == 0 || ahead.next().bytes == Some(b"("))
+        (0..n_numbers).all(|_| is_number(next(&mut ahead))) && (n_portals == 0 || next(&mut ahead).bytes == Some(b"("))
     }
 
     /// The numbers of leafs of clusters, as the cluster of each leaf. In all there are as many as maps of that kind can have at most.
@@ -135,12 +134,12 @@ impl<'t> Reader<'t> {
 
     /// The number of leafs, which is believed only if the text is long enough to list them.
     fn leaf_count(&mut self) -> Result<u32, Malformed> {
-        let (token, n_leafs) = self.number(format_args!("the number of leafs"), 1..=u64::from(u32::MAX))?;
+        let (place, n_leafs) = self.number(format_args!("the number of leafs"), 1..=u64::from(u32::MAX))?;
         // Each takes a digit, and something between it and the next.
-        let n_bytes = self.lexer.n_left();
+        let n_bytes = self.0.rest().len();
         let fits = 2 * u64::from(n_leafs) <= n_bytes as u64 + 1;
         let claims = || malformed!("{n_leafs} leafs cannot be listed in the {n_bytes} bytes that follow");
-        if fits { Ok(n_leafs) } else { Err(token.error(claims())) }
+        if fits { Ok(n_leafs) } else { Err(place.error(claims())) }
     }
 
     /// Adds a portal, and returns where it begins, and its hint where the dialect has them.
@@ -150,7 +149,7 @@ impl<'t> Reader<'t> {
         dialect: PrtDialect,
         prt: &mut Prt,
         points: &mut Vec<Point3>,
-    ) -> Result<(Token<'t>, Option<u32>), Malformed> {
+    ) -> Result<(Place, Option<u32>), Malformed> {
         let (place, n_points) = self.number(format_args!("the number of points of portal {portal}"), point_range())?;
         let clusters = 0..=u64::from(prt.n_clusters() - 1);
         let mut cluster = || self.number(format_args!("a cluster of portal {portal}"), clusters.clone());
@@ -205,13 +204,15 @@ impl<'t> Reader<'t> {
                 let leaf = whole(&token, item, 0..=u64::from(header.n_leafs - 1))?;
                 let owner = &mut owners[leaf as usize];
                 if *owner != u32::MAX {
-                    return Err(token.error(malformed!("leaf {leaf} is in cluster {owner} and in cluster {cluster}")));
+                    return Err(token
+                        .place
+                        .error(malformed!("leaf {leaf} is in cluster {owner} and in cluster {cluster}")));
                 }
                 *owner = cluster;
             }
         }
         match owners.iter().position(|&owner| owner == u32::MAX) {
-            Some(leaf) => Err(self.lexer.next().error(malformed!("leaf {leaf} is in no cluster"))),
+            Some(leaf) => Err(next(&mut self.0).place.error(malformed!("leaf {leaf} is in no cluster"))),
             None => Ok(owners),
         }
     }
@@ -224,18 +225,17 @@ impl<'t> Reader<'t> {
     }
 
     fn token(&mut self, item: Arguments<'_>) -> Result<Token<'t>, Malformed> {
-        let token = self.lexer.next();
+        let token = next(&mut self.0);
         if token.bytes.is_some() { Ok(token) } else { Err(token.unexpected(item)) }
     }
 
-    fn number(&mut self, item: Arguments<'_>, range: RangeInclusive<u64>) -> Result<(Token<'t>, u32), Malformed> {
+    fn number(&mut self, item: Arguments<'_>, range: RangeInclusive<u64>) -> Result<(Place, u32), Malformed> {
         let token = self.token(item)?;
-        let number = whole(&token, item, range)?;
-        Ok((token, number))
+        Ok((token.place, whole(&token, item, range)?))
     }
 
     fn sign(&mut self, sign: &[u8], item: Arguments<'_>) -> Result<(), Malformed> {
-        let token = self.lexer.next();
+        let token = next(&mut self.0);
         if token.bytes == Some(sign) { Ok(()) } else { Err(token.unexpected(item)) }
     }
 
@@ -265,5 +265,5 @@ fn whole(token: &Token<'_>, item: Arguments<'_>, range: RangeInclusive<u64>) -> 
         return Err(token.unexpected(item));
     }
     let number = text.parse::<u64>().ok().filter(|n| range.contains(n)).and_then(|n| u32::try_from(n).ok());
-    number.ok_or_else(|| token.error(beyond(token.shown(), range).within(item)))
+    number.ok_or_else(|| token.place.error(beyond(token.shown(), range).within(item)))
 }

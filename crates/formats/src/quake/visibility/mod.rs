@@ -4,7 +4,7 @@
 //! for each cluster, and a second one for what can be heard. Rows are coded by [`rle`]. Quake III has a row of clusters for
 //! each cluster, as it is.
 
-use super::bsp::{AmbientTextures, NewVisibility, RowForm};
+use super::bsp::{AmbientTextures, RowForm};
 use super::{Bsp, LeafClusters, rle};
 use crate::error::{Malformed, malformed};
 use sightlines_pvs::BitMatrix;
@@ -17,40 +17,12 @@ mod orientation;
 mod raw;
 mod read;
 
+pub use super::bsp::VisibilityLump;
 pub use error::VisibilityError;
 use fit::has_more_clusters;
 pub use fit::{check_match, check_portals, clusters_of_leafs};
 use read::quake2_rows;
 pub use read::{read_hearing, read_visibility};
-
-/// A visibility lump, and what goes with it in the leafs; [`Bsp::with_visibility`] puts it into a map.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct VisibilityLump {
-    /// The lump.
-    pub bytes: Vec<u8>,
-    /// For each leaf that can be seen where its row begins in the lump; empty for Quake II and III.
-    pub leaf_rows: Vec<u32>,
-    /// For each of those leafs how loud water, sky, slime and lava are; empty for formats
-    /// [without such sounds](super::BspFormat::has_sounds).
-    pub ambient: Vec<[u8; 4]>,
-}
-
-impl Bsp {
-    /// The file with another visibility lump, and with the places of rows and the loudness that go with it in the
-    /// leafs that can be seen. Everything else keeps its bytes: what lies behind the lump is moved by a multiple
-    /// of four, and the directories (BSPX too) follow. A lump of the same length is replaced in place.
-    ///
-    /// The lump stays where the directory has it. Where that is no place for a lump (inside another, or not at a
-    /// multiple of four), it goes behind the last of all, and the bytes of the old one stay where they are.
-    ///
-    /// # Errors
-    /// [`Malformed`] for a lump that was made for another number of leafs, if leafs would have to change under another lump, and for a
-    /// file that would be too large.
-    pub fn with_visibility(&self, new: &VisibilityLump) -> Result<Vec<u8>, Malformed> {
-        let VisibilityLump { bytes, leaf_rows, ambient } = new;
-        self.rewritten(&NewVisibility { bytes, leaf_rows, ambient })
-    }
-}
 
 /// Makes the lump for a map, and the loudness of its leafs.
 ///
