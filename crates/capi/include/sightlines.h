@@ -33,7 +33,7 @@
  * **Handles.** What a function makes is freed by the caller, with the function that is named there; null may be freed. Handles do not
  * need each other: a table may be freed before its viewers, and a scene before its tables.
  *
- * **Threads.** A table never changes: any number of threads may read it at once. A viewer or a scene takes one call at a time; another
+ * **Threads.** A table never changes: any number of threads may read it at once. A viewer, a scene or a relevance takes one call at a time; another
  * one meanwhile returns SL_ERROR_BUSY and does nothing. Which thread makes a call does not matter.
  *
  * **Structures** with a field struct_size: set it to sizeof the structure before the call.
@@ -167,6 +167,16 @@
 #define SL_STEPS_FRAME 4096
 
 /**
+ * Is told of others.
+ */
+#define SL_PLAYER_VIEWS 1
+
+/**
+ * Others are told of it.
+ */
+#define SL_PLAYER_IS_SEEN 2
+
+/**
  * It is seen, and hides nothing: glass, leaves, fences.
  */
 #define SL_OBJECT_SEE_THROUGH 1
@@ -223,6 +233,11 @@
  * Cells above floors, as high as eyes are; without portals. Viewers elsewhere see everything.
  */
 #define SL_CELLS_EYE_LEVEL 5
+
+/**
+ * What follows the bodies of a game from tick to tick: who may see whom before news of it can arrive. One call at a time.
+ */
+typedef struct sl_relevance sl_relevance;
 
 /**
  * A scene that is being put together. One call at a time.
@@ -538,6 +553,95 @@ typedef struct sl_image {
      */
     uint32_t fell_back;
 } sl_image;
+
+/**
+ * How `sl_relevance_update` answers; `sl_relevance_default_options` fills it. Set `struct_size` to `sizeof(sl_relevance_options)`
+ * before.
+ */
+typedef struct sl_relevance_options {
+    /**
+     * The size of this structure, in bytes.
+     */
+    size_t struct_size;
+    /**
+     * For how many seconds somebody stays shown who may no longer be seen.
+     */
+    double hold;
+    /**
+     * How far a body may move until it is placed again, in scene units along each axis: more is less work, and shows bodies sooner.
+     */
+    double slack;
+    /**
+     * Up to which distance ways through portals count from the exact place of a body, in scene units, for reaches of such ways.
+     */
+    double walk;
+    /**
+     * How many bodies are placed exactly in a tick; the others are shown sooner, never later.
+     */
+    uint64_t looks;
+} sl_relevance_options;
+
+/**
+ * Somebody who sees and is seen, and how far they may get until the answer counts. All lengths are in scene units; in a table of the
+ * plane z does not count. A box or a length that is none (NaN, negative) is somebody of whom nothing is known: everybody is told of
+ * them, and they of everybody.
+ */
+typedef struct sl_player {
+    /**
+     * Where the eyes can be: where the game may put its camera now, but for `arm`.
+     */
+    struct sl_box eyes;
+    /**
+     * All that can be seen of the body, with what it carries.
+     */
+    struct sl_box seen;
+    /**
+     * How far any part of it may get: speed times (round trip + interpolation + tick).
+     */
+    double reach;
+    /**
+     * How far a camera that follows the body may be from the eyes; 0 for eyes in the head.
+     */
+    double arm;
+    /**
+     * The teams of which it is told wherever they are, as bits: bit t for team t, bit 0 for those without one.
+     */
+    uint64_t sees_always;
+    /**
+     * Its team, 1 to 63; 0 for none.
+     */
+    uint32_t team;
+    /**
+     * `SL_PLAYER_VIEWS`, `SL_PLAYER_IS_SEEN`, or both with `|`.
+     */
+    uint32_t flags;
+} sl_player;
+
+/**
+ * What changed in a tick.
+ */
+typedef struct sl_changes {
+    /**
+     * Pairs that are shown from now on: `sl_relevance_gained`.
+     */
+    size_t gained_count;
+    /**
+     * Pairs that are no longer shown: `sl_relevance_lost`.
+     */
+    size_t lost_count;
+    /**
+     * Bodies that were placed exactly.
+     */
+    size_t look_count;
+    /**
+     * Bodies that had moved and were not, as no look was left; their answers are coarser.
+     */
+    size_t coarse_count;
+    /**
+     * Bodies of which nothing is known: outside of the cells, or without a valid box. They are shown to all.
+     */
+    size_t outside_count;
+} sl_changes;
 
 /**
  * How far a bake is.
@@ -1481,6 +1585,129 @@ sl_status sl_viewer_image_objects(const struct sl_viewer *viewer,
                                   uint32_t *objects,
                                   size_t capacity,
                                   size_t *count);
+
+/**
+ * What suits most games with this table.
+ *
+ * @param options  Where they go.
+ * @return `SL_OK`.
+ */
+sl_status sl_relevance_default_options(const struct sl_table *table, struct sl_relevance_options *options);
+
+/**
+ * Makes what follows bodies through a table.
+ *
+ * @param table      The table, which may be freed before. It is copied.
+ * @param reaches    The path of a file that `sightlines relevance` made of this table. Null: the usual reaches are found now, which takes
+ *                   seconds for thousands of cells.
+ * @param options    Null for those of `sl_relevance_default_options`.
+ * @param relevance  Where the handle goes; free it with `sl_relevance_free`. Null is stored there if the call fails.
+ * @return `SL_OK`, `SL_ERROR_FILE`, `SL_ERROR_FORMAT` for a file that is damaged or of another table, or `SL_ERROR_ARGUMENT` for a table without
+ *         places.
+ */
+sl_status sl_relevance_new(const struct sl_table *table,
+                           const char *reaches,
+                           const struct sl_relevance_options *options,
+                           struct sl_relevance **relevance);
+
+/**
+ * Frees it.
+ *
+ * @param relevance  What no other thread is using, or null, for which nothing is done.
+ */
+void sl_relevance_free(struct sl_relevance *relevance);
+
+/**
+ * Finds who is shown to whom from now on. Somebody is told by the place in the list, from tick to tick. Call it at least once within the
+ * tick that reaches were computed for.
+ *
+ * Errs towards shown: whoever comes to see somebody was told of them as long before as both take for their reach.
+ *
+ * @param now      Seconds, of any beginning, not descending.
+ * @param players  All that move, and whoever watches.
+ * @param count    Number of players.
+ * @param changes  Where what changed goes; may be null.
+ * @return `SL_OK`, or `SL_ERROR_ARGUMENT` for a team or flags that are none. After a failure the last answer stands.
+ */
+sl_status sl_relevance_update(struct sl_relevance *relevance,
+                              double now,
+                              const struct sl_player *players,
+                              size_t count,
+                              struct sl_changes *changes);
+
+/**
+ * The pairs that are shown since the last tick: two numbers each, who is told and of whom.
+ *
+ * @param numbers   Where the numbers go, or null to ask for how many there are.
+ * @param capacity  How many numbers the buffer has room for; 0 if it is null.
+ * @param count     Where their number goes: twice that of the pairs.
+ * @return `SL_OK`, or `SL_ERROR_BUFFER`.
+ */
+sl_status sl_relevance_gained(const struct sl_relevance *relevance, uint32_t *numbers, size_t capacity, size_t *count);
+
+/**
+ * The pairs that are no longer shown since the last tick: two numbers each, who is told and of whom.
+ *
+ * @param numbers   Where the numbers go, or null to ask for how many there are.
+ * @param capacity  How many numbers the buffer has room for; 0 if it is null.
+ * @param count     Where their number goes: twice that of the pairs.
+ * @return `SL_OK`, or `SL_ERROR_BUFFER`.
+ */
+sl_status sl_relevance_lost(const struct sl_relevance *relevance, uint32_t *numbers, size_t capacity, size_t *count);
+
+/**
+ * Whether a pair was shown in the last tick: what a server asks before it transmits.
+ *
+ * @param to     Who is told.
+ * @param of     Of whom.
+ * @param shown  Where 1 goes if so, else 0.
+ * @return `SL_OK`, or `SL_ERROR_ARGUMENT` if there was no such player.
+ */
+sl_status sl_relevance_is_shown(const struct sl_relevance *relevance, uint32_t to, uint32_t of, uint32_t *shown);
+
+/**
+ * Who was shown to somebody in the last tick, ascending.
+ *
+ * @param to        Who is told.
+ * @param players   Where their numbers go, or null to ask for how many there are.
+ * @param capacity  Number of players that the buffer has room for; 0 if it is null.
+ * @param count     Where their number goes.
+ * @return `SL_OK`, `SL_ERROR_ARGUMENT` if there was no such player, or `SL_ERROR_BUFFER`.
+ */
+sl_status sl_relevance_shown_to(const struct sl_relevance *relevance,
+                                uint32_t to,
+                                uint32_t *players,
+                                size_t capacity,
+                                size_t *count);
+
+/**
+ * Whether a body, within the reach of both, may come to see another: with both placed exactly, whatever the last tick said. Teams and flags
+ * do not count.
+ *
+ * @param a    Who sees.
+ * @param b    Who is seen.
+ * @param may  Where 1 goes if so, else 0.
+ * @return `SL_OK`.
+ */
+sl_status sl_relevance_may_see_within(struct sl_relevance *relevance,
+                                      const struct sl_player *a,
+                                      const struct sl_player *b,
+                                      uint32_t *may);
+
+/**
+ * A lower bound of the time until a body may see another: 0 if it may at once, infinity if it never may.
+ *
+ * @param a        Who sees; its reach does not count.
+ * @param b        Who is seen; its reach does not count.
+ * @param speeds   Two numbers: the top speeds of both, in scene units a second.
+ * @param seconds  Where the time goes.
+ * @return `SL_OK`.
+ */
+sl_status sl_relevance_time_to_sight(struct sl_relevance *relevance,
+                                     const struct sl_player *a,
+                                     const struct sl_player *b,
+                                     const double *speeds,
+                                     double *seconds);
 
 /**
  * Makes an empty scene.

@@ -309,6 +309,52 @@ private:
     std::unique_ptr<sl_viewer, deleter> handle_;
 };
 
+/** Who may soon see whom, tick by tick: a server's side of a table. */
+class relevance {
+public:
+    /** `reaches` is the path of a file that `sightlines relevance` made of this table; empty to find the usual ones now. */
+    explicit relevance(const table &of, const std::string &reaches = {}, const sl_relevance_options *options = nullptr) {
+        sl_relevance *made = nullptr;
+        check(sl_relevance_new(of.get(), reaches.empty() ? nullptr : reaches.c_str(), options, &made));
+        handle_.reset(made);
+    }
+
+    sl_changes update(double now, const std::vector<sl_player> &players) {
+        sl_changes changes{};
+        check(sl_relevance_update(get(), now, players.data(), players.size(), &changes));
+        return changes;
+    }
+
+    /** Two numbers for each pair: who is told and of whom. */
+    void gained(std::vector<std::uint32_t> &out) const {
+        detail::fill(out, [&](auto *to, std::size_t n, std::size_t *count) { return sl_relevance_gained(get(), to, n, count); });
+    }
+
+    void lost(std::vector<std::uint32_t> &out) const {
+        detail::fill(out, [&](auto *to, std::size_t n, std::size_t *count) { return sl_relevance_lost(get(), to, n, count); });
+    }
+
+    void shown_to(std::uint32_t player, std::vector<std::uint32_t> &out) const {
+        detail::fill(out, [&](auto *to, std::size_t n, std::size_t *count) {
+            return sl_relevance_shown_to(get(), player, to, n, count);
+        });
+    }
+
+    bool is_shown(std::uint32_t to, std::uint32_t of) const {
+        std::uint32_t shown = 1;
+        check(sl_relevance_is_shown(get(), to, of, &shown));
+        return shown != 0;
+    }
+
+    sl_relevance *get() const noexcept { return handle_.get(); }
+
+private:
+    struct deleter {
+        void operator()(sl_relevance *handle) const noexcept { sl_relevance_free(handle); }
+    };
+    std::unique_ptr<sl_relevance, deleter> handle_;
+};
+
 /** A picture whose height takes the angle, in radians. */
 inline sl_view perspective(const point &eye, const point &direction, const point &up, double vertical_angle, double aspect) {
     sl_view view{};

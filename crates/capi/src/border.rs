@@ -114,7 +114,6 @@ pub(crate) unsafe fn put_sized<T>(to: *mut T, value: T, what: &str) -> Outcome {
 ///
 /// # Safety
 /// As for [`slice`].
-#[cfg(feature = "bake")]
 pub(crate) unsafe fn read_sized<'a, T: Plain>(from: *const T, what: &str) -> Result<&'a T, Failure> {
     // SAFETY: as for this function.
     unsafe {

@@ -28,6 +28,7 @@ mod handle;
 mod image;
 mod info;
 mod query;
+mod relevance;
 #[cfg(feature = "bake")]
 mod scene;
 mod status;
@@ -43,6 +44,7 @@ pub use eye::*;
 pub use image::*;
 pub use info::*;
 pub use query::*;
+pub use relevance::*;
 #[cfg(feature = "bake")]
 pub use scene::*;
 pub use status::*;

@@ -152,6 +152,11 @@ impl Relevance {
         &self.changes
     }
 
+    /// What changed in the last tick; nothing before the first.
+    pub const fn changes(&self) -> &Changes {
+        &self.changes
+    }
+
     /// Whether a pair was shown in the last tick.
     pub fn is_shown(&self, to: u32, of: u32) -> bool {
         self.pairs.shown_to(to).get(of as usize / 64).is_some_and(|bits| bits >> (of % 64) & 1 == 1)

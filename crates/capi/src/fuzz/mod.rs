@@ -18,6 +18,7 @@ enum Held {
     Table(*mut SlTable),
     Viewer(*mut SlViewer),
     Scene(*mut SlScene),
+    Relevance(*mut SlRelevance),
 }
 
 impl Held {
@@ -26,6 +27,7 @@ impl Held {
             Self::Table(handle) => handle.cast(),
             Self::Viewer(handle) => handle.cast(),
             Self::Scene(handle) => handle.cast(),
+            Self::Relevance(handle) => handle.cast(),
         }
     }
 }
@@ -71,6 +73,7 @@ fn free(held: Held) {
             Held::Table(handle) => sl_table_free(handle),
             Held::Viewer(handle) => sl_viewer_free(handle),
             Held::Scene(handle) => sl_scene_free(handle),
+            Held::Relevance(handle) => sl_relevance_free(handle),
         }
     }
 }
@@ -163,7 +166,7 @@ impl Driver<'_> {
     }
 
     fn step(&mut self) {
-        match self.bytes.byte() % 12 {
+        match self.bytes.byte() % 15 {
             0 => self.make_scene(),
             1 | 2 => self.add_object(),
             3 => self.bake(),
@@ -173,6 +176,9 @@ impl Driver<'_> {
             8 => self.make_viewer(),
             9 => self.look(),
             10 => self.ask_viewer(),
+            11 => self.make_relevance(),
+            12 => self.tick(),
+            13 => self.ask_relevance(),
             _ => self.drop_one(),
         }
     }
@@ -460,6 +466,90 @@ impl Driver<'_> {
             assert!(self.heed(status) && n == answer.cell_count as usize);
             assert!(n > 0 || answer.is_outside == 1, "the eye's own cell is seen");
         }
+    }
+
+    fn relevance(&mut self) -> *mut SlRelevance {
+        self.pick(|held| matches!(held, Held::Relevance(_)))
+    }
+
+    fn make_relevance(&mut self) {
+        let table = self.table();
+        let path = if self.bytes.below(8) == 0 { c"/dev/null".as_ptr() } else { ptr::null() };
+        let mut options = SlRelevanceOptions {
+            struct_size: size_of::<SlRelevanceOptions>() + self.bytes.below(16) / 15,
+            hold: self.bytes.real(),
+            slack: self.bytes.real(),
+            walk: self.bytes.real(),
+            looks: u64::from(self.bytes.number()),
+        };
+        let at: *const SlRelevanceOptions = match self.bytes.below(3) {
+            0 => ptr::null(),
+            1 => &options,
+            _ => {
+                // SAFETY: a live handle or none, a place of this function.
+                let status = unsafe { sl_relevance_default_options(table, &mut options) };
+                self.heed(status);
+                &options
+            }
+        };
+        let mut made = ptr::null_mut();
+        // SAFETY: a live handle or none; texts, options and a place of this function.
+        let status = unsafe { sl_relevance_new(table, path, at, &mut made) };
+        self.hold(status, Held::Relevance(made));
+    }
+
+    fn player(&mut self) -> SlPlayer {
+        let low: [f64; 3] = self.bytes.reals();
+        let body = SlBox { min: low, max: low.map(|x| x + 0.25 * self.bytes.below(4) as f64) };
+        SlPlayer {
+            eyes: if self.bytes.below(8) == 0 {
+                SlBox { min: self.bytes.reals(), max: self.bytes.reals() }
+            } else {
+                body
+            },
+            seen: body,
+            reach: if self.bytes.below(4) == 0 { self.bytes.real() } else { 0.5 },
+            arm: if self.bytes.below(8) == 0 { self.bytes.real() } else { 0.0 },
+            sees_always: if self.bytes.below(8) == 0 { u64::MAX } else { 0 },
+            team: if self.bytes.below(16) == 0 { self.bytes.number() } else { 0 },
+            flags: if self.bytes.below(16) == 0 { self.bytes.number() } else { SL_PLAYER_VIEWS | SL_PLAYER_IS_SEEN },
+        }
+    }
+
+    fn tick(&mut self) {
+        let relevance = self.relevance();
+        let now = self.bytes.real();
+        let players: Vec<SlPlayer> = (0..self.bytes.below(9)).map(|_| self.player()).collect();
+        let mut changes =
+            SlChanges { gained_count: 0, lost_count: 0, look_count: 0, coarse_count: 0, outside_count: 0 };
+        let out = self.out(&mut changes);
+        // SAFETY: a live handle or none, players and a place of this function.
+        let status = unsafe { sl_relevance_update(relevance, now, players.as_ptr(), players.len(), out) };
+        if self.heed(status) && !out.is_null() {
+            let mut n = 0;
+            // SAFETY: a live handle, a place of this function.
+            let status = unsafe { sl_relevance_gained(relevance, ptr::null_mut(), 0, &mut n) };
+            assert!(self.heed(status) && n == 2 * changes.gained_count);
+            assert!(changes.outside_count <= players.len());
+        }
+    }
+
+    fn ask_relevance(&mut self) {
+        let (relevance, number) = (self.relevance(), self.bytes.number());
+        let [a, b] = [(); 2].map(|()| self.player());
+        let (mut shown, mut seconds, speeds) = (7, 0.0, self.bytes.reals::<2>());
+        // SAFETY: a live handle or none; results go to places of this function, or to null.
+        let status = unsafe {
+            match self.bytes.below(6) {
+                0 => return self.list(relevance, sl_relevance_gained, 0xabcd_ef01),
+                1 => return self.list(relevance, sl_relevance_lost, 0xabcd_ef01),
+                2 => return self.list_of(relevance, sl_relevance_shown_to, 0xabcd_ef01),
+                3 => sl_relevance_is_shown(relevance, number, self.bytes.number(), self.out(&mut shown)),
+                4 => sl_relevance_may_see_within(relevance, &a, &b, self.out(&mut shown)),
+                _ => sl_relevance_time_to_sight(relevance, &a, &b, speeds.as_ptr(), self.out(&mut seconds)),
+            }
+        };
+        assert!(!self.heed(status) || seconds >= 0.0, "{seconds} seconds");
     }
 
     fn ask_viewer(&mut self) {

@@ -17,7 +17,7 @@ fn bytes(seed: u64, n: usize) -> Vec<u8> {
 fn no_sequence_of_calls_breaks_the_border() {
     let (mut n_calls, mut n_fruitful) = (0, 0);
     for seed in 0..60 {
-        let n = drive(&bytes(seed, 4000));
+        let n = drive(&bytes(seed, 5000));
         n_calls += n;
         n_fruitful += usize::from(n > 50);
     }

@@ -20,8 +20,21 @@ fn generated() -> String {
         .filter(|path| !["fuzz.rs", "fuzz", "lib.rs"].iter().any(|name| path.ends_with(name)))
         .collect();
     // The order of the header: what others need comes first.
-    let order =
-        ["version", "status", "table", "info", "query", "view", "eye", "viewer", "doors", "image", "scene", "bake"];
+    let order = [
+        "version",
+        "status",
+        "table",
+        "info",
+        "query",
+        "view",
+        "eye",
+        "viewer",
+        "doors",
+        "image",
+        "relevance",
+        "scene",
+        "bake",
+    ];
     let rank = |path: &PathBuf| order.iter().position(|name| path.file_stem().is_some_and(|stem| stem == *name));
     sources.retain(|path| rank(path).is_some());
     sources.sort_by_key(rank);
@@ -68,7 +81,9 @@ fn gaps(header: &str) -> (Vec<String>, usize) {
         for argument in arguments {
             let called = argument.rsplit([' ', '*']).next().expect("a name");
             // What a handle is for is in the name of the function.
-            let is_handle = ["sl_table *", "sl_viewer *", "sl_scene *"].iter().any(|kind| argument.contains(kind));
+            let is_handle = ["sl_table *", "sl_viewer *", "sl_scene *", "sl_relevance *"]
+                .iter()
+                .any(|kind| argument.contains(kind));
             if !(comment.contains(&format!("@param {called} ")) || is_handle && !argument.contains("**")) {
                 gaps.push(format!("{name} does not say what {called} is"));
             }

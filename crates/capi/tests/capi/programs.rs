@@ -112,6 +112,20 @@ fn the_example_in_c_runs() {
 }
 
 #[test]
+fn the_example_of_a_server_runs() {
+    for printed in run_all(&folder().join("examples/c/transmit.c"), C) {
+        let told =
+            |what: &str| printed.lines().find_map(|l| l.strip_suffix(what)?.strip_prefix("tick ")?.parse::<u32>().ok());
+        // Those of one room from the first tick; those of the other room before the first steps into the corridor after 1.4 seconds; no others ever.
+        assert_eq!((told(": 0 is told of 1"), told(": 2 is told of 3")), (Some(0), Some(0)), "{printed}");
+        assert!(told(": 0 is told of 2").is_some_and(|tick| (100..179).contains(&tick)), "{printed}");
+        assert!(told(": 1 is told of 2").is_none() && told(": 3 is told of 1").is_none(), "{printed}");
+        let share = printed.lines().last().and_then(|line| line.split(' ').next()?.parse::<u32>().ok());
+        assert!(share.is_some_and(|share| (20..80).contains(&share)), "{printed}");
+    }
+}
+
+#[test]
 fn the_example_in_cpp_runs() {
     for printed in run_all(&folder().join("examples/cpp/rooms.cpp"), CPP) {
         let lines: Vec<&str> = printed.lines().collect();

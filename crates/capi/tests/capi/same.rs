@@ -6,7 +6,9 @@ use sightlines_capi::*;
 use sightlines_eye_to_cell::{
     Doors, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph, follow_reflections,
 };
+use sightlines_geometry::Aabb;
 use sightlines_pvs::{CellId, DoorRecord, ObjectId, Place, PlaceBuffer, PortalId, Table, TriangleRange};
+use sightlines_relevance::{Body, Player, PlayerRole, ReachOptions, Reaches, Relevance, RelevanceOptions};
 use std::collections::BTreeSet;
 use std::ffi::CString;
 use std::ops::Range;
@@ -448,4 +450,128 @@ fn doors_that_share_a_portal_are_shut_each_on_its_own() {
         check(sl_viewer_open_portal(viewer, 2), &[]);
         sl_viewer_free(viewer);
     }
+}
+
+/// Bodies that walk at random, told by Rust and by the border; the number of answers that were compared and of those that differ.
+fn compare_ticks(table: &Table, c: &Handle, random: &mut Random) -> [usize; 2] {
+    let (mut n, mut n_wrong) = (0, 0);
+    let bounds = bounds_of(table);
+    let options = RelevanceOptions { looks: 3, ..RelevanceOptions::of(table) };
+    let mut own = Relevance::new(
+        table.clone(),
+        Reaches::of(table, &ReachOptions::default()).expect("a table with places"),
+        options,
+    );
+    let mut there = ptr::null_mut();
+    // SAFETY: handles live; results go to places and buffers of the stated sizes.
+    unsafe {
+        let mut given = std::mem::zeroed::<SlRelevanceOptions>();
+        given.struct_size = size_of::<SlRelevanceOptions>();
+        assert_eq!(sl_relevance_default_options(c.0, &mut given), SL_OK);
+        given.looks = 3;
+        assert_eq!(sl_relevance_new(c.0, ptr::null(), &given, &mut there), SL_OK);
+        let mut places: Vec<[f64; 3]> =
+            (0..7).map(|_| std::array::from_fn(|k| random.between(bounds.0[k], bounds.1[k]))).collect();
+        for tick in 0..40 {
+            places.iter_mut().flatten().for_each(|x| *x += random.between(-0.3, 0.3));
+            let of = |(i, p): (usize, &[f64; 3])| SlPlayer {
+                eyes: SlBox { min: *p, max: *p },
+                seen: SlBox { min: p.map(|x| x - 0.2), max: p.map(|x| x + 0.2) },
+                reach: 0.1 * i as f64,
+                arm: if i == 3 { 0.5 } else { 0.0 },
+                sees_always: if i == 4 { 2 } else { 0 },
+                team: u32::from(i == 5),
+                flags: if i == 6 { SL_PLAYER_IS_SEEN } else { SL_PLAYER_VIEWS | SL_PLAYER_IS_SEEN },
+            };
+            let players: Vec<SlPlayer> = places.iter().enumerate().map(of).collect();
+            let plain = |p: &SlPlayer| Player {
+                body: Body {
+                    eyes: Aabb { min: p.eyes.min, max: p.eyes.max },
+                    seen: Aabb { min: p.seen.min, max: p.seen.max },
+                    reach: p.reach,
+                    arm: p.arm,
+                },
+                role: PlayerRole {
+                    team: p.team as u8,
+                    sees_always: p.sees_always,
+                    views: p.flags & SL_PLAYER_VIEWS != 0,
+                    is_seen: p.flags & SL_PLAYER_IS_SEEN != 0,
+                },
+            };
+            let own_players: Vec<Player> = players.iter().map(plain).collect();
+            let (now, mut changes) = (0.1 * f64::from(tick), std::mem::zeroed::<SlChanges>());
+            assert_eq!(sl_relevance_update(there, now, players.as_ptr(), players.len(), &mut changes), SL_OK);
+            let said = own.update(now, &own_players).clone();
+            let mut same = |is_same: bool| {
+                n += 1;
+                n_wrong += usize::from(!is_same);
+            };
+            same(
+                (changes.gained_count, changes.lost_count) == (said.gained.len(), said.lost.len())
+                    && (changes.look_count, changes.coarse_count, changes.outside_count)
+                        == (said.n_looks, said.n_coarse, said.n_outside),
+            );
+            same(list(|to, size, n| sl_relevance_gained(there, to, size, n)) == said.gained.as_flattened());
+            same(list(|to, size, n| sl_relevance_lost(there, to, size, n)) == said.lost.as_flattened());
+            for to in 0..7 {
+                let shown = list(|at, size, n| sl_relevance_shown_to(there, to, at, size, n));
+                same(shown == own.shown_to(to).collect::<Vec<_>>());
+                let (of, mut is_shown) = (random.next() as u32 % 7, 7);
+                assert_eq!(sl_relevance_is_shown(there, to, of, &mut is_shown), SL_OK);
+                same(is_shown == u32::from(shown.contains(&of)));
+                let (a, b, speeds) = (to as usize, of as usize, [random.share(), random.share()]);
+                let (mut may, mut seconds) = (7, -1.0);
+                assert_eq!(sl_relevance_may_see_within(there, &players[a], &players[b], &mut may), SL_OK);
+                same(may == u32::from(own.may_see_within(&own_players[a].body, &own_players[b].body)));
+                let (p, q) = (&players[a], &players[b]);
+                assert_eq!(sl_relevance_time_to_sight(there, p, q, speeds.as_ptr(), &mut seconds), SL_OK);
+                same(seconds == own.time_to_sight(&own_players[a].body, &own_players[b].body, speeds));
+            }
+        }
+        sl_relevance_free(there);
+    }
+    [n, n_wrong]
+}
+
+/// What a server asks is what Rust answers; and a table of another scene is noticed.
+#[test]
+fn ticks_of_servers_are_the_same() {
+    let mut random = Random(5);
+    let mut tables: Vec<Table> =
+        plans().iter().map(|plan| bake_plan(plan, &PlanBakeOptions::default()).expect("a table").table).collect();
+    tables.extend(towers().iter().map(|scene| bake(scene, &BakeRequest::default()).expect("a table").table));
+    for (i, table) in tables.iter().enumerate() {
+        let c = Handle::of(&table.to_bytes());
+        let [n, n_wrong] = compare_ticks(table, &c, &mut random);
+        assert!(n > 1000 && n_wrong == 0, "{n_wrong} of {n} differ");
+        let other = Handle::of(&tables[(i + 1) % tables.len()].to_bytes());
+        let [n, n_wrong] = compare_ticks(table, &other, &mut random);
+        assert!(n_wrong > 20, "{n_wrong} of {n}: another table goes unnoticed");
+    }
+}
+
+#[test]
+fn reaches_come_from_files() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let table = bake_plan(&plans()[0], &PlanBakeOptions::default()).expect("a table").table;
+    let c = Handle::of(&table.to_bytes());
+    let reaches = Reaches::of(&table, &ReachOptions::default()).expect("a table with places").to_bytes();
+    let mut made = ptr::null_mut();
+    let mut new = |name: &str, bytes: Option<&[u8]>| {
+        let path = folder.path().join(name);
+        if let Some(bytes) = bytes {
+            std::fs::write(&path, bytes).expect("a file is written");
+        }
+        let path = CString::new(path.to_str().expect("UTF-8")).expect("no zeros");
+        // SAFETY: the handle lives, a text and a place of this function; what is made is freed.
+        unsafe {
+            let status = sl_relevance_new(c.0, path.as_ptr(), ptr::null(), &mut made);
+            assert_eq!(status == SL_OK, !made.is_null());
+            sl_relevance_free(made);
+            status
+        }
+    };
+    assert_eq!(new("a.rel", Some(&reaches)), SL_OK);
+    assert_eq!(new("none.rel", None), SL_ERROR_FILE);
+    assert_eq!(new("short.rel", Some(&reaches[..reaches.len() - 1])), SL_ERROR_FORMAT);
 }
