@@ -8,12 +8,13 @@ use sightlines::bake::auto::choose;
 use sightlines::bake::{CellsFrom, RegionBakeOptions, bake_regions};
 use sightlines::cells::Scene;
 use sightlines::formats::ViewCells;
-use sightlines::multifocal::mesh::{PatchOptions, SheetMethod, Sheets, patches};
+use sightlines::formats::scene::BackFaces;
+use sightlines::multifocal::mesh::{PatchOptions, SheetMethod, Sheets, patches_of};
 use sightlines::multifocal::{FromRegion, Layout, Multifocal, OccluderSelection, UnionMethod};
 use sightlines::multifocal_cpu::Fast;
 use sightlines::scenes::{CityOptions, TowerOptions};
 use sightlines_benches::program::{Common, exit};
-use sightlines_benches::viewed::{ViewedScene, evenly};
+use sightlines_benches::viewed::{ViewedScene, evenly, welded};
 use std::error::Error;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -65,7 +66,7 @@ fn scenes(args: &Args) -> Result<Vec<ViewedScene>, Box<dyn Error>> {
         ViewedScene::tower(TowerOptions { floors: if test { 1 } else { 2 }, ..TowerOptions::default() })?,
     ];
     for named in args.scenes.iter().filter(|_| !test) {
-        scenes.extend(ViewedScene::real(named)?);
+        scenes.extend(ViewedScene::real(named, BackFaces::default())?);
     }
     Ok(scenes)
 }
@@ -81,12 +82,11 @@ struct Found {
 }
 
 fn bake(case: &Case, name: &str, sightlines: bool, method: BufferSettings, start: Instant) -> Found {
-    let triangles = || case.scene.occluding_triangles().collect::<Vec<_>>();
     let shared = method.map(|(planes, texels, sheets)| {
-        let triangles = triangles();
-        let occluders = if planes > 0 { patches(&triangles, &PatchOptions::default()) } else { Vec::new() };
+        let mesh = welded(&case.scene);
+        let occluders = if planes > 0 { patches_of(&mesh, &PatchOptions::default()) } else { Vec::new() };
         let layout = Layout { planes, texels, ..Layout::default() };
-        (Arc::new(OccluderSelection::new(occluders, 500)), layout, sheets.then(|| Arc::new(Sheets::new(&triangles))))
+        (Arc::new(OccluderSelection::new(occluders, 500)), layout, sheets.then(|| Arc::new(Sheets::of(mesh))))
     });
     let bounds = case.scene.bounds();
     let make = || -> Box<dyn FromRegion + Send> {

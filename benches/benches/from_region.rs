@@ -5,10 +5,11 @@
 
 use clap::Parser;
 use sightlines::cells::Scene;
+use sightlines::formats::scene::BackFaces;
 use sightlines::from_region::{ViewShafts, VoxelOptions, Voxels};
 use sightlines::geometry::{Aabb, Point3};
 use sightlines::line_space::{Effort, LineSpace, Surface};
-use sightlines::multifocal::mesh::{PatchOptions, SheetMethod, Sheets, patches};
+use sightlines::multifocal::mesh::{PatchOptions, SheetMethod, Sheets, patches_of};
 use sightlines::multifocal::{
     FromRegion, Layout, Measure, Multifocal, Occludees, OccluderSelection, RaySampler, Split, UnionMethod, Volume,
     adaptive,
@@ -16,7 +17,7 @@ use sightlines::multifocal::{
 use sightlines::multifocal_cpu::Fast;
 use sightlines::scenes::{CityOptions, TowerOptions};
 use sightlines_benches::program::{Common, exit};
-use sightlines_benches::viewed::{ViewedScene, evenly};
+use sightlines_benches::viewed::{ViewedScene, evenly, welded};
 use sightlines_testkit::RayScene;
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -92,7 +93,7 @@ fn case(viewed: ViewedScene, n: usize, mut dense: BTreeMap<String, Vec<u32>>) ->
 
 /// A real scene, `SCENE:CELLS`.
 fn real(named: &str, n: usize) -> Result<Option<Case>, Box<dyn Error>> {
-    let Some(mut viewed) = ViewedScene::real(named)? else { return Ok(None) };
+    let Some(mut viewed) = ViewedScene::real(named, BackFaces::default())? else { return Ok(None) };
     let cells = named.split_once(':').map_or("", |(_, cells)| cells);
     let file = viewed.folder.as_ref().map(|folder| folder.join("seen_dense.json"));
     let dense = file.map(|file| read_dense(&file, cells)).unwrap_or_default();
@@ -127,19 +128,15 @@ struct Contender {
     depth: u32,
 }
 
-fn triangles(case: &Case) -> Vec<[Point3; 3]> {
-    case.scene.occluding_triangles().collect()
-}
-
 fn buffers(case: &Case, layout: Layout) -> Multifocal<Fast> {
     let ends = case.cells.iter().flat_map(|b| [b.min, b.max]);
     let around = Aabb::around(ends.chain([case.scene.bounds().min, case.scene.bounds().max]));
-    let chosen = Arc::new(OccluderSelection::new(patches(&triangles(case), &PatchOptions::default()), 500));
+    let chosen = Arc::new(OccluderSelection::new(patches_of(&welded(&case.scene), &PatchOptions::default()), 500));
     Multifocal::new(Fast::new(), chosen, around, layout)
 }
 
 fn shipped(case: &Case) -> Box<dyn FromRegion> {
-    let sheets = SheetMethod::shared(Arc::new(Sheets::new(&triangles(case))));
+    let sheets = SheetMethod::shared(Arc::new(Sheets::of(welded(&case.scene))));
     Box::new(UnionMethod::new(vec![Box::new(buffers(case, Layout::default())), Box::new(sheets)]))
 }
 
@@ -161,16 +158,20 @@ fn contenders(args: &Args) -> Vec<Contender> {
             }
         }
     }
-    add("sheets".to_owned(), 0, Box::new(|case| Box::new(SheetMethod::new(&triangles(case)))));
+    add(
+        "sheets".to_owned(),
+        0,
+        Box::new(|case| Box::new(SheetMethod::shared(Arc::new(Sheets::of(welded(&case.scene)))))),
+    );
     add("default: height, carried, and sheets".to_owned(), 0, Box::new(shipped));
     add("the same, cells cut up to 2 times".to_owned(), 2, Box::new(shipped));
     for (box_cells, triangle_cells) in [(32, 100), (32, 400)] {
         let effort = Effort { box_cells, triangle_cells, ..Effort::default() };
-        let lines = move |case: &Case| LineSpace::shared(Arc::new(Surface::new(&triangles(case))), effort);
+        let lines = move |case: &Case| LineSpace::shared(Arc::new(Surface::of(welded(&case.scene))), effort);
         let name = format!("line space, {box_cells} and {triangle_cells} cells");
         add(name, 0, Box::new(move |case| Box::new(lines(case))));
     }
-    let cut = |case: &Case| ViewShafts::new(patches(&triangles(case), &PatchOptions::default()));
+    let cut = |case: &Case| ViewShafts::new(patches_of(&welded(&case.scene), &PatchOptions::default()));
     add("shafts".to_owned(), 0, Box::new(move |case| Box::new(cut(case))));
     let voxels = |case: &Case| Voxels::new(&case.scene, VoxelOptions::default()).expect("few voxels");
     add("voxels, closed".to_owned(), 0, Box::new(move |case| Box::new(voxels(case))));
@@ -186,7 +187,11 @@ fn ask(case: &Case, seen: &[Vec<bool>], contender: &Contender) -> Found {
     found.make = start.elapsed();
     let objects: Vec<Vec<[Point3; 3]>> = case.scene.objects().iter().map(|o| o.corners().collect()).collect();
     let is_single_sided = |object: u32| case.scene.is_single_sided(object);
-    let witness = RaySampler::new(objects.iter().map(|o| &o[..])).with_single_sided(is_single_sided);
+    let none: &[[Point3; 3]] = &[];
+    let stops = |object: u32| case.scene.is_opaque(object) || case.scene.hides_from_front(object);
+    let witness = RaySampler::new((0..).zip(&objects).map(|(object, o)| if stops(object) { &o[..] } else { none }))
+        .with_single_sided(is_single_sided)
+        .with_front_occluders(|object| case.scene.hides_from_front(object));
     let occludees = Occludees::new(objects).with_single_sided(is_single_sided);
     for (cell, seen) in case.cells.iter().zip(seen) {
         let volume = Volume::new(*cell).expect("cells are boxes");

@@ -9,7 +9,7 @@ use sightlines::bake::{PlanBakeOptions, PrtOptions, SceneBakeOptions, bake_plan,
 use sightlines::formats::Wad;
 use sightlines::formats::doom::{DoomMap, list_maps};
 use sightlines::formats::quake::read_prt;
-use sightlines::formats::scene::{BackFaces, SceneReadOptions, read_scene_with};
+use sightlines::formats::scene::read_scene;
 use sightlines::kdtree::SceneOptions;
 use sightlines::pvs::{
     BitMatrix, CellId, CellRecord, Locator, ObjectId, PlaceBuffer, PortalRecord, Table, TableKind, TableParts,
@@ -134,10 +134,7 @@ fn tables(args: &Args) -> Result<Vec<Named>, Box<dyn Error>> {
     }
     for (name, tau) in [("whale_large", 0.0), ("office_a", 0.3)] {
         let path = files(&data.join("scenes").join(name), "glb").remove(0);
-        tables.push((
-            name.to_owned(),
-            scene(&read_scene_with(&path, &SceneReadOptions::with_backs(BackFaces::Drawn))?.scene, tau)?,
-        ));
+        tables.push((name.to_owned(), scene(&read_scene(&path)?.scene, tau)?));
     }
     tables.push(("e1m1".to_owned(), bake_prt(&read_prt(data.join("quake/e1m1.prt"))?, PrtOptions::default())?.table));
     tables.push(tower("tower:4")?);

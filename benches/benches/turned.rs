@@ -8,7 +8,7 @@
 use clap::Parser;
 use sightlines::bake::{BakeInput, BakeRequest, Baked, CellsFrom, Runtime, SceneMethod};
 use sightlines::cells::{Point3, Scene, SceneObject};
-use sightlines::formats::scene::{parse_glb, write_glb};
+use sightlines::formats::scene::{BackFaces, parse_glb, write_glb};
 use sightlines::formats::{SceneInfo, ViewCell, ViewCells};
 use sightlines::geometry::Aabb;
 use sightlines::pvs::{CellId, ObjectId};
@@ -45,6 +45,9 @@ struct Args {
     /// Rays of each cell and change, half of them anywhere and half towards what the table hides.
     #[arg(long, default_value_t = 20_000)]
     rays: u64,
+    /// What engines do with the backs of single-sided faces of real scenes.
+    #[arg(long, default_value = BackFaces::Either.name())]
+    backs: BackFaces,
     /// What decides.
     #[arg(long, default_value_t = SceneMethod::Auto)]
     method: SceneMethod,
@@ -103,7 +106,7 @@ fn cases(args: &Args) -> Result<Vec<Case>, Box<dyn Error>> {
     }
     if !args.common.test {
         for named in &args.scenes {
-            let Some(viewed) = ViewedScene::real(named)? else { continue };
+            let Some(viewed) = ViewedScene::real(named, args.backs)? else { continue };
             let file = named.split_once(':').map_or("", |(_, cells)| cells);
             let seen = viewed.folder.as_ref().map(|folder| read_seen(folder, file)).unwrap_or_default();
             cases.push(case(viewed, n, seen));
@@ -159,6 +162,7 @@ impl Change {
         Scene::new(scene.objects().iter().map(object).collect())
             .and_then(|changed| changed.with_see_through(scene.see_through().to_vec()))
             .and_then(|changed| changed.with_single_sided(scene.single_sided().to_vec()))
+            .and_then(|changed| changed.with_front_occluders(scene.front_occluders().to_vec()))
             .expect("coordinates stay in range")
     }
 

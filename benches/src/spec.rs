@@ -1,7 +1,7 @@
 //! Scenes as they are named on a command line: a file, or `tower:16`.
 
 use sightlines::cells::Scene;
-use sightlines::formats::scene::{BackFaces, SceneReadOptions, read_scene_with};
+use sightlines::formats::scene::read_scene;
 use sightlines::scenes::{TowerOptions, tower};
 use std::fmt;
 use std::path::PathBuf;
@@ -78,7 +78,7 @@ impl SceneSpec {
     /// [`SpecError`] with the file or the tower's name.
     pub fn load(&self) -> Result<Scene, SpecError> {
         match self {
-            Self::File(path) => Ok(read_scene_with(path, &SceneReadOptions::with_backs(BackFaces::Drawn))?.scene),
+            Self::File(path) => Ok(read_scene(path)?.scene),
             Self::Tower(options) => {
                 tower(*options).map_err(|source| SpecError::Generate { spec: self.to_string(), source })
             }

@@ -4,7 +4,8 @@ use sightlines::cells::Scene;
 use sightlines::formats::ViewCell;
 use sightlines::formats::scene::{BackFaces, SceneReadOptions, read_scene_with};
 use sightlines::formats::view_cells::read_view_cells;
-use sightlines::geometry::Aabb;
+use sightlines::geometry::{Aabb, Point3};
+use sightlines::multifocal::mesh::Mesh;
 use sightlines::scenes::{CityOptions, GenerateError, TowerOptions, city, city_crossings, tower, tower_rooms};
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -45,20 +46,19 @@ impl ViewedScene {
         Ok(Self::new("tower".to_owned(), tower(options)?, rooms))
     }
 
-    /// A real scene of the folder that `SIGHTLINES_DATA` names, given as `SCENE:CELLS`. `None`, and a message, if the variable is not
+    /// A real scene of the folder that `SIGHTLINES_DATA` names, given as `SCENE:CELLS`, for engines that do this with backs. `None`, and a message, if the variable is not
     /// set.
     ///
     /// # Errors
     /// A name without a colon, and files that cannot be read.
-    pub fn real(named: &str) -> Result<Option<Self>, Box<dyn Error>> {
+    pub fn real(named: &str, backs: BackFaces) -> Result<Option<Self>, Box<dyn Error>> {
         let Some(data) = std::env::var_os("SIGHTLINES_DATA") else {
             eprintln!("!! SIGHTLINES_DATA is not set: {named} is left out");
             return Ok(None);
         };
         let (name, cells) = named.split_once(':').ok_or("a real scene and its cells, with a colon between")?;
         let folder = Path::new(&data).join("scenes").join(name);
-        let scene =
-            read_scene_with(folder.join(format!("{name}.glb")), &SceneReadOptions::with_backs(BackFaces::Drawn))?.scene;
+        let scene = read_scene_with(folder.join(format!("{name}.glb")), &SceneReadOptions::with_backs(backs))?.scene;
         let cells = read_view_cells(folder.join(format!("{cells}.json")))?.cells;
         Ok(Some(Self { name: name.to_owned(), scene, cells, folder: Some(folder) }))
     }
@@ -67,6 +67,13 @@ impl ViewedScene {
     pub fn boxes(&self) -> Vec<Aabb<3>> {
         self.cells.iter().map(|cell| cell.bounds).collect()
     }
+}
+
+/// The triangles of all objects that hide, with the sides that they hide from.
+pub fn welded(scene: &Scene) -> Mesh {
+    let [both_sides, fronts]: [Vec<[Point3; 3]>; 2] =
+        [scene.occluding_triangles().collect(), scene.front_occluding_triangles().collect()];
+    Mesh::weld_with_fronts(&both_sides, &fronts)
 }
 
 /// At most `n` of all, evenly chosen, the first among them.

@@ -2,14 +2,15 @@
 
 use sightlines::bake::{SceneBakeOptions, bake_scene};
 use sightlines::cells::{CellId, Scene};
-use sightlines::geometry::{Aabb, Point3};
-use sightlines::multifocal::mesh::{PatchOptions, SheetMethod, Sheets, patches};
+use sightlines::formats::scene::BackFaces;
+use sightlines::geometry::Aabb;
+use sightlines::multifocal::mesh::{PatchOptions, SheetMethod, Sheets, patches_of};
 use sightlines::multifocal::{FromRegion, Layout, Multifocal, OccluderSelection, UnionMethod, Volume};
 use sightlines::multifocal_cpu::Fast;
 use sightlines::pvs::Table;
 use sightlines::scenes::{CityOptions, TowerOptions, city, city_crossings, tower, tower_rooms};
 use sightlines::simplify::Views;
-use sightlines_benches::viewed::ViewedScene;
+use sightlines_benches::viewed::{ViewedScene, welded};
 use std::error::Error;
 use std::sync::Arc;
 
@@ -64,7 +65,7 @@ pub(crate) fn named(name: &str, n: usize) -> Result<Vec<Case>, Box<dyn Error>> {
             Ok(cases)
         }
         real => {
-            let Some(viewed) = ViewedScene::real(real)? else { return Ok(Vec::new()) };
+            let Some(viewed) = ViewedScene::real(real, BackFaces::default())? else { return Ok(Vec::new()) };
             let boxes = viewed.boxes();
             of_boxes(&viewed.name, viewed.scene, boxes, n)
         }
@@ -78,9 +79,9 @@ fn some(all: Vec<Aabb<3>>, n: usize) -> Vec<Aabb<3>> {
 }
 
 fn of_boxes(name: &str, scene: Scene, boxes: Vec<Aabb<3>>, n: usize) -> Result<Vec<Case>, Box<dyn Error>> {
-    let triangles: Vec<[Point3; 3]> = scene.occluding_triangles().collect();
-    let sheets = Arc::new(Sheets::new(&triangles));
-    let chosen = Arc::new(OccluderSelection::new(patches(&triangles, &PatchOptions::default()), 500));
+    let mesh = welded(&scene);
+    let chosen = Arc::new(OccluderSelection::new(patches_of(&mesh, &PatchOptions::default()), 500));
+    let sheets = Arc::new(Sheets::of(mesh));
     let scene = Arc::new(scene);
     let case = |(view, b): (usize, Aabb<3>)| {
         Ok(Case {

@@ -12,7 +12,7 @@ use sightlines::bake::{PortalMode, SceneBakeOptions, bake_scene};
 use sightlines::cells::{Axial, CellGraph, Plan, Planar, Scene};
 use sightlines::formats::Wad;
 use sightlines::formats::doom::{DoomMap, list_maps};
-use sightlines::formats::scene::{BackFaces, SceneReadOptions, read_scene_with};
+use sightlines::formats::scene::read_scene;
 use sightlines::geometry::{Adaptive, AxialDoor, Portal2};
 use sightlines::kdtree::{SceneOptions, subdivide_scene};
 use sightlines::pvs::BitMatrix;
@@ -130,9 +130,7 @@ fn scenes(settings: &Settings) -> Result<Vec<(String, Scene, bool)>, ChartError>
     if let Some(data) = &settings.data {
         for name in ["whale_large", "duplex"] {
             let path = data.join("scenes").join(name).join(format!("{name}.glb"));
-            let scene = read_scene_with(path, &SceneReadOptions::with_backs(BackFaces::Drawn))
-                .map_err(|e| failed(name)(e.into()))?
-                .scene;
+            let scene = read_scene(path).map_err(|e| failed(name)(e.into()))?.scene;
             scenes.push((name.to_owned(), scene, false));
         }
     }

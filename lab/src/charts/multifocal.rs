@@ -4,7 +4,7 @@ use super::panels::time_against_over;
 use super::row::Row;
 use super::{ChartError, Family, Settings};
 use sightlines::cells::Scene;
-use sightlines::formats::scene::{BackFaces, SceneReadOptions, read_scene_with};
+use sightlines::formats::scene::read_scene;
 use sightlines::formats::view_cells::read_view_cells;
 use sightlines::from_region::{ViewShafts, VoxelOptions, Voxels};
 use sightlines::geometry::{Aabb, Point3};
@@ -96,11 +96,7 @@ fn cases(settings: &Settings) -> Result<Vec<Case>, ChartError> {
         for (name, cells) in [("sponza", "cells_walk"), ("duplex", "cells_rooms")] {
             let folder = data.join("scenes").join(name);
             let read = || -> Result<Case, Failure> {
-                let scene = read_scene_with(
-                    folder.join(format!("{name}.glb")),
-                    &SceneReadOptions::with_backs(BackFaces::Drawn),
-                )?
-                .scene;
+                let scene = read_scene(folder.join(format!("{name}.glb")))?.scene;
                 let cells = read_view_cells(folder.join(format!("{cells}.json")))?.cells;
                 Ok(Case { name: name.to_owned(), scene, boxes: some(cells.into_iter().map(|c| c.bounds).collect(), n) })
             };
