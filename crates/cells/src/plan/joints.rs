@@ -76,14 +76,14 @@ impl Plan {
     }
 
     /// The ends of opaque lines that miss others by more than the [gap](Self::gap) and yet by little, and so perhaps by mistake: at most 32 times
-    /// the gap and 2^-10 of the longer side of the plan, or 2^-14 of that side where this is more. None if the source [states](Self::stated_precision) that
+    /// the gap and 2^-10 of the longer side of the plan; or 2^-14 of that side, or what [digits](Self::precision) explain, where that is more. None if the source [states](Self::stated_precision) that
     /// coordinates are exact. For remarks only. As [`Plan::joined`].
     pub fn near_misses(&self) -> Vec<Point2> {
         if self.stated_precision() == Some(0.0) {
             return Vec::new();
         }
         let side = self.longer_side();
-        let near = (32.0 * self.gap).min(side / 1024.0).max(side / 16384.0);
+        let near = (32.0 * self.gap).min(side / 1024.0).max(side / 16384.0).max(self.precision());
         if near <= self.gap || near < self.least_gap() {
             return Vec::new();
         }
@@ -363,6 +363,10 @@ mod tests {
         assert_eq!(plan(&walls).near_misses().len(), 1);
         assert_eq!(plan(&walls).joined(0.01).unwrap().near_misses().len(), 0);
         assert_eq!(plan(&walls).joined(0.001).unwrap().near_misses().len(), 1);
+        // What the digits explain is near, also in a small plan. The twin is the same in thirds, in full.
+        let small = [[0., 0., 3.999, 0.], [3.999, 0., 3.999, 3.051], [1.001, 0.001, 1.001, 2.5], [0., 0., 0., 3.051]];
+        assert_eq!(plan(&small).near_misses().len(), 1);
+        assert_eq!(plan(&small.map(|wall| wall.map(|x| x / 3.0))).near_misses().len(), 0);
         let error = plan(&walls).joined(1e-300).unwrap_err().to_string();
         assert!(error.starts_with("a gap of 1e-300 is neither 0 nor at least 1.14e-12, "), "{error}");
         assert!(plan(&walls).joined(f64::NAN).is_err() && plan(&walls).joined(-1.0).is_err());
