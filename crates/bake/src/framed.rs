@@ -21,8 +21,9 @@ const AS_GOOD: f64 = 0.8;
 /// A gap that the size of stored coordinates explains is tried if it is so many times that near the origin: half of that holds the rounding of
 /// coordinates that are twice as large.
 const WIDER: f64 = 2.0;
-/// It is taken if it brings at least this share of the area across an axis.
-const MORE_WALLS: f64 = 0.01;
+/// It is taken if it brings at least this share of the area across an axis: one side of a doorway among thousands of such areas. A wall that is none
+/// beside others that are leaves more open than its share of the area. A choice, not derived.
+const MORE_WALLS: f64 = 1.0 / 4096.0;
 /// Without a stated gap, at least this share of the area has to lie across an axis of the frame.
 const LEAST_FLAT: f64 = 0.5;
 
@@ -79,7 +80,7 @@ impl Framed {
     /// twentieth did not lie across one before; or if a side of a given cell is on a wall but for the rounding of the file. With a stated width, if
     /// any corner moves, or such a side.
     ///
-    /// The gap is then the one near the origin, or the one that coordinates stored far from it explain, if that brings a hundredth more of the area
+    /// The gap is then the one near the origin, or the one that coordinates stored far from it explain, if that brings a little more of the area
     /// across an axis.
     ///
     /// Cells that are given along axes of their own ([`ViewCells::axes`](sightlines_formats::ViewCells)) are a gain: the frame is along

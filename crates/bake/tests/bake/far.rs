@@ -6,7 +6,9 @@ use sightlines_cells::{Point3, Scene, SceneObject};
 use sightlines_formats::scene::{parse_glb, write_glb, write_rounded_glb};
 use sightlines_formats::{SceneFile, Simplification};
 use sightlines_geometry::{Aabb, Random};
+use sightlines_pvs::CellId;
 use sightlines_scenes::{TowerOptions, tower};
+use sightlines_testkit::siblings;
 use sightlines_verify::{Truth, VerifyOptions, verify};
 
 /// How far from the origin, in units of the scene.
@@ -56,7 +58,7 @@ fn walls(random: &mut Random) -> Scene {
 #[test]
 fn walls_are_walls_wherever_they_stand() {
     let (mut n, mut n_lost) = (0, 0);
-    for seed in 0..250 {
+    for seed in siblings().step_by(AWAY.len()) {
         let mut random = Random::new(seed);
         let building = walls(&mut random);
         let degrees = 1.0 + 88.0 * random.unit();
@@ -72,7 +74,7 @@ fn walls_are_walls_wherever_they_stand() {
                 gap_here = gap;
             } else {
                 let near = framed(&there, Gap::Width(gap_here)).map_or(0.0, |near| near.after.axial_share());
-                n_lost += u32::from(near < 0.9);
+                n_lost += usize::from(near < 0.9);
             }
             let site = vec![[-9e3, -1.0, -8e3], [1e4, -1.0, -9e3], [1e4, -1.5, 9e3], [-9e3, -1.2, 1e4]];
             let site = SceneObject { name: "site".to_owned(), vertices: site, triangles: vec![[0, 2, 1], [0, 3, 2]] };
@@ -85,7 +87,8 @@ fn walls_are_walls_wherever_they_stand() {
             n += 1;
         }
     }
-    assert!(n == 1000 && n_lost > 400, "{n}, {n_lost}");
+    eprintln!("{n} buildings, {n_lost} of which the gap at the origin would lose");
+    assert!(n >= siblings().len() && 10 * n_lost > 4 * n, "{n}, {n_lost}");
 }
 
 /// Where nodes in double precision move a building, its coordinates are stored near the origin, and the gap is that of there; where they are stored far
@@ -121,6 +124,104 @@ fn no_gap_is_taken_without_need() {
     }
 }
 
+/// What viewers in all of the volume of the cells may see on average, of objects and of other volume, as shares.
+fn shares(scene: &Scene, gap: Gap) -> [f64; 2] {
+    let table = bake(scene, &request(gap)).expect("a table").table;
+    let volume = |cell: u32| {
+        let cell = &table.cells()[cell as usize];
+        (0..3).map(|k| cell.max[k] - cell.min[k]).product::<f64>()
+    };
+    let cells = 0..table.n_cells() as u32;
+    let whole: f64 = cells.clone().map(volume).sum();
+    let [mut objects, mut space] = [0.0; 2];
+    for cell in cells {
+        let share = volume(cell) / whole;
+        objects += share * table.visible_objects(CellId(cell)).len() as f64 / scene.objects().len() as f64;
+        space += share * table.visible(CellId(cell)).map(|other| volume(other.0)).sum::<f64>() / whole;
+    }
+    [objects, space]
+}
+
+/// A thousand small houses of four rooms with closed walls and openings between them, at an angle and away from the origin: viewers there see as much
+/// as at the origin, to 1 % in all, and to 5 % in nearly every one. Of two cuts that are as good rounding may choose, as it does at the origin. The
+/// twin is what is hidden at the origin; the impostor is the gap of there.
+#[test]
+fn houses_are_as_tight_wherever_they_stand() {
+    let [mut n, mut n_hidden, mut n_apart] = [0; 3];
+    let mut sums = [[0.0; 2]; 5];
+    for seed in siblings().step_by(AWAY.len()) {
+        let mut random = Random::new(seed);
+        let house = house(&mut random);
+        let degrees = 1.0 + 88.0 * random.unit();
+        let of = |away: f64| in_single(&moved(&house, degrees, at(away)));
+        let gap = framed(&of(0.0), Gap::OfSingle).expect("a frame").frame.gap();
+        let found = AWAY.map(|away| shares(&of(away), Gap::OfSingle));
+        let [here, there @ ..] = found;
+        for (away, there) in AWAY[1..].iter().zip(there) {
+            let is_near = (0..2).all(|k| (there[k] / here[k] - 1.0).abs() < 0.05);
+            n_apart += usize::from(!is_near);
+            // A wall that is lost leaves much more.
+            assert!((0..2).all(|k| there[k] < 1.25 * here[k]), "{seed}, {away}: {there:?} {here:?}");
+        }
+        n_hidden += usize::from(here[1] < 0.9);
+        let of_impostor = shares(&of(AWAY[3]), Gap::Width(gap));
+        for (sum, shares) in sums.iter_mut().zip(found.iter().chain([&of_impostor])) {
+            (0..2).for_each(|k| sum[k] += shares[k]);
+        }
+        n += AWAY.len();
+    }
+    let [here, there @ .., impostor] = sums;
+    eprintln!(
+        "{n} houses, {n_hidden} of a quarter of them hide much, {n_apart} differ by more than 5 %; sums {sums:?}"
+    );
+    assert!(n >= siblings().len() && 8 * n_hidden > n && 50 * n_apart < n, "{n_hidden} {n_apart} of {n}");
+    assert!(there.iter().all(|sum| (0..2).all(|k| (sum[k] / here[k] - 1.0).abs() < 0.01)), "{sums:?}");
+    assert!((0..2).all(|k| impostor[k] > 1.05 * here[k]), "{sums:?}");
+}
+
+/// Two by two rooms of 3 to 6 units each, behind one shell, with a block in each; a wall between two of them is whole or has an opening.
+fn house(random: &mut Random) -> Scene {
+    const THICK: f64 = 0.25;
+    let [x, z] = [(); 2].map(|()| [0.0, 3.0 + random.below(4) as f64, 9.0 + random.below(4) as f64]);
+    let piece = |min: Point3, max: Point3| block(&Aabb { min, max }, false);
+    let high = 2.5;
+    let [wide, deep] = [x[2] + THICK, z[2] + THICK];
+    let mut objects = vec![
+        piece([0.0, -THICK, 0.0], [wide, 0.0, deep]),
+        piece([0.0, high, 0.0], [wide, high + THICK, deep]),
+        piece([0.0, 0.0, 0.0], [THICK, high, deep]),
+        piece([x[2], 0.0, 0.0], [wide, high, deep]),
+        piece([THICK, 0.0, 0.0], [x[2], high, THICK]),
+        piece([THICK, 0.0, z[2]], [x[2], high, deep]),
+    ];
+    for k in 0..2 {
+        // The wall across x between z[k] and z[k + 1], and the one across z.
+        for (across, along, at) in [(x, z, 0), (z, x, 2)] {
+            let mut wall = |from: f64, to: f64| {
+                let (mut min, mut max) = ([0.0; 3], [0.0, high, 0.0]);
+                (min[at], max[at]) = (across[1], across[1] + THICK);
+                (min[2 - at], max[2 - at]) = (from, to);
+                objects.push(piece(min, max));
+            };
+            let [from, to] = [along[k] + if k == 0 || at == 0 { THICK } else { 0.0 }, along[k + 1]];
+            if random.below(2) == 0 {
+                wall(from, to);
+            } else {
+                let door = from + (to - from - 1.0) * random.below(5) as f64 / 4.0;
+                for [a, b] in [[from, door], [door + 1.0, to]] {
+                    if a < b {
+                        wall(a, b);
+                    }
+                }
+            }
+        }
+    }
+    for (x, z) in [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(i, j)| (x[i] + 1.0, z[j] + 1.0)) {
+        objects.push(piece([x, 0.0, z], [x + 0.5, 0.5, z + 0.5]));
+    }
+    scene(objects)
+}
+
 /// The table of a tower at an angle has as many pairs far away as at the origin, to 5 %, and `verify` finds nothing against it. The impostor is the
 /// gap at the origin.
 #[test]
@@ -135,7 +236,7 @@ fn tables_are_as_tight_far_from_the_origin() {
         let found = verify(&baked.table, &Truth::Scene(scene), &options).expect("verified");
         assert!(found.is_true(), "{:?}", found.by_kind);
         let n_cells = baked.table.n_cells();
-        let n_seen = (0..n_cells as u32).map(|c| baked.table.visible_objects(sightlines_pvs::CellId(c)).len());
+        let n_seen = (0..n_cells as u32).map(|c| baked.table.visible_objects(CellId(c)).len());
         n_seen.sum::<usize>() as f64 / (n_cells * scene.objects().len()) as f64
     };
     let of = |away: f64| in_single(&moved(&tower, 33.0, at(away)));
