@@ -15,6 +15,7 @@ mod explain;
 mod isovist;
 mod long;
 mod plan;
+mod relevance;
 mod scenes;
 mod table;
 mod vga;
@@ -28,6 +29,7 @@ fn _native(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add("__version__", env!("CARGO_PKG_VERSION"))?;
     m.add_class::<table::Table>()?;
     m.add_class::<plan::Plan>()?;
+    m.add_class::<relevance::Reaches>()?;
     m.add_class::<explain::Explanation>()?;
     m.add_class::<isovist::Isovists>()?;
     m.add_function(wrap_pyfunction!(isovist::isovists_of, m)?)?;

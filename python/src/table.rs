@@ -3,6 +3,7 @@
 use crate::arrays::{Ids, cube, guarded, ids, matrix, ranges, rows};
 use crate::error::{error, file_failed, read_failed, room, value_error, write_failed};
 use crate::explain::{Explanation, explain};
+use crate::relevance::Reaches;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
@@ -188,6 +189,23 @@ impl Table {
     #[getter]
     fn info(&self) -> Vec<(String, String)> {
         self.table.info().to_vec()
+    }
+
+    /// When bodies in its cells could see each other.
+    fn reaches(
+        &self,
+        py: Python<'_>,
+        ladder: Vec<f64>,
+        one_moves: bool,
+        by_walking: bool,
+        threads: usize,
+    ) -> PyResult<Reaches> {
+        py.detach(|| Reaches::find(self.table.clone(), ladder, one_moves, by_walking, threads))
+    }
+
+    /// The same of a file.
+    fn load_reaches(&self, py: Python<'_>, path: PathBuf) -> PyResult<Reaches> {
+        py.detach(|| Reaches::read(self.table.clone(), &path))
     }
 
     /// The axes of the table's frame, one in each row.

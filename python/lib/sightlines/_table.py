@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _native
-from ._arrays import index, indices, points
+from ._arrays import floats, index, indices, points, threads as threads_of
+from ._relevance import Reaches
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -315,6 +316,32 @@ class Table:
     def counts(self) -> NDArray[np.int64]:
         """How many cells each cell may see, itself included."""
         return self._inner.counts()
+
+    def reaches(
+        self,
+        ladder: ArrayLike = (),
+        *,
+        one_moves: bool = False,
+        by_walking: bool = False,
+        threads: int | None = None,
+    ) -> Reaches:
+        """For each pair of cells the first of some reaches at which bodies in them may see each other: for servers that hide players.
+
+        :param ladder: at most 14 reaches in scene units, ascending; by default 0.25, 0.5, 1, 2, 4, 8 and 16 m
+        :param one_moves: only the first of two bodies moves
+        :param by_walking: distances are along ways through portals; holds where nobody passes what hides
+        :raises ValueError: for other ladders, and for a table without places of its cells
+        """
+        steps = floats(ladder, "ladder").reshape(-1).tolist()
+        return Reaches._of(self._inner.reaches(steps, one_moves, by_walking, threads_of(threads)), self.dimension)
+
+    def load_reaches(self, path: str | os.PathLike[str]) -> Reaches:
+        """The reaches of a ``.rel`` file that :meth:`Reaches.save` or the program's ``relevance`` made of this table.
+
+        :raises OSError: if it cannot be opened
+        :raises Error: if it is of another table, or damaged
+        """
+        return Reaches._of(self._inner.load_reaches(os.fspath(path)), self.dimension)
 
     def explain(self, a: Any, b: Any, *, scene: str | os.PathLike[str] | None = None) -> Explanation:
         """Why two cells see each other, or why they do not.
