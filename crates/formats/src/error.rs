@@ -69,7 +69,6 @@ pub struct Malformed {
 }
 
 impl Malformed {
-    /// Something wrong with the whole.
     pub(crate) fn new(what: impl Display) -> Self {
         Self { place: String::new(), what: what.to_string() }
     }
@@ -95,6 +94,11 @@ impl Display for Malformed {
 }
 
 impl Error for Malformed {}
+
+/// A number and what there is so many of.
+pub(crate) fn counted(n: usize, one: &str, many: &str) -> String {
+    format!("{n} {}", if n == 1 { one } else { many })
+}
 
 /// Makes a [`Malformed`] whole of a text as `format!` does.
 macro_rules! malformed {

@@ -14,7 +14,6 @@ pub(crate) struct Context<P> {
     otherwise: &'static str,
 }
 
-/// What is wrong with a value that should be an object.
 pub(crate) const NOT_AN_OBJECT: &str = "not a JSON object";
 
 impl<P: Display> Context<P> {
@@ -54,12 +53,9 @@ pub(crate) enum Scalar<'t> {
     Other,
 }
 
-/// What is made of a JSON value. Values of a type of which nothing is made are refused.
+/// What is made of a JSON value. Values of a type of which nothing is made are refused, for the reason that is [expected](Context::expect).
 pub(crate) trait Shape<'de>: Sized {
     type Value;
-
-    /// Sets what is wrong with a value of another type.
-    fn begin(&mut self) {}
 
     fn scalar<E: Error>(self, _: Scalar<'_>) -> Result<Self::Value, E> {
         Err(E::custom("a scalar"))
@@ -101,8 +97,7 @@ pub(crate) struct Seed<S>(pub(crate) S);
 impl<'de, S: Shape<'de>> DeserializeSeed<'de> for Seed<S> {
     type Value = S::Value;
 
-    fn deserialize<D: Deserializer<'de>>(mut self, deserializer: D) -> Result<S::Value, D::Error> {
-        self.0.begin();
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<S::Value, D::Error> {
         deserializer.deserialize_any(self)
     }
 }

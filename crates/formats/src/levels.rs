@@ -30,9 +30,10 @@ pub const INDEX_NAME: &str = "index.json";
 pub const VERSION: u32 = 1;
 
 /// Which cells have which levels.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct LevelsIndex {
     /// Triangles of the whole scene.
+    #[serde(rename = "triangles")]
     pub n_triangles: u64,
     /// The share of the sphere of directions that was allowed to change.
     pub budget: f64,
@@ -57,17 +58,6 @@ pub struct LevelFile {
     pub bound: f64,
     /// Whether it may be used as an occluder.
     pub occluder: bool,
-}
-
-/// The form of the text.
-#[derive(Debug, Serialize, Deserialize)]
-struct Text {
-    sightlines_levels: u32,
-    #[serde(rename = "triangles")]
-    n_triangles: u64,
-    budget: f64,
-    levels: Vec<LevelFile>,
-    cells: Vec<Option<u32>>,
 }
 
 /// The index as text, a line for each level. Shares have to be finite, as those are that are read.
@@ -102,8 +92,7 @@ pub fn parse_levels_index(text: &[u8]) -> Result<LevelsIndex, Malformed> {
     if found != VERSION {
         return Err(malformed!("version {found} of the index is not {VERSION}"));
     }
-    let Text { n_triangles, budget, levels, cells, .. } = serde_json::from_slice(text).map_err(syntax)?;
-    let index = LevelsIndex { n_triangles, budget, levels, cells };
+    let index = serde_json::from_slice(text).map_err(syntax)?;
     check(&index)?;
     Ok(index)
 }

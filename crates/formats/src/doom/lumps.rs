@@ -25,14 +25,7 @@ impl MapLump {
 
     /// The lump's name.
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::Things => "THINGS",
-            Self::Linedefs => "LINEDEFS",
-            Self::Sidedefs => "SIDEDEFS",
-            Self::Vertexes => "VERTEXES",
-            Self::Sectors => "SECTORS",
-            Self::Reject => "REJECT",
-        }
+        ["THINGS", "LINEDEFS", "SIDEDEFS", "VERTEXES", "SECTORS", "REJECT"][self as usize]
     }
 }
 
@@ -57,11 +50,6 @@ pub enum MapFormat {
 
 impl fmt::Display for MapFormat {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Doom => "Doom",
-            Self::Hexen => "Hexen",
-            Self::Udmf => "UDMF",
-            Self::Console => "console",
-        })
+        f.write_str(["Doom", "Hexen", "UDMF", "console"][*self as usize])
     }
 }

@@ -41,13 +41,11 @@ impl Affine {
         x == 0.0 && y == 0.0
     }
 
-    /// Where a direction goes.
     pub(super) fn direction(&self, v: [f64; 3]) -> [f64; 3] {
         let [x, y, z] = self.axes;
         std::array::from_fn(|k| x[k] * v[0] + y[k] * v[1] + z[k] * v[2])
     }
 
-    /// Where a point goes.
     pub(super) fn point(&self, p: [f64; 3]) -> [f64; 3] {
         let v = self.direction(p);
         std::array::from_fn(|k| v[k] + self.origin[k])

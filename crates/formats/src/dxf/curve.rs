@@ -22,7 +22,6 @@ impl Bezier<3> {
 }
 
 impl Bezier<2> {
-    /// The two halves.
     pub(super) fn halves(&self) -> [Self; 2] {
         let mut level = self.corners.clone();
         let n = level.len();
@@ -49,7 +48,6 @@ fn middle((a, u): ([f64; 2], f64), (b, v): ([f64; 2], f64)) -> ([f64; 2], f64) {
     (std::array::from_fn(|k| (u * a[k] + v * b[k]) / sum), sum / 2.0)
 }
 
-/// The square of the distance from a point to a segment.
 fn square_to_segment(p: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
     let (ab, ap) = ([b[0] - a[0], b[1] - a[1]], [p[0] - a[0], p[1] - a[1]]);
     let length = ab[0] * ab[0] + ab[1] * ab[1];

@@ -1,14 +1,13 @@
 //! The parts of a drawing: layers, blocks, and the entities of the model.
 
-use super::entity::{Entity, Read, read_entity};
+use super::entity::{Entity, Fields, Read, read_entity};
 use super::filters::Filters;
 use super::groups::{Group, Groups, next_record, refuse_binary, unended};
 use super::layers::Layers;
 use super::text::{decode, folded};
-use crate::error::{Malformed, malformed};
+use crate::error::Malformed;
 use std::collections::HashMap;
 
-/// A drawing as its file has it.
 #[derive(Debug, Default)]
 pub(super) struct Drawing {
     pub(super) layers: Layers,
@@ -30,7 +29,6 @@ pub(super) struct Block {
     pub(super) entities: Vec<Entity>,
 }
 
-/// Reads all sections.
 pub(super) fn read(text: &[u8]) -> Result<Drawing, Malformed> {
     refuse_binary(text)?;
     let mut groups = Groups::new(text);
@@ -60,7 +58,6 @@ pub(super) fn read(text: &[u8]) -> Result<Drawing, Malformed> {
     }
 }
 
-/// Skips the rest of a section.
 fn skip(groups: &mut Groups<'_>) -> Result<(), Malformed> {
     loop {
         let group = groups.next()?;
@@ -73,7 +70,6 @@ fn skip(groups: &mut Groups<'_>) -> Result<(), Malformed> {
 }
 
 impl Drawing {
-    /// Reads the table of layers, and skips the others.
     fn read_tables(&mut self, groups: &mut Groups<'_>) -> Result<(), Malformed> {
         let mut fields = Vec::new();
         loop {
@@ -81,12 +77,10 @@ impl Drawing {
             if record.is(0, "ENDSEC") {
                 return Ok(());
             }
-            let field = |code| fields.iter().find(|group: &&Group<'_>| group.code == code);
-            if let (true, Some(name)) = (record.is(0, "LAYER"), field(2)) {
+            let fields = Fields { kind: "LAYER", line: record.line, groups: &fields };
+            if let (true, Some(name)) = (record.is(0, "LAYER"), fields.find(2)) {
                 let id = self.layers.id(name.value);
-                let number = |code| field(code).map_or(Ok(0), Group::integer);
-                let (flags, colour) = (number(70)?, number(62)?);
-                self.layers.state(id, flags & 1 != 0, colour < 0);
+                self.layers.state(id, fields.integer(70)? & 1 != 0, fields.integer(62)? < 0);
             }
         }
     }
@@ -99,13 +93,12 @@ impl Drawing {
                 return Ok(());
             }
             expect(&record, "BLOCK")?;
-            let field = |code| fields.iter().find(|group: &&Group<'_>| group.code == code);
-            let name = field(2).ok_or_else(|| malformed!("the BLOCK has no name").on_line(record.line))?;
-            let number = |code| field(code).map_or(Ok(0.0), Group::number);
-            let base = [number(10)?, number(20)?, number(30)?];
+            let fields = Fields { kind: "BLOCK", line: record.line, groups: &fields };
+            let name = fields.find(2).ok_or_else(|| fields.missing("name"))?;
+            let base = [fields.number(10, 0.0)?, fields.number(20, 0.0)?, fields.number(30, 0.0)?];
             /// Flags of a block that is an external reference, or overlays one.
             const EXTERNAL: i64 = 4 | 8;
-            let is_external = field(70).map_or(Ok(0), Group::integer)? & EXTERNAL != 0;
+            let is_external = fields.integer(70)? & EXTERNAL != 0;
             let mut block = Block { name: decode(name.value), base, is_external, entities: Vec::new() };
             let end = read_entities(groups, &mut self.layers, &mut block.entities)?;
             expect(&end, "ENDBLK")?;

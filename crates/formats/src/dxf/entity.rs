@@ -16,13 +16,11 @@ pub(super) struct Entity {
     /// Line of the text at which it begins.
     pub(super) line: usize,
     pub(super) layer: u32,
-    /// Its extrusion direction.
     pub(super) normal: [f64; 3],
     pub(super) shown: Shown,
     pub(super) shape: Shape,
 }
 
-/// Where an entity is shown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Shown {
     Model,
@@ -69,7 +67,6 @@ pub(super) enum Shape {
     Other(Box<str>),
 }
 
-/// What was read.
 pub(super) enum Read<'a> {
     Entity(Entity),
     /// Something that is no entity of its own.
@@ -90,7 +87,7 @@ impl<'a> Fields<'_, 'a> {
         self.groups.iter().find(|group| group.code == code)
     }
 
-    fn number(&self, code: i32, default: f64) -> Result<f64, Malformed> {
+    pub(super) fn number(&self, code: i32, default: f64) -> Result<f64, Malformed> {
         self.find(code).map_or(Ok(default), Group::number)
     }
 
@@ -102,7 +99,7 @@ impl<'a> Fields<'_, 'a> {
         self.find(code).ok_or_else(|| self.missing(what))?.number()
     }
 
-    fn missing(&self, what: &str) -> Malformed {
+    pub(super) fn missing(&self, what: &str) -> Malformed {
         malformed!("the {} has no {what}", self.kind).on_line(self.line)
     }
 
@@ -111,7 +108,6 @@ impl<'a> Fields<'_, 'a> {
         Ok([self.needed(code, what)?, self.needed(code + 10, what)?, self.number(code + 20, 0.0)?])
     }
 
-    /// The extrusion direction.
     pub(super) fn normal(&self) -> Result<[f64; 3], Malformed> {
         Ok([self.number(210, 0.0)?, self.number(220, 0.0)?, self.number(230, 1.0)?])
     }
@@ -122,7 +118,6 @@ impl<'a> Fields<'_, 'a> {
     }
 }
 
-/// Reads the next entity with all that belongs to it.
 pub(super) fn read_entity<'a>(groups: &mut Groups<'a>, layers: &mut Layers) -> Result<Read<'a>, Malformed> {
     let mut buffer = Vec::new();
     let record = next_record(groups, &mut buffer)?;
@@ -144,7 +139,7 @@ pub(super) fn read_entity<'a>(groups: &mut Groups<'a>, layers: &mut Layers) -> R
         b"MLINE" => understood(multiline(&fields("MLINE"))?, "MLINE that is not understood"),
         b"SOLID" => solid(&fields("SOLID"))?,
         b"TRACE" => solid(&fields("TRACE"))?,
-        b"HATCH" => understood(hatch(&fields("HATCH")).ok().flatten(), "HATCH"),
+        b"HATCH" => understood(hatch(&fields("HATCH")), "HATCH"),
         b"INSERT" => Shape::Insert(insert(&fields("INSERT"))?),
         kind => Shape::Other(decode(kind).into()),
     };

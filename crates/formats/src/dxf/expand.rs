@@ -9,11 +9,10 @@ use super::filters::Clip;
 use super::layers::Chosen;
 use super::text::{folded, list};
 use super::{MAX_ELEMENTS, MAX_NESTING, too_many};
-use crate::error::{Malformed, malformed};
+use crate::error::{Malformed, counted, malformed};
 use sightlines_geometry::check_coordinate;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The pieces of an entity.
 #[derive(Debug)]
 pub(super) struct Drawn {
     pub(super) pieces: Vec<Bezier<2>>,
@@ -46,7 +45,7 @@ impl Expanded {
             let kinds = self.ignored.iter().map(|(kind, n)| format!("{n} {}", kind.escape_debug()));
             warnings.push(format!("ignored what is no line or curve: {}", list(kinds, MOST)));
         }
-        let entities = |n: usize| if n == 1 { "1 entity".to_owned() } else { format!("{n} entities") };
+        let entities = |n| counted(n, "entity", "entities");
         if self.n_hidden > 0 {
             let names = self.hidden_layers.iter().map(|&id| drawing.layers.name(id).escape_debug().to_string());
             let what = entities(self.n_hidden);
@@ -66,7 +65,6 @@ impl Expanded {
     }
 }
 
-/// Follows the inserts of the model.
 pub(super) fn expand(drawing: &Drawing, chosen: &Chosen) -> Result<Expanded, Malformed> {
     let mut walk = Walk { drawing, chosen, out: Expanded::default(), n_elements: 0, clip: None, open: Vec::new() };
     walk.entities(&drawing.entities, &Affine::IDENTITY, None)?;

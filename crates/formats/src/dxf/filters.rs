@@ -24,9 +24,7 @@ pub(super) struct Filters {
 #[derive(Debug)]
 struct Stored {
     clip: Clip,
-    /// Its corners as they are stored.
     corners: Vec<[f64; 2]>,
-    /// Its extension dictionary.
     extension: Option<u64>,
 }
 
@@ -44,7 +42,6 @@ pub(super) enum Clip {
 }
 
 impl Filters {
-    /// Reads the section of objects.
     pub(super) fn read(groups: &mut Groups<'_>) -> Result<Self, Malformed> {
         let (mut found, mut fields) = (Self::default(), Vec::new());
         loop {

@@ -4,9 +4,7 @@ use crate::bytes::{line_end, without_mark};
 use crate::error::{Malformed, malformed};
 use std::str::FromStr;
 
-/// How binary DXF begins.
 const BINARY: &[u8] = b"AutoCAD Binary DXF";
-/// The code of a comment.
 const COMMENT: i32 = 999;
 
 /// A code and its value, without blanks around it.
@@ -28,12 +26,10 @@ impl<'a> Group<'a> {
         malformed!("expected {what}").on_line(self.line)
     }
 
-    /// The value as a finite number.
     pub(super) fn number(&self) -> Result<f64, Malformed> {
         self.parsed().filter(|x: &f64| x.is_finite()).ok_or_else(|| self.no_number())
     }
 
-    /// The value as a whole number.
     pub(super) fn integer(&self) -> Result<i64, Malformed> {
         self.parsed().ok_or_else(|| self.no_number())
     }
@@ -105,11 +101,8 @@ impl<'a> Groups<'a> {
             return None;
         }
         let end = self.rest.iter().position(|&byte| byte == self.line_end);
-        let (line, rest) = match end {
-            Some(end) => (&self.rest[..end], &self.rest[end + 1..]),
-            None => (self.rest, &self.rest[self.rest.len()..]),
-        };
-        (self.rest, self.n_lines) = (rest, self.n_lines + 1);
+        let (line, rest) = self.rest.split_at(end.unwrap_or(self.rest.len()));
+        (self.rest, self.n_lines) = (rest.get(1..).unwrap_or_default(), self.n_lines + 1);
         Some(line.trim_ascii())
     }
 }
@@ -138,12 +131,9 @@ pub(super) fn unended(end: &Group<'_>) -> Malformed {
     end.expected("the end of the section before EOF")
 }
 
-/// Refuses the binary form.
 pub(super) fn refuse_binary(text: &[u8]) -> Result<(), Malformed> {
-    match text.starts_with(BINARY) {
-        true => Err(malformed!("this is binary DXF, which is not read: save it as text (ASCII)")),
-        false => Ok(()),
-    }
+    let wrong = || Err(malformed!("this is binary DXF, which is not read: save it as text (ASCII)"));
+    if text.starts_with(BINARY) { wrong() } else { Ok(()) }
 }
 
 /// Whether a file begins as a drawing: a section is opened, or it is the binary form.

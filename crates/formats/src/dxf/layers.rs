@@ -4,7 +4,6 @@ use super::text::{decode, folded, list};
 use crate::error::{Malformed, malformed};
 use std::collections::HashMap;
 
-/// A layer.
 #[derive(Debug, Clone)]
 struct Layer {
     name: String,
@@ -60,11 +59,8 @@ impl Layers {
     pub(super) fn choose(&self, names: Option<&[String]>) -> Result<Chosen, Malformed> {
         let Some(names) = names else {
             let is_read = self.layers.iter().map(|layer| !layer.is_frozen && !layer.is_off).collect();
-            return Ok(Chosen {
-                by_name: false,
-                is_read,
-                is_frozen: self.layers.iter().map(|layer| layer.is_frozen).collect(),
-            });
+            let is_frozen = self.layers.iter().map(|layer| layer.is_frozen).collect();
+            return Ok(Chosen { by_name: false, is_read, is_frozen });
         };
         let mut is_read = vec![false; self.layers.len()];
         let mut unknown = Vec::new();
@@ -80,7 +76,6 @@ impl Layers {
         Ok(Chosen { by_name: true, is_read, is_frozen: vec![false; self.layers.len()] })
     }
 
-    /// The error of layers that are not there.
     fn no_such(&self, unknown: &[String]) -> Malformed {
         /// Most names of a list.
         const MOST: usize = 40;

@@ -82,7 +82,6 @@ pub fn parse_dxf(text: &[u8], options: &PlanReadOptions) -> Result<PlanFile, Mal
     Ok(file)
 }
 
-/// The error of a drawing that is too large.
 fn too_many() -> Malformed {
     malformed!("the drawing, with its blocks inserted, has more than {MAX_ELEMENTS} elements")
 }

@@ -11,13 +11,11 @@ const MAX_DEGREE: i64 = 25;
 pub(super) struct Spline {
     degree: usize,
     knots: Vec<f64>,
-    /// Points and weights.
     points: Vec<([f64; 3], f64)>,
     is_closed: bool,
 }
 
 impl Spline {
-    /// Checks a spline. Without weights, all are 1.
     pub(super) fn new(
         degree: i64,
         knots: Vec<f64>,

@@ -12,17 +12,9 @@ pub(super) fn decode(bytes: &[u8]) -> String {
         let behind = &rest[at + 3..];
         let digits = behind.get(..4).filter(|digits| digits.bytes().all(|b| b.is_ascii_hexdigit()));
         let decoded = digits.and_then(|digits| u32::from_str_radix(digits, 16).ok()).and_then(char::from_u32);
-        match decoded {
-            Some(c) => {
-                out.push_str(&rest[..at]);
-                out.push(c);
-                rest = &behind[4..];
-            }
-            None => {
-                out.push_str(&rest[..at + 3]);
-                rest = behind;
-            }
-        }
+        out.push_str(if decoded.is_some() { &rest[..at] } else { &rest[..at + 3] });
+        rest = if decoded.is_some() { &behind[4..] } else { behind };
+        out.extend(decoded);
     }
     out + rest
 }

@@ -36,6 +36,7 @@ impl Coordinates {
     /// Reads the value of a member `coordinates`.
     pub(super) fn read<'de, A: MapAccess<'de>>(context: &mut Context, map: &mut A) -> Result<Self, A::Error> {
         let mut out = Self::default();
+        context.expect(OTHERWISE);
         match map.next_value_seed(Seed(Nested { context, out: &mut out, level: 0 }))? {
             Item::Number(_) => return Err(context.fail(OTHERWISE)),
             Item::Empty => {}
@@ -65,10 +66,6 @@ struct Nested<'r, 'o> {
 impl<'de> Shape<'de> for Nested<'_, '_> {
     type Value = Item;
 
-    fn begin(&mut self) {
-        self.context.expect(OTHERWISE);
-    }
-
     fn scalar<E: Error>(self, value: Scalar<'_>) -> Result<Item, E> {
         match value {
             Scalar::Number(x) => Ok(Item::Number(x)),
@@ -77,15 +74,18 @@ impl<'de> Shape<'de> for Nested<'_, '_> {
         }
     }
 
-    fn list<A: SeqAccess<'de>>(mut self, mut seq: A) -> Result<Item, A::Error> {
+    fn list<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Item, A::Error> {
         if self.level > MAX_DEPTH {
-            return Err(self.fail());
+            return Err(self.context.fail(OTHERWISE));
         }
         let mut first = None;
         let mut position = [0.0; 2];
         let mut n_numbers = 0;
         loop {
-            self.mark_place();
+            // Of the position that comes next, for errors inside it.
+            self.context.place.part = Some(self.out.ends.len());
+            self.context.place.position = Some(self.out.points.len() - self.out.part_start());
+            self.context.expect(OTHERWISE);
             let level = self.level + 1;
             let item = Nested { context: self.context, out: self.out, level };
             let Some(item) = seq.next_element_seed(Seed(item))? else { break };
@@ -99,7 +99,7 @@ impl<'de> Shape<'de> for Nested<'_, '_> {
                 }
                 (None, Item::List(_)) => first = Some(item),
                 (Some(Item::List(a)), Item::List(b)) if a == b => {}
-                _ => return Err(self.fail()),
+                _ => return Err(self.context.fail(OTHERWISE)),
             }
         }
         match first {
@@ -114,19 +114,7 @@ impl<'de> Shape<'de> for Nested<'_, '_> {
                 }
                 Ok(Item::List(depth + 1))
             }
-            _ => Err(self.fail()),
+            _ => Err(self.context.fail(OTHERWISE)),
         }
-    }
-}
-
-impl Nested<'_, '_> {
-    /// Notes which position comes next, for errors inside it.
-    fn mark_place(&mut self) {
-        self.context.place.part = Some(self.out.ends.len());
-        self.context.place.position = Some(self.out.points.len() - self.out.part_start());
-    }
-
-    fn fail<E: Error>(&mut self) -> E {
-        self.context.fail(OTHERWISE)
     }
 }

@@ -14,27 +14,24 @@ pub(super) enum GeometryKind {
 }
 
 impl GeometryKind {
+    /// All of them in their order, with their names in GeoJSON, and how many lists there are around a position.
+    const ALL: [(Self, &str, u8); 6] = [
+        (Self::Point, "Point", 0),
+        (Self::MultiPoint, "MultiPoint", 1),
+        (Self::LineString, "LineString", 1),
+        (Self::MultiLineString, "MultiLineString", 2),
+        (Self::Polygon, "Polygon", 2),
+        (Self::MultiPolygon, "MultiPolygon", 3),
+    ];
+
     /// The kind that has a name in GeoJSON.
     pub(super) fn named(name: &str) -> Option<Self> {
-        Some(match name {
-            "Point" => Self::Point,
-            "MultiPoint" => Self::MultiPoint,
-            "LineString" => Self::LineString,
-            "MultiLineString" => Self::MultiLineString,
-            "Polygon" => Self::Polygon,
-            "MultiPolygon" => Self::MultiPolygon,
-            _ => return None,
-        })
+        Self::ALL.into_iter().find(|(_, own, _)| *own == name).map(|(kind, ..)| kind)
     }
 
     /// How many lists there are around a position.
     pub(super) const fn depth(self) -> u8 {
-        match self {
-            Self::Point => 0,
-            Self::MultiPoint | Self::LineString => 1,
-            Self::MultiLineString | Self::Polygon => 2,
-            Self::MultiPolygon => 3,
-        }
+        Self::ALL[self as usize].2
     }
 }
 

@@ -7,7 +7,7 @@ use super::context::Place;
 use super::coordinates::Coordinates;
 use super::geometry::{Geometry, GeometryKind};
 use super::plan_builder::PlanBuilder;
-use super::properties::{OfFeature, Properties, name_of, text_of};
+use super::properties::{NO_PROPERTIES, OfFeature, Properties, name_of, text_of};
 use super::write::PRECISION;
 use crate::error::{Malformed, malformed};
 use crate::json::{Any, NOT_AN_OBJECT, Scalar, Seed, Shape};
@@ -44,10 +44,6 @@ struct Members {
 
 impl<'de> Shape<'de> for Node<'_> {
     type Value = Vec<Geometry>;
-
-    fn begin(&mut self) {
-        self.builder.context.expect(NOT_AN_OBJECT);
-    }
 
     /// A feature may have `null` for its geometry.
     fn scalar<E: Error>(self, value: Scalar<'_>) -> Result<Vec<Geometry>, E> {
@@ -95,14 +91,17 @@ impl Node<'_> {
                 members.kind.replace(kind).is_some()
             }
             "features" if top => {
+                builder.context.expect("\"features\" is not a list");
                 map.next_value_seed(Seed(Features(builder)))?;
                 members.features.replace(()).is_some()
             }
             "geometry" if top || feature => {
+                builder.context.expect(NOT_AN_OBJECT);
                 let geometry = map.next_value_seed(Seed(Node { builder, level: Level::Geometry(None) }))?;
                 members.geometry.replace(geometry).is_some()
             }
             "geometries" if !feature => {
+                builder.context.expect("\"geometries\" is not a list");
                 let geometries = map.next_value_seed(Seed(Geometries { builder, base }))?;
                 members.geometries.replace(geometries).is_some()
             }
@@ -111,6 +110,7 @@ impl Node<'_> {
                 members.coordinates.replace(coordinates).is_some()
             }
             "properties" if top || feature => {
+                builder.context.expect(NO_PROPERTIES);
                 let properties = map.next_value_seed(Seed(OfFeature(&mut builder.context)))?;
                 members.properties.replace(properties).is_some()
             }
@@ -200,13 +200,10 @@ struct Features<'r>(&'r mut PlanBuilder);
 impl<'de> Shape<'de> for Features<'_> {
     type Value = ();
 
-    fn begin(&mut self) {
-        self.0.context.expect("\"features\" is not a list");
-    }
-
     fn list<A: SeqAccess<'de>>(self, mut seq: A) -> Result<(), A::Error> {
         for feature in 0.. {
             self.0.context.place = Place { feature: Some(feature), ..Place::default() };
+            self.0.context.expect(NOT_AN_OBJECT);
             if seq.next_element_seed(Seed(Node { builder: self.0, level: Level::Feature }))?.is_none() {
                 break;
             }
@@ -226,15 +223,12 @@ struct Geometries<'r> {
 impl<'de> Shape<'de> for Geometries<'_> {
     type Value = Vec<Geometry>;
 
-    fn begin(&mut self) {
-        self.builder.context.expect("\"geometries\" is not a list");
-    }
-
     fn list<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Vec<Geometry>, A::Error> {
         let mut all = Vec::new();
         loop {
             let index = Some(self.base + all.len());
             self.builder.context.place.geometry = index;
+            self.builder.context.expect(NOT_AN_OBJECT);
             let node = Node { builder: self.builder, level: Level::Geometry(index) };
             let Some(more) = seq.next_element_seed(Seed(node))? else { break };
             all.extend(more);

@@ -9,7 +9,6 @@ use crate::plan::{PlanFile, PlanLines};
 use sightlines_cells::{Plan, PlanLine, PlanObject};
 use sightlines_geometry::{Aabb, Point2};
 
-/// The plan so far, and where in the text the reader is.
 #[derive(Debug, Default)]
 pub(super) struct PlanBuilder {
     lines: PlanLines,
@@ -30,7 +29,6 @@ impl PlanBuilder {
         self.context.place.feature = Some(record);
     }
 
-    /// The plan, when all is read.
     pub(super) fn finish(mut self) -> Result<PlanFile, Malformed> {
         self.crs = self.crs.or(self.crs_before);
         // Coordinates and lengths were checked on the way; only the number of lines is left.
@@ -40,7 +38,6 @@ impl PlanBuilder {
         Ok(PlanFile { crs: self.crs, plan, ..file })
     }
 
-    /// Adds the geometries of one feature to the plan.
     pub(super) fn add_feature(&mut self, geometries: &[Geometry], about: &Properties) -> Result<(), Malformed> {
         if about.is_mirror && about.transparent {
             return Err(wrong("mirror", "false where lines do not block sight"));

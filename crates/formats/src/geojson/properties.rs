@@ -20,7 +20,6 @@ pub(super) fn name_of(value: Scalar<'_>) -> Option<String> {
     }
 }
 
-/// The properties of a feature that concern its geometry.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Properties {
     pub(super) transparent: bool,
@@ -71,7 +70,7 @@ pub(super) fn wrong(property: &str, expected: &str) -> Malformed {
     malformed!("property \"{property}\" is not {expected}")
 }
 
-const OTHERWISE: &str = "\"properties\" is not an object";
+pub(super) const NO_PROPERTIES: &str = "\"properties\" is not an object";
 
 /// The value of a member `properties`, which may be `null`.
 pub(super) struct OfFeature<'r>(pub(super) &'r mut Context);
@@ -79,12 +78,8 @@ pub(super) struct OfFeature<'r>(pub(super) &'r mut Context);
 impl<'de> Shape<'de> for OfFeature<'_> {
     type Value = Properties;
 
-    fn begin(&mut self) {
-        self.0.expect(OTHERWISE);
-    }
-
     fn scalar<E: Error>(self, value: Scalar<'_>) -> Result<Properties, E> {
-        if value == Scalar::Null { Ok(Properties::default()) } else { Err(self.0.fail(OTHERWISE)) }
+        if value == Scalar::Null { Ok(Properties::default()) } else { Err(self.0.fail(NO_PROPERTIES)) }
     }
 
     fn object<A: MapAccess<'de>>(self, mut map: A) -> Result<Properties, A::Error> {

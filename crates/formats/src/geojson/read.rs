@@ -6,7 +6,7 @@ use super::plan_builder::PlanBuilder;
 use super::sequence::{Sequence, is_sequence};
 use crate::bytes::without_mark;
 use crate::error::{Malformed, in_file};
-use crate::json::Seed;
+use crate::json::{NOT_AN_OBJECT, Seed};
 use crate::{PlanFile, ReadError, ReadErrorKind};
 use serde::de::DeserializeSeed;
 use sightlines_cells::Plan;
@@ -79,6 +79,7 @@ fn run<'de, R: serde_json::de::Read<'de>>(
     builder: &mut PlanBuilder,
     json: &mut serde_json::Deserializer<R>,
 ) -> Result<(), serde_json::Error> {
+    builder.context.expect(NOT_AN_OBJECT);
     Seed(Node { builder, level: Level::Top }).deserialize(&mut *json)?;
     for record in 1.. {
         // What follows a value is not in any feature.
@@ -89,6 +90,7 @@ fn run<'de, R: serde_json::de::Read<'de>>(
             Err(error) => return Err(error),
         };
         builder.begin_record(record);
+        builder.context.expect(NOT_AN_OBJECT);
         if let Err(error) = Seed(Node { builder, level: Level::Top }).deserialize(&mut *json) {
             if (error.line(), error.column()) == behind {
                 // Not even the beginning of a value.

@@ -125,7 +125,6 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// All of its bytes.
     pub(crate) fn bytes(&self) -> Result<Cow<'a, [u8]>, ReadErrorKind> {
         match *self {
             Self::File(path) => Ok(Cow::Owned(fs::read(path)?)),

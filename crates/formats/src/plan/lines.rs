@@ -8,7 +8,6 @@ use std::collections::HashSet;
 /// A line without its direction: the smaller end first, what is on its left and right exchanged if that turns it.
 type Undirected = ([u64; 4], bool, bool, [Option<u32>; 2]);
 
-/// Lines so far, without those that hide nothing more.
 #[derive(Debug, Default)]
 pub(crate) struct PlanLines {
     lines: Vec<PlanLine>,
@@ -36,7 +35,6 @@ impl PlanLines {
         self.dropped.n_without_length += 1;
     }
 
-    /// The plan, when all is read.
     pub(crate) fn finish(self, objects: Vec<PlanObject>) -> Result<PlanFile, PlanError> {
         let plan = Plan::new(self.lines, objects)?.with_mirrors(self.mirrors)?;
         let warnings = self.dropped.warnings();

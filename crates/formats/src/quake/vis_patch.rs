@@ -19,7 +19,6 @@ use super::{Bsp, VisibilityLump};
 use crate::bytes::{bytes_at, number_at};
 use crate::error::{Malformed, malformed};
 
-/// Bytes of the name.
 const NAME_LEN: usize = 32;
 /// Bytes of a leaf, where it has the place of its row, and where its loudness.
 const LEAF_LEN: usize = 28;

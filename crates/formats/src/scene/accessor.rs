@@ -5,10 +5,8 @@ use super::json::{Accessor, Document, Sparse};
 use crate::error::{Malformed, Within, malformed};
 use sightlines_cells::Point3;
 
-/// What an accessor is used for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum AccessorRole {
-    /// Corners of a primitive.
     Positions,
     /// Indices into the corners.
     Indices,
@@ -16,7 +14,6 @@ pub(super) enum AccessorRole {
     Attribute,
 }
 
-/// A kind of number, as `componentType` states it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Component {
     I8,
@@ -64,24 +61,20 @@ impl Component {
         }
     }
 
-    /// The value that a normalised number stands for.
     fn normalized(self, value: f64) -> f64 {
-        match self {
-            Self::I8 => (value / 127.0).max(-1.0),
-            Self::U8 => value / 255.0,
-            Self::I16 => (value / 32767.0).max(-1.0),
-            Self::U16 => value / 65535.0,
-            Self::U32 | Self::F32 => value,
-        }
+        let most = match self {
+            Self::I8 => 127.0,
+            Self::U8 => 255.0,
+            Self::I16 => 32767.0,
+            Self::U16 => 65535.0,
+            Self::U32 | Self::F32 => return value,
+        };
+        (value / most).max(-1.0)
     }
 
-    /// The index in `b`, which has its size.
+    /// The index in `b`, which has its size: a double holds every one.
     fn index(self, b: &[u8]) -> u32 {
-        match self {
-            Self::I8 | Self::U8 => u32::from(b[0]),
-            Self::I16 | Self::U16 => u32::from(u16::from_le_bytes([b[0], b[1]])),
-            Self::U32 | Self::F32 => u32::from_le_bytes([b[0], b[1], b[2], b[3]]),
-        }
+        self.value(b) as u32
     }
 }
 
@@ -117,7 +110,7 @@ impl<'a> Replaced<'a> {
     fn get(&self, k: usize) -> Option<&'a [u8]> {
         let (mut low, mut high) = (0, self.count);
         while low < high {
-            let middle = low + (high - low) / 2;
+            let middle = low.midpoint(high);
             if self.index_at(middle) < k { low = middle + 1 } else { high = middle }
         }
         (low < self.count && self.index_at(low) == k).then(|| self.values.get(low))
@@ -128,7 +121,6 @@ impl<'a> Replaced<'a> {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Elements<'a> {
     pub(super) count: usize,
-    /// Bytes of an element.
     pub(super) size: usize,
     pub(super) component: Component,
     normalized: bool,
@@ -138,7 +130,6 @@ pub(super) struct Elements<'a> {
 }
 
 impl<'a> Elements<'a> {
-    /// Checks an accessor for what it is used for.
     pub(super) fn new(
         document: &Document,
         buffers: &'a Buffers<'_>,
@@ -168,7 +159,6 @@ impl<'a> Elements<'a> {
         replaced.or_else(|| self.base.map(|base| base.get(k)))
     }
 
-    /// Position `k`, below `count`.
     pub(super) fn position(&self, k: usize) -> Point3 {
         let Some(bytes) = self.get(k) else { return [0.0; 3] };
         let size = self.component.size();
@@ -193,13 +183,11 @@ impl<'a> Elements<'a> {
         if self.normalized { numbers.map(|x| self.component.normalized(x)).collect() } else { numbers.collect() }
     }
 
-    /// Index `k`, below `count`.
     pub(super) fn index(&self, k: usize) -> u32 {
         self.get(k).map_or(0, |bytes| self.component.index(bytes))
     }
 }
 
-/// The error of a buffer view that a document does not have.
 pub(super) fn no_view(view: usize) -> Malformed {
     malformed!("there is no buffer view {view}")
 }
@@ -224,20 +212,15 @@ fn is_index(component: Component) -> bool {
 /// Bytes of an element; columns of matrices begin at multiples of four (section 3.6.2.4 of the specification).
 fn element_size(kind: &str, component: Component) -> Option<usize> {
     let size = component.size();
-    let columns = |n: usize| n * (n * size).next_multiple_of(4);
+    let n = usize::from(kind.bytes().last()?.wrapping_sub(b'0'));
     match kind {
         "SCALAR" => Some(size),
-        "VEC2" => Some(2 * size),
-        "VEC3" => Some(3 * size),
-        "VEC4" => Some(4 * size),
-        "MAT2" => Some(columns(2)),
-        "MAT3" => Some(columns(3)),
-        "MAT4" => Some(columns(4)),
+        "VEC2" | "VEC3" | "VEC4" => Some(n * size),
+        "MAT2" | "MAT3" | "MAT4" => Some(n * (n * size).next_multiple_of(4)),
         _ => None,
     }
 }
 
-/// The bytes of a buffer view.
 pub(super) fn view_bytes<'a>(
     document: &Document,
     buffers: &'a Buffers<'_>,
@@ -246,7 +229,6 @@ pub(super) fn view_bytes<'a>(
     Views { document, buffers }.bytes(view)
 }
 
-/// Finds bytes of buffer views.
 struct Views<'a, 'b, 'd> {
     document: &'d Document,
     buffers: &'a Buffers<'b>,
@@ -279,13 +261,9 @@ impl<'a> Views<'a, '_, '_> {
         }
         let end =
             count.saturating_sub(1).checked_mul(stride).and_then(|last| last.checked_add(size)?.checked_add(offset));
-        match (end, bytes.get(offset..)) {
-            (Some(end), Some(elements)) if end <= bytes.len() => Ok(Strided { bytes: elements, stride, size }),
-            _ => {
-                let len = bytes.len();
-                Err(malformed!("{count} elements are not inside the {len} bytes of buffer view {view}"))
-            }
-        }
+        let elements = end.filter(|&end| end <= bytes.len()).and_then(|_| bytes.get(offset..));
+        let outside = || malformed!("{count} elements are not inside the {} bytes of buffer view {view}", bytes.len());
+        Ok(Strided { bytes: elements.ok_or_else(outside)?, stride, size })
     }
 
     fn replaced(&self, sparse: &Sparse, count: usize, size: usize) -> Result<Replaced<'a>, Malformed> {

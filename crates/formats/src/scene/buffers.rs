@@ -4,12 +4,14 @@ use super::json;
 use crate::beside::Neighbours;
 use crate::bytes::number_at;
 use crate::error::{Malformed, malformed};
+use base64::Engine as _;
+use base64::alphabet::STANDARD;
+use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use std::borrow::Cow;
 use std::cell::OnceCell;
 use std::collections::BTreeMap;
 use std::path::{Component, PathBuf};
 
-/// First bytes of a GLB.
 pub(crate) const MAGIC: &[u8] = b"glTF";
 
 const HEADER: usize = 12;
@@ -53,7 +55,6 @@ fn chunk(glb: &[u8], offset: usize) -> Option<(&[u8], &[u8])> {
     Some((glb.get(offset + 4..content)?, glb.get(content..content.checked_add(length)?)?))
 }
 
-/// The buffers of a document, each read when it is first needed.
 #[derive(Debug)]
 pub(super) struct Buffers<'a> {
     buffers: &'a [json::Buffer],
@@ -71,10 +72,8 @@ impl<'a> Buffers<'a> {
         beside: Option<&'a dyn Neighbours>,
     ) -> Self {
         let mut by_uri = BTreeMap::new();
-        let first = |(k, b): (usize, &'a json::Buffer)| match b.uri.as_deref() {
-            Some(uri) => *by_uri.entry(uri).or_insert(k),
-            None => k,
-        };
+        let mut first_of = |k, uri| *by_uri.entry(uri).or_insert(k);
+        let first = |(k, b): (usize, &'a json::Buffer)| b.uri.as_deref().map_or(k, |uri| first_of(k, uri));
         let first = buffers.iter().enumerate().map(first).collect();
         Self { buffers, binary, beside, first, loaded: buffers.iter().map(|_| OnceCell::new()).collect() }
     }
@@ -177,33 +176,10 @@ fn data_uri(rest: &str) -> Result<Vec<u8>, Malformed> {
 
 /// Decodes base64 with the usual alphabet, with or without its padding (RFC 4648, section 4).
 fn base64(text: &str) -> Option<Vec<u8>> {
-    let text = text.trim_end_matches('=').as_bytes();
-    let mut bytes = Vec::with_capacity(text.len() / 4 * 3 + 2);
-    for group in text.chunks(4) {
-        let mut word = 0;
-        for &letter in group {
-            word = word << 6 | u32::from(sextet(letter)?);
-        }
-        // Two letters hold one byte, three hold two; one letter holds none and is a fault.
-        let n_bytes = match group.len() {
-            1 => return None,
-            n => n - 1,
-        };
-        let word = word << (6 * (4 - group.len()));
-        bytes.extend_from_slice(&word.to_be_bytes()[1..=n_bytes]);
-    }
-    Some(bytes)
-}
-
-fn sextet(letter: u8) -> Option<u8> {
-    match letter {
-        b'A'..=b'Z' => Some(letter - b'A'),
-        b'a'..=b'z' => Some(letter - b'a' + 26),
-        b'0'..=b'9' => Some(letter - b'0' + 52),
-        b'+' => Some(62),
-        b'/' => Some(63),
-        _ => None,
-    }
+    let config = GeneralPurposeConfig::new()
+        .with_decode_allow_trailing_bits(true)
+        .with_decode_padding_mode(DecodePaddingMode::RequireNone);
+    GeneralPurpose::new(&STANDARD, config).decode(text.trim_end_matches('=')).ok()
 }
 
 /// The command that makes version 2 of a file of version 1.

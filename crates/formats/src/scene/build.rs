@@ -1,11 +1,11 @@
 //! From corners and triangles to the objects of a scene, the same way for all formats.
 
-use super::closed::is_closed_outwards;
 use super::role::Role;
 use super::surface::{Classification, Classified, SceneReadOptions};
 use super::{Axis, LengthUnit, SceneFile, SceneFormat, SceneInfo, Simplification};
-use crate::error::{Malformed, malformed};
+use crate::error::{Malformed, counted, malformed};
 use crate::point::are_collinear;
+use sightlines_cells::closed::is_closed_outwards;
 use sightlines_cells::{MovingObject, Point3, Scene, SceneObject};
 use sightlines_geometry::Aabb;
 use sightlines_pvs::ObjectSource;
@@ -26,7 +26,6 @@ pub(super) enum SingleSides {
 /// A mesh of which every corner is used.
 #[derive(Debug, Default)]
 pub(super) struct Compact {
-    /// For each corner its index in the file, ascending.
     pub(super) corners: Vec<usize>,
     /// Triangles as indices into `corners`.
     pub(super) triangles: Vec<[u32; 3]>,
@@ -47,7 +46,6 @@ impl Compact {
     }
 }
 
-/// The objects read so far.
 #[derive(Debug, Default)]
 pub(super) struct Builder {
     objects: Vec<SceneObject>,
@@ -73,7 +71,6 @@ pub(super) struct Builder {
     simplified: Option<Simplification>,
     /// How many faces are invalid, and what is wrong with the first.
     left_out: Option<(usize, Malformed)>,
-    /// What a user should hear of the file.
     pub(super) warnings: Vec<String>,
 }
 
@@ -130,7 +127,6 @@ impl Builder {
         self.left_out.get_or_insert((0, why)).0 += n;
     }
 
-    /// Index of the object that was added last.
     fn last(&self) -> Option<u32> {
         self.objects.len().checked_sub(1).and_then(|last| u32::try_from(last).ok())
     }
@@ -148,7 +144,6 @@ impl Builder {
         self.stored_sizes.push(size);
     }
 
-    /// Marks the object that was added last as a mirror.
     pub(super) fn mark_mirror(&mut self) {
         self.mirrors.extend(self.last());
     }
@@ -223,12 +218,11 @@ impl Builder {
         self.view_volumes.iter().filter(|(_, bounds)| ignored(bounds)).map(|(object, _)| *object).collect()
     }
 
-    /// The scene, if there is anything to see in it.
     pub(super) fn finish(mut self, format: SceneFormat, read_with: &SceneReadOptions) -> Result<SceneFile, Malformed> {
         let ignored_view_volumes = self.ignored_view_volumes();
         if let Some(first) = ignored_view_volumes.first() {
             let n = ignored_view_volumes.len();
-            let volumes = if n == 1 { "1 view volume is".to_owned() } else { format!("{n} view volumes are") };
+            let volumes = counted(n, "view volume is", "view volumes are");
             let name = &self.objects[*first as usize].name;
             self.warnings
                 .push(format!("{volumes} flat and ignored, the first is called {name:?}: viewers have no room there"));
@@ -243,7 +237,7 @@ impl Builder {
             if n_triangles == 0 {
                 return Err(first);
             }
-            let faces = if n == 1 { "1 face".to_owned() } else { format!("{n} faces, the first of them") };
+            let faces = counted(n, "face", "faces, the first of them");
             self.warnings.push(format!("left out {faces}: {first}"));
         }
         if n_triangles == 0 {
@@ -275,7 +269,6 @@ impl Builder {
     }
 }
 
-/// Whether a box has no inside.
 pub(super) fn is_flat(b: &Aabb<3>) -> bool {
     (0..3).any(|axis| b.min[axis] >= b.max[axis])
 }

@@ -21,7 +21,6 @@ impl StatedRole {
     }
 }
 
-/// What extras of a node, a mesh or a material state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Stated {
     pub(super) role: StatedRole,

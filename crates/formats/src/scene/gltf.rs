@@ -14,7 +14,7 @@ use super::surface::{Classification, Classifier, SceneReadOptions};
 use super::{MAX_ELEMENTS, MAX_OBJECTS, SceneFile, SceneFormat};
 use crate::beside::{Folder, Neighbours};
 use crate::bytes::without_mark;
-use crate::error::{Malformed, Within, malformed};
+use crate::error::{Malformed, Within, counted, malformed};
 use crate::point::check_point;
 use sightlines_cells::Point3;
 use sightlines_geometry::Aabb;
@@ -75,7 +75,6 @@ pub(super) struct Origin<'a> {
     pub(super) mesh: usize,
     /// Whether triangles are turned round.
     pub(super) mirrors: bool,
-    /// The mesh's primitives.
     pub(super) locals: &'a [LocalMesh],
 }
 
@@ -101,28 +100,27 @@ pub(super) fn parse(
     let Nodes { placed, above, n_coarser } = place_nodes(&document, &buffers, options.scene.as_deref())?;
     check_size(&document, &placed)?;
     let mut classifier = Classifier::new(options);
-    let mut builder = build(&document, &Motions::new(&document, &buffers, &above), &placed, &mut classifier, watch)?;
-    builder.warnings.extend(unclear_extras(&document));
+    let mut builder = Builder::saying(document.asset.simplified);
+    let motions = Motions::new(&document, &buffers, &above);
+    build(&mut builder, &document, &motions, &placed, &mut classifier, watch)?;
+    let warnings = &mut builder.warnings;
+    warnings.extend(unclear_extras(&document));
     if n_coarser > 0 {
-        let nodes = if n_coarser == 1 { "node is a coarser level" } else { "nodes are coarser levels" };
-        builder
-            .warnings
-            .push(format!("{n_coarser} {nodes} of others (MSFT_lod): left out, the finest stands for them"));
+        let nodes = counted(n_coarser, "node is a coarser level", "nodes are coarser levels");
+        warnings.push(format!("{nodes} of others (MSFT_lod): left out, the finest stands for them"));
     }
     if options.scene.is_none() && document.scenes.len() > 1 {
         let read = scene_names(&document).swap_remove(document.scene.unwrap_or(0));
         let n = document.scenes.len();
-        builder.warnings.push(format!("the default scene, {read}, was read, one of {n} in the file"));
+        warnings.push(format!("the default scene, {read}, was read, one of {n} in the file"));
     }
     let of_nodes = document.nodes.iter().filter_map(|node| node.extensions.as_deref());
-    builder.warnings.extend(movers::warnings(document.moves_everything(), &document.extensions, of_nodes));
-    builder.warnings.extend(material::warnings(&document));
-    builder.warnings.extend(classifier.warnings());
-    let file = builder.finish(SceneFormat::Gltf, options)?;
-    Ok((file, buffers.into_loaded()))
+    warnings.extend(movers::warnings(document.moves_everything(), &document.extensions, of_nodes));
+    warnings.extend(material::warnings(&document));
+    warnings.extend(classifier.warnings());
+    Ok((builder.finish(SceneFormat::Gltf, options)?, buffers.into_loaded()))
 }
 
-/// The text of a GLB or a glTF, and the binary chunk.
 pub(super) fn split(bytes: &[u8]) -> Result<(&str, Option<&[u8]>), Malformed> {
     let (text, binary) = if bytes.starts_with(MAGIC) { split_glb(bytes)? } else { (bytes, None) };
     let text = std::str::from_utf8(without_mark(text));
@@ -190,13 +188,13 @@ fn check_size(document: &Document, placed: &[Placed<'_>]) -> Result<(), Malforme
 }
 
 fn build(
+    builder: &mut Builder,
     document: &Document,
     motions: &Motions<'_, '_>,
     placed: &[Placed<'_>],
     classifier: &mut Classifier<'_>,
     mut watch: impl FnMut(Origin<'_>),
-) -> Result<Builder, Malformed> {
-    let mut builder = Builder::saying(document.asset.simplified);
+) -> Result<(), Malformed> {
     // Meshes by their index, read when the first node has them.
     let mut meshes: Vec<Option<Vec<LocalMesh>>> = Vec::new();
     meshes.resize_with(document.meshes.len(), || None);
@@ -223,19 +221,17 @@ fn build(
                 let vertices = Vertices { corners: &local.mesh.corners, positions: &local.positions };
                 let moved = motions.moved(at.index, at.mesh, primitive, vertices);
                 // Boxes are around the mesh of the node, not around its instances.
-                if at.instance.is_some() { Moved { at_rest: None, within: None } } else { moved }
+                if at.instance.is_some() { Moved::default() } else { moved }
             });
             let placed =
                 |(vertex, p)| check_point(p).within(format_args!("position {vertex}")).map_err(|what| at.fail(k, what));
-            let corners = local.mesh.corners.iter().copied();
             let at_rest = moved.as_ref().and_then(|moved| moved.at_rest.as_ref());
-            let vertices: Vec<Point3> = match at_rest {
-                Some(at_rest) => corners.zip(at_rest.iter().copied()).map(placed).collect::<Result<_, _>>()?,
-                None => {
-                    let world = local.positions.iter().map(|&p| at.world.apply(p));
-                    corners.zip(world).map(placed).collect::<Result<_, _>>()?
-                }
-            };
+            let world = (0..local.positions.len()).map(|k| match at_rest {
+                Some(at_rest) => at_rest[k],
+                None => at.world.apply(local.positions[k]),
+            });
+            let corners = local.mesh.corners.iter().copied();
+            let vertices: Vec<Point3> = corners.zip(world).map(placed).collect::<Result<_, _>>()?;
             let largest = |p: Point3| p.iter().fold(0.0f64, |m, x| m.max(x.abs()));
             let stored_size = match at_rest {
                 // Sums of stored corners, by weights.
@@ -278,7 +274,7 @@ fn build(
             }
         }
     }
-    Ok(builder)
+    Ok(())
 }
 
 /// A box that a door does not leave that stands shut with these corners: wherever it turns about a line through the box around them, or

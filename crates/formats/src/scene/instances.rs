@@ -20,7 +20,7 @@ pub(super) fn transforms(
     document: &Document,
     buffers: &Buffers<'_>,
 ) -> Result<Vec<Transform>, Malformed> {
-    let [translation, rotation, scale] = instances.attributes;
+    let [translation, rotation, scale] = *instances;
     let misfit =
         |attribute: &str, accessor: usize| malformed!("{INSTANCING}: {attribute} (accessor {accessor}) does not fit");
     let read = |attribute: &'static str, accessor: Option<usize>, kind: &str| {
@@ -39,9 +39,7 @@ pub(super) fn transforms(
     }
     let [translation, rotation, scale] = all.map(|found| found.map(|(elements, ..)| elements));
     let numbers = |of: Option<Elements<'_>>, k: usize| of.map(|elements| elements.normalized_numbers(k));
-    let point = |of: Option<Elements<'_>>, k: usize, without: Point3| -> Point3 {
-        numbers(of, k).and_then(|numbers| numbers.try_into().ok()).unwrap_or(without)
-    };
+    let point = |of, k, without: Point3| numbers(of, k).and_then(|all| all.try_into().ok()).unwrap_or(without);
     let transform = |k: usize| {
         let turn = numbers(rotation, k).and_then(|numbers| numbers.try_into().ok()).unwrap_or([0.0, 0.0, 0.0, 1.0]);
         Transform::from_parts(point(translation, k, [0.0; 3]), turn, point(scale, k, [1.0; 3]))

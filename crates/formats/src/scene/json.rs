@@ -126,7 +126,6 @@ pub(super) struct Primitive {
     #[serde(default = "triangles")]
     pub(super) mode: u32,
     pub(super) material: Option<usize>,
-    /// Morph targets.
     #[serde(default)]
     pub(super) targets: Vec<Attributes>,
     /// Materials that it may have instead, by `KHR_materials_variants`.
@@ -146,13 +145,12 @@ impl Primitive {
 fn variants<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<usize>, D::Error> {
     let extensions = Value::deserialize(deserializer)?;
     let Some(variants) = extensions.get("KHR_materials_variants") else { return Ok(Vec::new()) };
-    let of = |mapping: &Value| mapping.get("material").and_then(Value::as_u64).and_then(|m| usize::try_from(m).ok());
+    let of = |mapping: &Value| mapping.get("material").and_then(as_index);
     let mappings = variants.get("mappings").and_then(Value::as_array);
     let found = mappings.and_then(|mappings| mappings.iter().map(of).collect::<Option<Vec<usize>>>());
     Ok(found.unwrap_or_else(|| vec![usize::MAX]))
 }
 
-/// Attributes of vertices, which are accessors.
 #[derive(Debug, Default, Deserialize)]
 pub(super) struct Attributes {
     #[serde(rename = "POSITION")]
@@ -207,6 +205,11 @@ pub(super) struct Sampler {
     pub(super) input: usize,
     pub(super) output: usize,
     pub(super) interpolation: Option<Box<str>>,
+}
+
+/// An index into a list of the document, wherever serde does not read it.
+pub(super) fn as_index(value: &Value) -> Option<usize> {
+    value.as_u64().and_then(|index| usize::try_from(index).ok())
 }
 
 /// A list of what can be read of it; nothing where it is no list.

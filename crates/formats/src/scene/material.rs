@@ -2,6 +2,7 @@
 
 use super::json::{Document, Material};
 use super::role::is_alpha_by_name;
+use crate::error::counted;
 use std::collections::BTreeMap;
 
 /// Extensions of materials with which a material is as opaque as without, by how their names begin.
@@ -19,7 +20,6 @@ const OPAQUE: [&str; 20] = [
     "MSFT_packing_",
 ];
 
-/// Extensions by which a material lets light through.
 const SEE_THROUGH: [&str; 4] = [
     "KHR_materials_transmission",
     "KHR_materials_volume",
@@ -64,16 +64,15 @@ fn unknown_extensions(material: &Material) -> impl Iterator<Item = &str> {
     material.extensions.keys().map(|name| &**name).filter(move |name| !is_known(name))
 }
 
-/// What a user should hear of the extensions of materials.
 pub(super) fn warnings(document: &Document) -> Vec<String> {
     let mut n_materials: BTreeMap<&str, usize> = BTreeMap::new();
     for name in document.materials.iter().flatten().flat_map(unknown_extensions) {
         *n_materials.entry(name).or_default() += 1;
     }
     let warning = |(name, n): (&str, usize)| {
-        let materials = if n == 1 { "material has" } else { "materials have" };
+        let materials = counted(n, "material has", "materials have");
         format!(
-            "{n} {materials} the extension {name}, which is not known: they count as see-through; name what is opaque \
+            "{materials} the extension {name}, which is not known: they count as see-through; name what is opaque \
              (--opaque)"
         )
     };

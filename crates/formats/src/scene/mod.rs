@@ -20,7 +20,6 @@
 mod accessor;
 mod buffers;
 mod build;
-mod closed;
 mod extras;
 mod gltf;
 mod instances;
@@ -55,8 +54,8 @@ pub use write_error::SceneWriteError;
 pub use write_obj::{write_obj, write_simplified_obj};
 
 use crate::ReadError;
-use crate::beside::{Folder, Neighbours};
-use crate::error::malformed;
+use crate::beside::Folder;
+use crate::error::{Malformed, malformed};
 use sightlines_cells::Scene;
 use sightlines_geometry::Aabb;
 pub use sightlines_pvs::Axis;
@@ -177,15 +176,10 @@ pub fn read_scene(path: impl AsRef<Path>) -> Result<SceneFile, ReadError> {
 /// # Errors
 /// As [`read_scene`].
 pub fn read_scene_with(path: impl AsRef<Path>, options: &SceneReadOptions) -> Result<SceneFile, ReadError> {
-    let path = path.as_ref();
-    let (bytes, format) = read_bytes(path)?;
-    let folder = Folder::of(path);
-    let beside: Option<&dyn Neighbours> = Some(&folder);
-    let parsed = match format {
-        SceneFormat::Gltf => parse_gltf_with(&bytes, beside, options),
-        SceneFormat::Obj => parse_obj_with(&bytes, beside, options),
-    };
-    parsed.map_err(|error| ReadError::new(path, error))
+    read(path.as_ref(), |bytes, format, folder| match format {
+        SceneFormat::Gltf => parse_gltf_with(&bytes, Some(folder), options),
+        SceneFormat::Obj => parse_obj_with(&bytes, Some(folder), options),
+    })
 }
 
 /// As [`read_scene`], with the source that is needed to write the file again with fewer triangles; an OBJ has none.
@@ -204,19 +198,18 @@ pub fn read_scene_with_source_and(
     path: impl AsRef<Path>,
     options: &SceneReadOptions,
 ) -> Result<(SceneFile, Option<GltfSource>), ReadError> {
-    let path = path.as_ref();
-    let (bytes, format) = read_bytes(path)?;
-    let folder = Folder::of(path);
-    let parsed = match format {
+    read(path.as_ref(), |bytes, format, folder| match format {
         SceneFormat::Gltf => {
             source::parse_with_source(bytes, Some(&folder.0), options).map(|(file, source)| (file, Some(source)))
         }
-        SceneFormat::Obj => parse_obj_with(&bytes, Some(&folder), options).map(|file| (file, None)),
-    };
-    parsed.map_err(|error| ReadError::new(path, error))
+        SceneFormat::Obj => parse_obj_with(&bytes, Some(folder), options).map(|file| (file, None)),
+    })
 }
 
-fn read_bytes(path: &Path) -> Result<(Vec<u8>, SceneFormat), ReadError> {
+fn read<T>(
+    path: &Path,
+    parse: impl FnOnce(Vec<u8>, SceneFormat, &Folder) -> Result<T, Malformed>,
+) -> Result<T, ReadError> {
     let bytes = fs::read(path).map_err(|error| ReadError::new(path, error))?;
     let named = |extension: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(extension));
     let format = if bytes.starts_with(gltf::MAGIC) {
@@ -228,5 +221,5 @@ fn read_bytes(path: &Path) -> Result<(Vec<u8>, SceneFormat), ReadError> {
     } else {
         return Err(ReadError::new(path, malformed!("neither GLB nor glTF nor OBJ")));
     };
-    Ok((bytes, format))
+    parse(bytes, format, &Folder::of(path)).map_err(|error| ReadError::new(path, error))
 }

@@ -3,6 +3,8 @@
 //! Something that is wrongly taken for still hides what can be seen, and is not seen where it goes; something that is wrongly
 //! taken for moving only shows more. So an extension of a node that is not known counts as one that moves it.
 
+use super::json::as_index;
+use crate::error::counted;
 use serde::Deserialize;
 use serde::de::{Deserializer, IgnoredAny, MapAccess, Visitor};
 use serde_json::Value;
@@ -67,34 +69,25 @@ fn moves(name: &str, value: &Value) -> bool {
 }
 
 /// The accessors of the transforms of instances, one element each for each instance: translations, rotations, scales.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Instances {
-    pub(super) attributes: [Option<usize>; 3],
-}
+pub(super) type Instances = [Option<usize>; 3];
 
-impl Instances {
-    /// `None` for what is not as the extension has it.
-    fn of(value: &Value) -> Option<Self> {
-        let attributes = value.get("attributes")?.as_object()?;
-        let accessor = |name: &str| match attributes.get(name) {
-            None => Some(None),
-            Some(value) => value.as_u64().and_then(|accessor| usize::try_from(accessor).ok()).map(Some),
-        };
-        Some(Self { attributes: [accessor("TRANSLATION")?, accessor("ROTATION")?, accessor("SCALE")?] })
-    }
+/// `None` for what is not as the extension has it.
+fn instances(value: &Value) -> Option<Instances> {
+    let attributes = value.get("attributes")?.as_object()?;
+    let accessor = |name: &str| match attributes.get(name) {
+        None => Some(None),
+        Some(value) => as_index(value).map(Some),
+    };
+    Some([accessor("TRANSLATION")?, accessor("ROTATION")?, accessor("SCALE")?])
 }
-
-/// What is there instead of instances.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct NotInstances;
 
 /// What the extensions of a node make of it.
 #[derive(Debug, Default)]
 pub(super) struct NodeExtensions {
     /// Whether the node, and all below it, is not drawn at first: a program may show it later.
     pub(super) is_invisible: bool,
-    /// Where its mesh is drawn many times; an error if that is not as the extension has it.
-    pub(super) instances: Option<Result<Instances, NotInstances>>,
+    /// Where its mesh is drawn many times; `Some(None)` if that is not as the extension has it.
+    pub(super) instances: Option<Option<Instances>>,
     /// The nodes that are coarser levels of it, by `MSFT_lod`; empty if that is not as the extension has it.
     pub(super) coarser: Vec<usize>,
     /// The first extension that moves it.
@@ -125,7 +118,7 @@ impl<'de> Deserialize<'de> for NodeExtensions {
                     if name == "KHR_node_visibility" {
                         found.is_invisible = map.next_value::<Value>()?.get("visible") == Some(&Value::Bool(false));
                     } else if name == INSTANCING {
-                        found.instances = Some(Instances::of(&map.next_value::<Value>()?).ok_or(NotInstances));
+                        found.instances = Some(instances(&map.next_value::<Value>()?));
                     } else if name == LEVELS {
                         found.coarser = levels(&map.next_value::<Value>()?).unwrap_or_default();
                     } else if begins_like(&name, &STILL) {
@@ -144,20 +137,14 @@ impl<'de> Deserialize<'de> for NodeExtensions {
 /// The nodes that are listed as levels.
 fn levels(value: &Value) -> Option<Vec<usize>> {
     let ids = value.get("ids")?.as_array()?;
-    ids.iter().map(|id| id.as_u64().and_then(|id| usize::try_from(id).ok())).collect()
+    ids.iter().map(as_index).collect()
 }
 
 /// The names of the extensions of a document; none where they are not as the specification has them.
 pub(super) fn names<'de, D: Deserializer<'de>>(deserializer: D) -> Result<BTreeSet<String>, D::Error> {
-    #[derive(Deserialize)]
-    #[serde(untagged)]
-    enum Extensions {
-        All(std::collections::BTreeMap<String, IgnoredAny>),
-        Other(IgnoredAny),
-    }
-    Ok(match Extensions::deserialize(deserializer)? {
-        Extensions::All(all) => all.into_keys().collect(),
-        Extensions::Other(_) => BTreeSet::new(),
+    Ok(match Value::deserialize(deserializer)? {
+        Value::Object(all) => all.into_iter().map(|(name, _)| name).collect(),
+        _ => BTreeSet::new(),
     })
 }
 
@@ -193,10 +180,9 @@ pub(super) fn warnings<'a>(
     nodes.retain(|name| !begins_like(name, &MOVING));
     nodes.sort_unstable();
     for of_one in nodes.chunk_by(|a, b| a == b) {
-        let (name, n) = (of_one[0], of_one.len());
-        let nodes = if n == 1 { "node has" } else { "nodes have" };
+        let (name, nodes) = (of_one[0], counted(of_one.len(), "node has", "nodes have"));
         all.push(format!(
-            "{n} {nodes} the extension {name}, which is not known: they count as moving anywhere; name what never moves \
+            "{nodes} the extension {name}, which is not known: they count as moving anywhere; name what never moves \
              (--still)"
         ));
     }

@@ -73,13 +73,8 @@ impl<'a> Placed<'a> {
     pub(super) fn is_mirror(&self, document: &Document, primitive: &Primitive) -> bool {
         let by_name = self.node.name.as_deref().and_then(role_of_name).map(|(role, _)| role);
         let material = primitive.material.and_then(|m| document.materials.get(m)?.as_ref());
-        let stated = [
-            self.node.stated.role.role(),
-            self.mesh.stated.role.role(),
-            material.and_then(|m| m.stated.role.role()),
-            by_name,
-        ];
-        stated.contains(&Some(Role::Mirror))
+        let stated = [self.node.stated, self.mesh.stated, material.map(|m| m.stated).unwrap_or_default()];
+        by_name == Some(Role::Mirror) || stated.iter().any(|stated| stated.role.role() == Some(Role::Mirror))
     }
 
     /// What is known of one of its objects if it has a material. `name` is that of the object. Of several roles the one that is
@@ -118,7 +113,6 @@ impl<'a> Placed<'a> {
     }
 }
 
-/// A node as errors name it.
 fn label(index: usize, node: &Node) -> String {
     match &node.name {
         // As a Rust string: a name may hold anything, and a message should stay one line.
@@ -127,7 +121,6 @@ fn label(index: usize, node: &Node) -> String {
     }
 }
 
-/// The error of what has more than a scene may have.
 pub(super) fn too_many(what: &str, max: usize) -> Malformed {
     malformed!("with it the scene has more than {max} {what}")
 }
@@ -159,19 +152,12 @@ fn roots(document: &Document, asked: Option<&str>) -> Result<Vec<usize>, Malform
         },
         None if document.scene.is_some() => Err(malformed!("there is no scene {scene}, which should be the default")),
         None => {
-            let mut is_child = vec![false; document.nodes.len()];
-            for &child in document.nodes.iter().flat_map(|n| &n.children) {
-                // A child that does not exist is reported when its parent is placed.
-                if let Some(is_child) = is_child.get_mut(child) {
-                    *is_child = true;
-                }
-            }
-            Ok((0..is_child.len()).filter(|&node| !is_child[node]).collect())
+            let children: BTreeSet<usize> = document.nodes.iter().flat_map(|n| &n.children).copied().collect();
+            Ok((0..document.nodes.len()).filter(|node| !children.contains(node)).collect())
         }
     }
 }
 
-/// The nodes of a scene.
 pub(super) struct Nodes<'a> {
     /// Those with meshes, parents before children.
     pub(super) placed: Vec<Placed<'a>>,
@@ -212,7 +198,7 @@ pub(super) fn place_nodes<'a>(
             match node.extensions.as_ref().and_then(|extensions| extensions.instances.as_ref()) {
                 None => placed.push(at(world, None)),
                 Some(instances) => {
-                    let instances = instances.as_ref().map_err(|_| fail(no_instances()))?;
+                    let instances = instances.as_ref().ok_or_else(|| fail(no_instances()))?;
                     let all = transforms(instances, document, buffers).map_err(fail)?;
                     if placed.len() + all.len() > MAX_OBJECTS {
                         return Err(at(world, None).fail(0, too_many("objects", MAX_OBJECTS)));
@@ -229,7 +215,6 @@ pub(super) fn place_nodes<'a>(
     Ok(Nodes { placed, above, n_coarser })
 }
 
-/// The names of all nodes that have a mesh, and of all meshes.
 fn mesh_names(document: &Document) -> MeshNames<'_> {
     let nodes = document.nodes.iter().filter(|node| node.mesh.is_some()).filter_map(|node| node.name.as_deref());
     nodes.chain(document.meshes.iter().filter_map(|mesh| mesh.name.as_deref())).collect()

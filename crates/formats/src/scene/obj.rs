@@ -9,7 +9,7 @@ use super::write_obj::{OCCLUDER, SEE_THROUGH, SIMPLIFIED, STATEMENT};
 use super::{MAX_ELEMENTS, SceneFile, SceneFormat, Simplification};
 use crate::beside::Neighbours;
 use crate::bytes::{text_lines, without_mark};
-use crate::error::{Malformed, malformed};
+use crate::error::{Malformed, counted, malformed};
 use crate::point::check_point;
 use sightlines_cells::Point3;
 use sightlines_geometry::triangles::{MAX_WINDING_CORNERS, PolygonError, triangulate};
@@ -56,7 +56,7 @@ pub fn parse_obj_with(
     options: &SceneReadOptions,
 ) -> Result<SceneFile, Malformed> {
     let obj = Obj::read(bytes)?;
-    let mut builder = Builder::default();
+    let mut builder = Builder::saying(obj.simplified);
     let mut classifier = Classifier::new(options);
     let surfaces = Surfaces::read(&obj, beside, &mut builder.warnings);
     obj.wrong.iter().for_each(|wrong| builder.leave_out(1, wrong.clone()));
@@ -106,38 +106,28 @@ pub fn parse_obj_with(
             if mesh.triangles.is_empty() {
                 continue;
             }
+            let name = format!("{}{suffix}", group.name);
             let vertices = mesh.corners.iter().map(|&v| obj.positions[v]).collect();
-            builder.add(
-                format!("{}{suffix}", group.name),
-                vertices,
-                (mesh.triangles.iter().copied(), &[]),
-                false,
-                false,
-            );
+            builder.add(name, vertices, (mesh.triangles.iter().copied(), &[]), false, false);
             if matches!(role_of_name(&group.name), Some((Role::Mirror, _))) {
                 builder.mark_mirror();
             }
             // The reason is that of the first face; others have a like one.
             let class = classes[&first.material].clone();
-            let ambiguous = || Classification::see_through("an outline that crosses itself".to_owned());
-            if let Some(class) =
-                if hides { class } else { Some(class.filter(|class| !class.hides()).unwrap_or_else(ambiguous)) }
-            {
-                builder.classify(class, None);
-            }
+            let ambiguous = || Some(Classification::see_through("an outline that crosses itself".to_owned()));
+            let class = if hides { class } else { class.filter(|class| !class.hides()).or_else(ambiguous) };
+            class.into_iter().for_each(|class| builder.classify(class, None));
         }
     }
     if let Some((n, first)) = ambiguous {
         if n_valid == 0 {
             return Err(first);
         }
-        let faces = if n == 1 { "1 face hides".to_owned() } else { format!("{n} faces hide") };
+        let faces = counted(n, "face hides", "faces hide");
         builder.warnings.push(format!("{faces} nothing: {first}"));
     }
     builder.warnings.extend(classifier.warnings());
-    let mut file = builder.finish(SceneFormat::Obj, options)?;
-    file.info.simplified = obj.simplified;
-    Ok(file)
+    builder.finish(SceneFormat::Obj, options)
 }
 
 /// What is known of the materials of an OBJ.
@@ -169,10 +159,7 @@ impl Surfaces {
         warnings.extend(missing_libraries(&missing));
         let n_faces = obj.faces.iter().filter(|face| face.material.is_some()).count();
         if let (true, Some(first), true) = (obj.libraries.is_empty(), obj.materials.first(), n_faces > 0) {
-            let faces = match n_faces {
-                1 => "1 face has a material".to_owned(),
-                n => format!("{n} faces have materials"),
-            };
+            let faces = counted(n_faces, "face has a material", "faces have materials");
             warnings.push(format!(
                 "{faces}, such as {first:?}, and the file names no library (mtllib): they count as opaque; name what is glass \
                  (--see-through)"
@@ -187,14 +174,10 @@ impl Surfaces {
 
     fn see_through(&self, material: &str) -> Option<String> {
         let found = self.known.get(material).or_else(|| self.before_comments.get(before_comment(material)));
-        match found {
-            Some(why) => why.clone(),
-            None => self.unknown.clone(),
-        }
+        found.unwrap_or(&self.unknown).clone()
     }
 }
 
-/// What a user should hear of libraries that cannot be read.
 fn missing_libraries(missing: &[&str]) -> Option<String> {
     /// How many of them are named.
     const MANY: usize = 8;
@@ -234,7 +217,6 @@ fn read_libraries<'l>(line: &'l str, beside: Option<&dyn Neighbours>) -> (Vec<Ve
     if is_one { (Vec::new(), vec![line]) } else { (files, missing) }
 }
 
-/// The parts of an OBJ that matter here.
 #[derive(Debug, Default)]
 struct Obj {
     positions: Vec<Point3>,
@@ -263,7 +245,6 @@ struct Face {
     material: Option<usize>,
 }
 
-/// A face in triangles.
 #[derive(Debug)]
 struct FaceCut {
     corners: Vec<usize>,
@@ -273,7 +254,6 @@ struct FaceCut {
     ambiguous: Option<Malformed>,
 }
 
-/// What becomes an object.
 #[derive(Debug)]
 struct Group {
     name: String,
@@ -457,15 +437,17 @@ fn keyword(line: &[u8]) -> &[u8] {
 }
 
 /// What follows the keyword.
-fn text(line: &[u8]) -> Result<&str, Malformed> {
-    let behind = &line.trim_ascii_start()[keyword(line).len()..];
-    std::str::from_utf8(behind.trim_ascii()).map_err(|_| malformed!("not UTF-8"))
+fn behind(line: &[u8]) -> &[u8] {
+    line.trim_ascii_start()[keyword(line).len()..].trim_ascii()
 }
 
-/// What follows the keyword, whatever it is: names of materials and files are compared and never shown as they are.
+fn text(line: &[u8]) -> Result<&str, Malformed> {
+    std::str::from_utf8(behind(line)).map_err(|_| malformed!("not UTF-8"))
+}
+
+/// The same, whatever it is: names of materials and files are compared and never shown as they are.
 fn lossy_text(line: &[u8]) -> String {
-    let behind = &line.trim_ascii_start()[keyword(line).len()..];
-    String::from_utf8_lossy(behind.trim_ascii()).into_owned()
+    String::from_utf8_lossy(behind(line)).into_owned()
 }
 
 fn words(line: &[u8]) -> Result<impl Iterator<Item = &str>, Malformed> {

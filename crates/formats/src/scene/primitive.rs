@@ -11,7 +11,6 @@ pub(super) const FIRST_OF_TRIANGLES: u32 = TRIANGLES;
 const TRIANGLE_STRIP: u32 = 5;
 const TRIANGLE_FAN: u32 = 6;
 
-/// A primitive as it is in its mesh.
 #[derive(Debug)]
 pub(super) struct LocalMesh {
     pub(super) mesh: Compact,

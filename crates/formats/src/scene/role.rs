@@ -41,16 +41,7 @@ impl Role {
 
     /// As extras have it.
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::Occluder => "occluder",
-            Self::SeeThrough => "see-through",
-            Self::Detail => "detail",
-            Self::Door => "door",
-            Self::Portal => "portal",
-            Self::ViewVolume => "view-volume",
-            Self::Ignore => "ignore",
-            Self::Mirror => "mirror",
-        }
+        NAMES[self as usize]
     }
 
     /// Whether such an object is drawn at all.
@@ -58,6 +49,10 @@ impl Role {
         !matches!(self, Self::Portal | Self::ViewVolume | Self::Ignore)
     }
 }
+
+/// Of the roles, in their order.
+const NAMES: [&str; Role::ALL.len()] =
+    ["occluder", "see-through", "detail", "door", "portal", "view-volume", "ignore", "mirror"];
 
 /// How a name ends that says what an object is for, as importers of Godot read it: what they do not draw, and what they
 /// make a body that moves, hides nothing.

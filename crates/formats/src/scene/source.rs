@@ -28,7 +28,6 @@ pub(super) struct NodeOrigin {
     pub(super) node: usize,
     pub(super) mesh: usize,
     pub(super) mirrors: bool,
-    /// Of the first primitive.
     pub(super) first_object: usize,
 }
 

@@ -5,6 +5,7 @@
 
 use super::pattern::NamePattern;
 use super::role::{Role, hull_of};
+use crate::error::counted;
 use std::str::FromStr;
 
 /// How to read a scene, beside what its file says. By default the file alone decides.
@@ -53,11 +54,7 @@ impl BackFaces {
 
     /// Lower-case name: that of options, and of the information of a table.
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::Either => "either",
-            Self::Culled => "culled",
-            Self::Drawn => "drawn",
-        }
+        ["either", "culled", "drawn"][self as usize]
     }
 }
 
@@ -87,22 +84,17 @@ pub struct Classified {
     pub reason: String,
 }
 
-/// What is known of an object before it is classified.
 #[derive(Debug, Default)]
 pub(super) struct Evidence<'a> {
     /// Its name, and those of what it comes from.
     pub(super) names: Vec<&'a str>,
     /// The role that it is given, and where. Not that of a mirror, which says nothing of what it hides.
     pub(super) role: Option<(Role, String)>,
-    /// Why its material lets light through, if it does.
     pub(super) see_through: Option<String>,
-    /// Why it moves, if it does.
     pub(super) moves: Option<String>,
-    /// Whether it changes its shape.
     pub(super) deforms: bool,
 }
 
-/// How an object is classified.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Classification {
     pub(super) role: Role,
@@ -132,7 +124,6 @@ impl Classification {
         }
     }
 
-    /// Whether the object hides what is behind it.
     pub(super) fn hides(&self) -> bool {
         self.role == Role::Occluder
     }
@@ -148,20 +139,15 @@ pub(super) fn least_hiding(mut all: Vec<Option<Classification>>) -> Option<Class
     let is_vouched_for = all.iter().all(|c| c.as_ref().is_some_and(|c| c.is_vouched_for));
     let is_drawn = |c: &Option<Classification>| c.as_ref().is_none_or(|c| c.role.is_drawn());
     let hides = |c: &Option<Classification>| c.as_ref().is_none_or(Classification::hides);
-    let chosen = match all.iter().position(|c| is_drawn(c) && !hides(c)) {
-        Some(k) => k,
-        None if all.iter().any(hides) => match all.iter().position(|c| !is_drawn(c)) {
-            // With some materials it hides, with others it is not drawn.
-            Some(k) => {
-                if let Some(c) = &mut all[k] {
-                    c.role = Role::SeeThrough;
-                }
-                k
-            }
-            None => 0,
-        },
-        None => 0,
+    let not_drawn = || all.iter().position(|c| !is_drawn(c)).filter(|_| all.iter().any(hides));
+    let (shown, chosen) = match all.iter().position(|c| is_drawn(c) && !hides(c)) {
+        Some(k) => (None, k),
+        // With some materials it hides, with others it is not drawn.
+        None => (not_drawn(), not_drawn().unwrap_or(0)),
     };
+    if let Some(c) = shown.and_then(|k| all[k].as_mut()) {
+        c.role = Role::SeeThrough;
+    }
     let found = all.into_iter().nth(chosen)??;
     let of = if chosen == 0 { "" } else { " of a variant" };
     Some(Classification {
@@ -214,19 +200,18 @@ impl<'a> Classifier<'a> {
     /// what is simply a wall. The first of the names is its own.
     pub(super) fn classify<'e>(&mut self, evidence: impl IntoIterator<Item = Evidence<'e>>) -> Option<Classification> {
         let mut own = None;
-        let all: Vec<_> = evidence
-            .into_iter()
-            .map(|evidence| {
-                own = own.or(evidence.names.first().copied());
-                self.with_material(evidence)
-            })
-            .collect();
+        let mut all = Vec::new();
+        for evidence in evidence {
+            own = own.or(evidence.names.first().copied());
+            all.push(self.with_material(evidence));
+        }
         let found = least_hiding(all);
         if found.as_ref().is_some_and(|found| found.is_overruled) {
-            self.overruled.0 += 1;
-            if self.overruled.0 == 1 {
-                self.overruled.1 = own.unwrap_or_default().to_owned();
+            let (n, first) = &mut self.overruled;
+            if *n == 0 {
+                *first = own.unwrap_or_default().to_owned();
             }
+            *n += 1;
         }
         found
     }
@@ -303,8 +288,7 @@ impl<'a> Classifier<'a> {
             unused.map(|pattern| format!("no object, node, mesh or material is called {pattern}")).collect();
         let (n, first) = &self.overruled;
         if *n > 0 {
-            let objects =
-                if *n == 1 { "1 occluder moves and hides".to_owned() } else { format!("{n} occluders move and hide") };
+            let objects = counted(*n, "occluder moves and hides", "occluders move and hide");
             warnings.push(format!("{objects} nothing, the first is called {first:?}: name what never moves (--still)"));
         }
         warnings

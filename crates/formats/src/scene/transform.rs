@@ -8,7 +8,6 @@ use crate::error::{Malformed, malformed};
 use sightlines_cells::Point3;
 use sightlines_geometry::range::Range;
 
-/// An affine map of space.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Transform {
     /// Rows of the matrix; the last column is the translation.
@@ -23,7 +22,6 @@ impl Transform {
     pub(super) const IDENTITY: Self =
         Self { rows: [[1., 0., 0., 0.], [0., 1., 0., 0.], [0., 0., 1., 0.]], hand: 1, is_certain: true };
 
-    /// What `node` does to its mesh and its children.
     pub(super) fn of_node(node: &Node) -> Result<Self, Malformed> {
         let decomposed = node.translation.is_some() || node.rotation.is_some() || node.scale.is_some();
         match &node.matrix {
@@ -94,7 +92,6 @@ impl Transform {
         Self { is_certain: both.is_certain && own.hand > 0, ..both }
     }
 
-    /// First `inner`, then this.
     pub(super) fn after(&self, inner: &Self) -> Self {
         let entry = |row: &[f64; 4], c: usize| {
             row[0] * inner.rows[0][c] + row[1] * inner.rows[1][c] + row[2] * inner.rows[2][c]
@@ -107,7 +104,6 @@ impl Transform {
         }
     }
 
-    /// Where it puts `p`.
     pub(super) fn apply(&self, p: Point3) -> Point3 {
         self.rows.map(|row| row[0] * p[0] + row[1] * p[1] + row[2] * p[2] + row[3])
     }

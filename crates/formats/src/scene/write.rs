@@ -63,7 +63,6 @@ pub fn write_rounded_glb(
     write(scene, Numbers::Rounded { offset }, Some(simplified))
 }
 
-/// How coordinates are written.
 #[derive(Debug, Clone, Copy, Default)]
 enum Numbers {
     /// As they are, or not at all.
@@ -111,7 +110,6 @@ impl List {
     }
 }
 
-/// A text or a finite number as JSON.
 fn json(value: &impl serde::Serialize) -> String {
     serde_json::to_string(value).expect("texts and finite numbers are JSON")
 }
@@ -121,7 +119,6 @@ fn member(name: &str, value: Option<String>) -> String {
     value.map_or_else(String::new, |value| format!(",\"{name}\":{value}"))
 }
 
-/// The document and its bytes.
 #[derive(Debug, Default)]
 struct Parts {
     numbers: Numbers,
@@ -171,7 +168,6 @@ impl Parts {
         Ok(())
     }
 
-    /// The index of a material.
     fn material(&mut self, material: &'static str) -> usize {
         let known = self.materials.iter().position(|&m| m == material);
         known.unwrap_or_else(|| {

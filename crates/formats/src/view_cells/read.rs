@@ -21,6 +21,7 @@ use std::path::Path;
 pub fn parse_view_cells(text: &[u8]) -> Result<ViewCells, Malformed> {
     let mut reader = Reader::default();
     let mut json = serde_json::Deserializer::from_slice(without_mark(text));
+    reader.context.expect(NOT_AN_OBJECT);
     let read = Seed(Top(&mut reader)).deserialize(&mut json).and_then(|()| json.end());
     read.map_err(|error| reader.context.explain(&error))?;
     Ok(ViewCells { cells: reader.cells, axes: reader.axes })
@@ -50,7 +51,6 @@ impl fmt::Display for Place {
     }
 }
 
-/// The cells so far, and where in the list the reader is.
 #[derive(Debug, Default)]
 struct Reader {
     cells: Vec<ViewCell>,
@@ -61,7 +61,6 @@ struct Reader {
 }
 
 impl Reader {
-    /// Takes a cell whose members were all read.
     fn add(&mut self, members: Members) -> Result<(), Malformed> {
         let missing = |member: &str| malformed!("there is no \"{member}\"");
         let id = members.id.ok_or_else(|| missing("id"))?;
@@ -80,7 +79,6 @@ impl Reader {
     }
 }
 
-/// The members of one cell, as far as they were there.
 #[derive(Debug, Default)]
 struct Members {
     id: Option<String>,
@@ -92,15 +90,10 @@ fn repeated(member: &str) -> Malformed {
     malformed!("there are two members \"{member}\"")
 }
 
-/// The whole.
 struct Top<'r>(&'r mut Reader);
 
 impl<'de> Shape<'de> for Top<'_> {
     type Value = ();
-
-    fn begin(&mut self) {
-        self.0.context.expect(NOT_AN_OBJECT);
-    }
 
     fn object<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
         let reader = self.0;
@@ -109,10 +102,12 @@ impl<'de> Shape<'de> for Top<'_> {
             match key.as_str() {
                 "cells" if found => return Err(reader.context.fail(repeated("cells"))),
                 "cells" => {
+                    reader.context.expect("\"cells\" is not a list");
                     map.next_value_seed(Seed(List(reader)))?;
                     found = true;
                 }
                 "axes" => {
+                    reader.context.expect(Axes::OTHERWISE);
                     let axes = map.next_value_seed(Seed(Axes(&mut reader.context)))?;
                     if reader.axes.replace(axes).is_some() {
                         return Err(reader.context.fail(repeated("axes")));
@@ -129,7 +124,6 @@ impl<'de> Shape<'de> for Top<'_> {
     }
 }
 
-/// The axes of the cells.
 struct Axes<'r>(&'r mut Context<Place>);
 
 impl Axes<'_> {
@@ -142,13 +136,10 @@ impl Axes<'_> {
 impl<'de> Shape<'de> for Axes<'_> {
     type Value = [[f64; 3]; 3];
 
-    fn begin(&mut self) {
-        self.0.expect(Self::OTHERWISE);
-    }
-
     fn list<A: SeqAccess<'de>>(self, mut list: A) -> Result<Self::Value, A::Error> {
         let mut axes = [[0.0; 3]; 3];
         for slot in &mut axes {
+            self.0.expect(NO_AXIS);
             let axis = Corner { context: &mut *self.0, member: "axes", otherwise: NO_AXIS };
             let Some(axis) = list.next_element_seed(Seed(axis))? else { return Err(self.0.fail(Self::OTHERWISE)) };
             *slot = axis;
@@ -162,19 +153,15 @@ impl<'de> Shape<'de> for Axes<'_> {
     }
 }
 
-/// The list of cells.
 struct List<'r>(&'r mut Reader);
 
 impl<'de> Shape<'de> for List<'_> {
     type Value = ();
 
-    fn begin(&mut self) {
-        self.0.context.expect("\"cells\" is not a list");
-    }
-
     fn list<A: SeqAccess<'de>>(self, mut list: A) -> Result<(), A::Error> {
         loop {
             self.0.context.place = Place(Some(self.0.cells.len()), None);
+            self.0.context.expect(NOT_AN_OBJECT);
             if list.next_element_seed(Seed(Cell(self.0)))?.is_none() {
                 break;
             }
@@ -184,15 +171,10 @@ impl<'de> Shape<'de> for List<'_> {
     }
 }
 
-/// One cell.
 struct Cell<'r>(&'r mut Reader);
 
 impl<'de> Shape<'de> for Cell<'_> {
     type Value = ();
-
-    fn begin(&mut self) {
-        self.0.context.expect(NOT_AN_OBJECT);
-    }
 
     fn object<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
         let reader = self.0;
@@ -209,13 +191,13 @@ impl<'de> Shape<'de> for Cell<'_> {
                     context.place.1 = Some(id.clone());
                     members.id.replace(id).is_some()
                 }
-                "min" => {
-                    let corner = Corner { context, member: "min", otherwise: NO_MIN };
-                    members.min.replace(map.next_value_seed(Seed(corner))?).is_some()
-                }
-                "max" => {
-                    let corner = Corner { context, member: "max", otherwise: NO_MAX };
-                    members.max.replace(map.next_value_seed(Seed(corner))?).is_some()
+                "min" | "max" => {
+                    let (slot, member, otherwise) = match key == "min" {
+                        true => (&mut members.min, "min", NO_MIN),
+                        false => (&mut members.max, "max", NO_MAX),
+                    };
+                    context.expect(otherwise);
+                    slot.replace(map.next_value_seed(Seed(Corner { context, member, otherwise }))?).is_some()
                 }
                 _ => {
                     map.next_value::<IgnoredAny>()?;
@@ -243,10 +225,6 @@ struct Corner<'r> {
 
 impl<'de> Shape<'de> for Corner<'_> {
     type Value = [f64; 3];
-
-    fn begin(&mut self) {
-        self.context.expect(self.otherwise);
-    }
 
     fn list<A: SeqAccess<'de>>(self, mut list: A) -> Result<[f64; 3], A::Error> {
         let mut corner = [0.0; 3];

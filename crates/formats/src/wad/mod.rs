@@ -204,7 +204,6 @@ fn parse_entry(
     Ok(range)
 }
 
-/// A lump as errors name it.
 fn label(index: usize, name: LumpName) -> String {
     format!("lump {index} ({name})")
 }

@@ -66,7 +66,6 @@ impl<const N: usize> Block<'_, N> {
         number.ok_or_else(|| value.refuse(self.keys[k], wanted))
     }
 
-    /// A whole number of 32 bits.
     pub(super) fn integer(&self, k: usize) -> Result<i32, Malformed> {
         self.whole(k, "a whole number")
     }

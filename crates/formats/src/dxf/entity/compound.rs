@@ -65,7 +65,6 @@ fn axis(group: &Group<'_>) -> usize {
     (group.code / 10 - 1).clamp(0, 2) as usize
 }
 
-/// A vertex of a multiline.
 #[derive(Default)]
 struct Vertex {
     at: [f64; 3],
@@ -89,20 +88,17 @@ pub(super) fn solid(fields: &Fields<'_, '_>) -> Result<Shape, Malformed> {
 
 /// The borders of a filled hatch: polylines, lines and arcs. `None` if it is not filled but drawn with a pattern, if it has an edge of another kind, and
 /// if it is not what the format demands.
-pub(super) fn hatch(fields: &Fields<'_, '_>) -> Result<Option<Shape>, Malformed> {
-    if fields.integer(70)? != 1 {
-        return Ok(None);
+pub(super) fn hatch(fields: &Fields<'_, '_>) -> Option<Shape> {
+    if fields.integer(70).ok()? != 1 {
+        return None;
     }
-    let Some(begin) = fields.groups.iter().position(|group| group.code == 91) else { return Ok(None) };
+    let begin = fields.groups.iter().position(|group| group.code == 91)?;
     let mut rest = Rest(&fields.groups[begin..]);
-    let n_loops = rest.take(91)?.unwrap_or(0);
     let mut parts = Vec::new();
-    for _ in 0..n_loops {
-        if rest.border(&mut parts)?.is_none() {
-            return Ok(None);
-        }
+    for _ in 0..rest.take(91)?? {
+        rest.border(&mut parts)?;
     }
-    Ok(Some(Shape::Parts { parts, is_filling: true }))
+    Some(Shape::Parts { parts, is_filling: true })
 }
 
 /// The groups of a hatch that were not read yet.
@@ -116,64 +112,56 @@ impl Rest<'_, '_> {
         Some(first)
     }
 
-    fn take(&mut self, code: i32) -> Result<Option<i64>, Malformed> {
-        self.next(code).map(Group::integer).transpose()
+    /// `Some(None)` if the next group has another code; `None` if it is malformed.
+    fn take(&mut self, code: i32) -> Option<Option<i64>> {
+        self.next(code).map(Group::integer).transpose().ok()
     }
 
-    fn number(&mut self, code: i32) -> Result<Option<f64>, Malformed> {
-        self.next(code).map(Group::number).transpose()
+    fn number(&mut self, code: i32) -> Option<Option<f64>> {
+        self.next(code).map(Group::number).transpose().ok()
     }
 
-    fn point(&mut self, code: i32) -> Result<Option<[f64; 3]>, Malformed> {
-        let Some(x) = self.number(code)? else { return Ok(None) };
-        Ok(self.number(code + 10)?.map(|y| [x, y, 0.0]))
+    fn point(&mut self, code: i32) -> Option<[f64; 3]> {
+        Some([self.number(code)??, self.number(code + 10)??, 0.0])
     }
 
     /// Reads one border; `None` if it is not understood.
-    fn border(&mut self, parts: &mut Vec<Shape>) -> Result<Option<()>, Malformed> {
+    fn border(&mut self, parts: &mut Vec<Shape>) -> Option<()> {
         const POLYLINE: i64 = 2;
-        let Some(flags) = self.take(92)? else { return Ok(None) };
-        if flags & POLYLINE == 0 {
-            let Some(n) = self.take(93)? else { return Ok(None) };
-            for _ in 0..n {
-                let Some(edge) = self.edge()? else { return Ok(None) };
-                parts.push(edge);
+        if self.take(92)?? & POLYLINE == 0 {
+            for _ in 0..self.take(93)?? {
+                parts.push(self.edge()?);
             }
         } else {
             let (_, is_closed) = (self.take(72)?, self.take(73)? != Some(0));
-            let Some(n) = self.take(93)? else { return Ok(None) };
             let mut vertices = Vec::new();
-            for _ in 0..n {
-                let Some(vertex) = self.point(10)? else { return Ok(None) };
-                vertices.push((vertex, self.number(42)?.unwrap_or(0.0)));
+            for _ in 0..self.take(93)?? {
+                vertices.push((self.point(10)?, self.number(42)?.unwrap_or(0.0)));
             }
             parts.push(Shape::Path { vertices, is_closed, is_own: true });
         }
         // The entities that the border was made of.
-        let n_sources = self.take(97)?.unwrap_or(0);
-        for _ in 0..n_sources {
-            if self.next(330).is_none() {
-                return Ok(None);
-            }
+        for _ in 0..self.take(97)?.unwrap_or(0) {
+            self.next(330)?;
         }
-        Ok(Some(()))
+        Some(())
     }
 
     /// Reads one edge; `None` if it is neither a line nor an arc.
-    fn edge(&mut self) -> Result<Option<Shape>, Malformed> {
-        match self.take(72)? {
-            Some(1) => {
-                let (Some(a), Some(b)) = (self.point(10)?, self.point(11)?) else { return Ok(None) };
-                Ok(Some(Shape::Path { vertices: vec![(a, 0.0), (b, 0.0)], is_closed: false, is_own: true }))
+    fn edge(&mut self) -> Option<Shape> {
+        match self.take(72)?? {
+            1 => {
+                let vertices = vec![(self.point(10)?, 0.0), (self.point(11)?, 0.0)];
+                Some(Shape::Path { vertices, is_closed: false, is_own: true })
             }
-            Some(2) => {
-                let (Some(center), Some(radius)) = (self.point(10)?, self.number(40)?) else { return Ok(None) };
-                let (Some(start), Some(end)) = (self.number(50)?, self.number(51)?) else { return Ok(None) };
+            2 => {
+                let (center, radius) = (self.point(10)?, self.number(40)??);
+                let (start, end) = (self.number(50)??, self.number(51)??);
                 // Clockwise ones have their angles clockwise too.
                 let angles = if self.take(73)? == Some(0) { [-end, -start] } else { [start, end] };
-                Ok((radius >= 0.0).then_some(Shape::Arc { center, radius, angles: Some(angles) }))
+                (radius >= 0.0).then_some(Shape::Arc { center, radius, angles: Some(angles) })
             }
-            _ => Ok(None),
+            _ => None,
         }
     }
 }

@@ -10,7 +10,6 @@ const TEXINFO: usize = 6;
 /// Bytes of a texinfo; the texture's index is behind 8 floats.
 const TEXINFO_LEN: usize = 40;
 const TEXINFO_TEXTURE: usize = 32;
-/// Bytes of a texture's name.
 const NAME_LEN: usize = 16;
 
 /// A sound that faces make, by the place of its loudness in a leaf.
@@ -103,7 +102,6 @@ enum Face {
     Sounds(u8),
     /// Its texture cannot be looked up.
     NoTexture,
-    /// There is no such face.
     Missing,
 }
 

@@ -6,9 +6,7 @@ use crate::bytes::{i16_at, i32_at, u16_at, u32_at};
 /// Where the records of a kind are, and how many bytes one has.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Records {
-    /// Index of the lump in the directory.
     pub(super) lump: usize,
-    /// Bytes of a record.
     pub(super) len: usize,
 }
 
@@ -22,7 +20,6 @@ pub(super) enum Number {
 }
 
 impl Number {
-    /// Its value in a record, which is long enough.
     pub(super) fn of(self, record: &[u8]) -> i64 {
         match self {
             Self::U16(at) => u16_at(record, at).into(),
@@ -90,18 +87,13 @@ pub(super) enum FaceForm {
     Vertices { indices: usize },
 }
 
-/// A format of maps.
 #[derive(Debug)]
 pub(super) struct Layout {
-    /// The first bytes of a file.
     pub(super) magic: &'static [u8],
-    /// Its name, as users know it.
     pub(super) name: &'static str,
-    /// The game that it is of.
     pub(super) game: &'static str,
     /// What its lumps hold, in the order of the directory.
     pub(super) lump_names: &'static [&'static str],
-    /// Index of the visibility lump.
     pub(super) visibility: usize,
     pub(super) row_form: RowForm,
     /// Normal and distance as floats come first in a record.
@@ -134,7 +126,6 @@ pub(super) struct Layout {
     pub(super) face_form: FaceForm,
     /// Where a face has its texinfo.
     pub(super) face_texinfo: Option<Number>,
-    /// Indices of faces, which leafs list.
     pub(super) marks: Records,
 }
 

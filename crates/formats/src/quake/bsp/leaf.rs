@@ -78,7 +78,6 @@ impl BspLeaf {
     }
 }
 
-/// Reads leafs from a whole number of records.
 pub(super) fn parse_leafs(layout: &Layout, bytes: &[u8]) -> Result<Vec<BspLeaf>, Malformed> {
     let records = bytes.chunks_exact(layout.leafs.len).enumerate();
     records.map(|(leaf, record)| parse_leaf(layout, leaf, record)).collect()

@@ -138,7 +138,6 @@ impl BspFormat {
         self.layout().leafs.lump
     }
 
-    /// A lump as errors name it.
     fn label(self, index: usize) -> String {
         format!("lump {index} ({})", self.lump_names()[index])
     }
@@ -177,7 +176,6 @@ struct Bspx {
 const KNOWN: &str = "version 29 or 30, BSP2, 2PSB, IBSP and version 38, 46 or 47, or QBSP and version 38";
 /// Bytes of an entry of the BSPX directory: 24 of name, u32 place, u32 length.
 const BSPX_ENTRY: usize = 32;
-/// Bytes before the entries: `BSPX`, u32 number of lumps.
 const BSPX_HEADER: usize = 8;
 
 impl Bsp {

@@ -20,7 +20,6 @@ pub(super) struct Records<'b> {
 pub(super) type By = (usize, usize);
 
 impl Bsp {
-    /// The records of a lump.
     pub(super) fn records(&self, of: layout::Records) -> Result<Records<'_>, Malformed> {
         let bytes = self.format.whole_records(of.lump, of.len, self.lump_bytes(of.lump))?;
         Ok(Records { format: self.format, lump: of.lump, len: of.len, bytes })
@@ -28,12 +27,10 @@ impl Bsp {
 }
 
 impl<'b> Records<'b> {
-    /// Their number.
     pub(super) fn n(&self) -> usize {
         self.bytes.len() / self.len
     }
 
-    /// A record that is there.
     pub(super) fn get(&self, k: usize) -> &'b [u8] {
         &self.bytes[k * self.len..][..self.len]
     }

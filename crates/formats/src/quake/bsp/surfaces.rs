@@ -115,7 +115,6 @@ impl Bsp {
     }
 }
 
-/// The vertices of a map.
 pub(super) struct Vertices<'b> {
     pub(super) records: Records<'b>,
     pub(super) points: Vec<Point3>,

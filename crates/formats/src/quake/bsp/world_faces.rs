@@ -20,7 +20,6 @@ pub struct WorldFaces {
 }
 
 impl WorldFaces {
-    /// No faces yet.
     pub(super) fn new(first: u32) -> Self {
         Self { first, faces: vec![0], starts: vec![0], corners: Vec::new() }
     }

@@ -39,13 +39,7 @@ impl PrtDialect {
 
     /// Its name, as users know it.
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::Prt1 => "PRT1",
-            Self::Prt2 => "PRT2",
-            Self::Prt1Am => "PRT1-AM",
-            Self::HalfLife => "PRT of Half-Life",
-            Self::Quake3 => "PRT1 of Quake III",
-        }
+        ["PRT1", "PRT2", "PRT1-AM", "PRT of Half-Life", "PRT1 of Quake III"][self as usize]
     }
 }
 

@@ -16,7 +16,6 @@ pub(super) struct Token<'t> {
 const SHOWN: usize = 40;
 
 impl Token<'_> {
-    /// The error where something else should stand.
     pub(super) fn unexpected(&self, expected: impl Display) -> Malformed {
         self.place.error(match self.bytes {
             Some(_) => malformed!("expected {expected}, found {:?}", self.shown()),
@@ -24,7 +23,6 @@ impl Token<'_> {
         })
     }
 
-    /// The piece as an error shows it.
     pub(super) fn shown(&self) -> String {
         let bytes = self.bytes.unwrap_or_default();
         let cut = &bytes[..bytes.len().min(SHOWN)];

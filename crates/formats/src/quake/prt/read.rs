@@ -68,7 +68,6 @@ pub fn line_of_portal(text: &[u8], portal: usize) -> Option<usize> {
     read(portal).ok().map(|(place, _)| place.line)
 }
 
-/// What stands before the portals.
 struct Header {
     dialect: PrtDialect,
     n_clusters: u32,
@@ -82,7 +81,6 @@ struct Header {
 struct Reader<'t>(Cursor<'t>);
 
 impl<'t> Reader<'t> {
-    /// The first piece, and the header.
     fn header(&mut self) -> Result<(Token<'t>, Header), Malformed> {
         let magic = next(&mut self.0);
         let named = PrtDialect::ALL.into_iter().find(|d| d.magic().is_some_and(|m| magic.bytes == Some(m.as_bytes())));
@@ -168,7 +166,6 @@ impl<'t> Reader<'t> {
         Ok((place, hint))
     }
 
-    /// A solid face of Quake III.
     fn face(&mut self, face: usize, n_clusters: u32) -> Result<SolidFace, Malformed> {
         let (place, n_points) =
             self.number(format_args!("the number of points of solid face {face}"), point_range())?;
@@ -185,7 +182,6 @@ impl<'t> Reader<'t> {
         Ok(SolidFace { cluster, points })
     }
 
-    /// Three coordinates.
     fn point(&mut self, item: Arguments<'_>) -> Result<Point3, Malformed> {
         Ok([self.coordinate(item)?, self.coordinate(item)?, self.coordinate(item)?])
     }
@@ -249,10 +245,8 @@ impl<'t> Reader<'t> {
     }
 }
 
-/// Any number of 32 bits.
 const ANY: RangeInclusive<u64> = 0..=u32::MAX as u64;
 
-/// How many points a polygon may have.
 fn point_range() -> RangeInclusive<u64> {
     *PORTAL_POINTS.start() as u64..=*PORTAL_POINTS.end() as u64
 }

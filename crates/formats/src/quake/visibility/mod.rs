@@ -200,7 +200,6 @@ fn append_row(words: &[u64], n_columns: usize, out: &mut Vec<u8>) {
     rle::encode(&row, out);
 }
 
-/// A place in a lump, as files store it.
 fn place(at: usize) -> Result<u32, VisibilityError> {
     i32::try_from(at).map(i32::cast_unsigned).map_err(|_| VisibilityError::TooLarge { len: at })
 }

@@ -5,7 +5,6 @@ use crate::bytes::number_at;
 use crate::error::{Malformed, malformed};
 use sightlines_pvs::BitMatrix;
 
-/// Bytes before the rows.
 const HEADER: usize = 8;
 
 /// The lump of a matrix; rows have whole words of 64 bits, which is how the format's compilers write them.
@@ -26,7 +25,6 @@ pub(super) fn lump(seen: &BitMatrix) -> Result<VisibilityLump, VisibilityError> 
     Ok(VisibilityLump { bytes, leaf_rows: Vec::new(), ambient: Vec::new() })
 }
 
-/// The rows of a map; those of any width that is enough.
 pub(super) fn rows(bsp: &Bsp) -> Result<BitMatrix, Malformed> {
     let (lump, n) = (bsp.visibility(), bsp.n_clusters());
     let no_room = |n_clusters: u32, width: u32| {

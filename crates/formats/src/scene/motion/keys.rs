@@ -8,7 +8,6 @@ use serde_json::Value;
 use sightlines_cells::Point3;
 use sightlines_geometry::range::{Range, RangeBox, united};
 
-/// What animations do to a node.
 #[derive(Debug, Default)]
 pub(super) struct Keyed {
     pub(super) translation: Option<RangeBox>,
@@ -84,8 +83,8 @@ impl Motions<'_, '_> {
             let curve = sampler.and_then(|sampler| self.curve(sampler, path, n_targets));
             let keyed = self.keyed.entry(node).or_default();
             match (path, curve) {
-                ("translation", Some(Curve::Places(places))) => keyed.translation = merged(keyed.translation, places),
-                ("scale", Some(Curve::Places(places))) => keyed.scale = merged(keyed.scale, places),
+                ("translation", Some(Curve::Places(places))) => merge(&mut keyed.translation, places),
+                ("scale", Some(Curve::Places(places))) => merge(&mut keyed.scale, places),
                 ("rotation", Some(Curve::Turns(turns, arc))) => {
                     keyed.rotation.extend(turns);
                     keyed.n_turning += 1;
@@ -203,16 +202,16 @@ fn pointed(extensions: Option<&Value>) -> Option<Pointed> {
     let (what, index) = (parts.next()?, parts.next().and_then(|index| index.parse().ok()));
     Some(match (what, index) {
         ("nodes", Some(node)) => {
-            let path = match parts.next() {
-                Some("translation") => "translation",
-                Some("rotation") => "rotation",
-                Some("scale") => "scale",
-                Some("weights") => "weights",
-                Some(path) if path.starts_with("weights/") => "weights/",
-                Some("extensions/KHR_node_visibility/visible") => "visible",
-                _ => "anything",
-            };
-            Pointed::Node(node, path)
+            let path = parts.next().unwrap_or_default();
+            let known = ["translation", "rotation", "scale", "weights"].into_iter().find(|known| *known == path);
+            Pointed::Node(
+                node,
+                match path {
+                    "extensions/KHR_node_visibility/visible" => "visible",
+                    _ if path.starts_with("weights/") => "weights/",
+                    _ => known.unwrap_or("anything"),
+                },
+            )
         }
         ("meshes", Some(mesh)) => Pointed::Mesh(mesh),
         ("nodes" | "meshes", None) => return None,
@@ -220,8 +219,9 @@ fn pointed(extensions: Option<&Value>) -> Option<Pointed> {
     })
 }
 
-fn merged(before: Option<RangeBox>, more: RangeBox) -> Option<RangeBox> {
-    Some(before.map_or(more, |before| united(before, more)))
+/// Widens a box so that it holds another.
+pub(super) fn merge(all: &mut Option<RangeBox>, more: RangeBox) {
+    *all = Some(all.map_or(more, |all| united(all, more)));
 }
 
 /// A point with the rounding of how it was computed.

@@ -32,26 +32,21 @@ const MOST_STEPS: u64 = 1 << 28;
 /// More than the rounding of a few dozen operations on numbers up to 1.
 const ROUNDING: f64 = 1.0 / (1u64 << 44) as f64;
 
-/// Why a mesh moves.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Moves {
-    /// In a few words.
     pub(super) reason: String,
-    /// Whether it changes its shape.
     pub(super) deforms: bool,
 }
 
 /// The vertices of a primitive, as they are in its mesh.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Vertices<'m> {
-    /// Their indices in the accessors.
     pub(super) corners: &'m [usize],
-    /// Their positions.
     pub(super) positions: &'m [Point3],
 }
 
-/// A primitive that moves.
-#[derive(Debug, Clone, PartialEq)]
+/// A primitive that moves; anywhere, if nothing else is said.
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Moved {
     /// Its vertices at rest, in world coordinates, if they are not where its node puts them.
     pub(super) at_rest: Option<Vec<Point3>>,
@@ -66,7 +61,6 @@ struct Inherited {
     loose: Option<usize>,
     /// Whether an animation moves it.
     is_keyed: bool,
-    /// Whether an animation lets it come into sight, or go.
     appears: bool,
 }
 
@@ -187,7 +181,7 @@ impl<'a, 'b> Motions<'a, 'b> {
     pub(super) fn moved(&self, node: usize, mesh: &Mesh, primitive: &Primitive, vertices: Vertices<'_>) -> Moved {
         let n = &self.document.nodes[node];
         let Some(Morphed { ranges, at_rest }) = self.morphed(node, n, mesh, primitive, vertices) else {
-            return Moved { at_rest: None, within: None };
+            return Moved::default();
         };
         let moved = match n.skin {
             Some(skin) => self.skinned(node, skin, primitive, vertices, &ranges, at_rest.as_deref()),
@@ -199,7 +193,7 @@ impl<'a, 'b> Motions<'a, 'b> {
                 Some(Moved { at_rest, within })
             }
         };
-        let moved = moved.unwrap_or(Moved { at_rest: None, within: None });
+        let moved = moved.unwrap_or_default();
         // Physics, programs and what is not understood move things as they like.
         let is_loose = self.all_anywhere.is_some() || self.loose(node, mesh, primitive).is_some();
         if is_loose { Moved { within: None, ..moved } } else { moved }
@@ -211,14 +205,10 @@ impl<'a, 'b> Motions<'a, 'b> {
 
     /// Where a node is at rest.
     fn world(&self, node: usize) -> Option<Transform> {
-        let mut world = Transform::IDENTITY;
-        for above in self.chain(node) {
-            if self.is_torn[above] || !self.step(1) {
-                return None;
-            }
-            world = Transform::of_node(&self.document.nodes[above]).ok()?.after(&world);
-        }
-        Some(world)
+        self.chain(node).try_fold(Transform::IDENTITY, |world, above| {
+            let is_certain = !self.is_torn[above] && self.step(1);
+            is_certain.then(|| Transform::of_node(&self.document.nodes[above]).ok())?.map(|own| own.after(&world))
+        })
     }
 
     /// The box of some vertices of a node, wherever it and those above it move. What does not move below the first that

@@ -1,13 +1,13 @@
 //! Meshes that change their shape: morph targets and skins.
 
+use super::keys::merge;
 use super::{Motions, Moved, ROUNDING, Vertices};
 use crate::scene::accessor::{AccessorRole, Elements};
-use crate::scene::json::{Mesh, Node, Primitive};
+use crate::scene::json::{Mesh, Node, Primitive, as_index};
 use crate::scene::transform::Transform;
 use sightlines_cells::Point3;
 use sightlines_geometry::range::{Range, RangeBox, bounded, box_of, mapped, united};
 
-/// Vertices of a mesh with morph targets.
 pub(super) struct Morphed {
     /// Where they may be.
     pub(super) ranges: Vec<RangeBox>,
@@ -15,7 +15,6 @@ pub(super) struct Morphed {
     pub(super) at_rest: Option<Vec<Point3>>,
 }
 
-/// A joint of a skin.
 struct Joint {
     node: usize,
     /// From the mesh to the joint.
@@ -104,8 +103,7 @@ impl<'a> Motions<'a, '_> {
                     }
                     let joint = joints.get(j as usize)?;
                     let bound = mapped(&joint.bind.ranges(), *range);
-                    let entry = &mut boxes[j as usize];
-                    *entry = Some(entry.map_or(bound, |entry| united(entry, bound)));
+                    merge(&mut boxes[j as usize], bound);
                     let p = joint.at_rest.apply(at_rest.map_or(vertices.positions[k], |rest| rest[k]));
                     weights += w;
                     place = std::array::from_fn(|axis| place[axis] + w * p[axis]);
@@ -121,8 +119,7 @@ impl<'a> Motions<'a, '_> {
         let mut all: Option<RangeBox> = None;
         for (joint, bound) in joints.iter().zip(boxes) {
             let Some(bound) = bound else { continue };
-            let swept = self.swept_box(joint.node, bound)?;
-            all = Some(all.map_or(swept, |all| united(all, swept)));
+            merge(&mut all, self.swept_box(joint.node, bound)?);
         }
         // Weights that do not add up to 1 pull a vertex away from the hull: to the origin or to the node of the mesh, by how a
         // program computes it, or nowhere if it divides by the sum.
@@ -157,11 +154,10 @@ impl<'a> Motions<'a, '_> {
         nodes.iter().enumerate().map(joint).collect()
     }
 
-    /// The sets of joints and weights of a primitive.
     fn sets(&self, primitive: &Primitive) -> Option<Vec<(Elements<'a>, Elements<'a>)>> {
         let accessor = |name: String| {
             let value = primitive.attributes.others.get(&name)?;
-            Some(value.as_u64().and_then(|a| usize::try_from(a).ok()).and_then(|a| self.elements(a)))
+            Some(as_index(value).and_then(|a| self.elements(a)))
         };
         let mut sets = Vec::new();
         for k in 0.. {

@@ -21,7 +21,6 @@ pub(super) struct Original<'a> {
     pub(super) buffers: &'a Buffers<'a>,
 }
 
-/// An accessor with bytes of its own.
 #[derive(Debug)]
 pub(super) struct NewAccessor {
     /// Without a buffer view.
@@ -140,10 +139,7 @@ impl<'a> Copies<'a> {
     /// Gives up before memory does: a small file may name the same bytes very often.
     fn count_bytes(&mut self, more: usize) -> Result<(), RewriteError> {
         self.n_bytes = self.n_bytes.saturating_add(more);
-        if u32::try_from(self.n_bytes).is_err() {
-            return Err(RewriteError::too_large(self.n_bytes));
-        }
-        Ok(())
+        RewriteError::check_size(self.n_bytes)
     }
 }
 

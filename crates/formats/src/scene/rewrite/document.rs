@@ -4,11 +4,15 @@
 
 use super::error::RewriteError;
 use crate::error::malformed;
+use crate::scene::json;
 use serde_json::{Map, Value};
 use std::fmt::Display;
 
 /// What has members.
 pub(super) type Object = Map<String, Value>;
+
+/// What is done with each index of a kind.
+pub(super) type Visit<'a> = &'a mut dyn FnMut(&mut Value) -> Result<(), RewriteError>;
 
 pub(super) fn form(place: impl Display, expected: &str) -> RewriteError {
     malformed!("{place} is not {expected}").into()
@@ -20,7 +24,7 @@ pub(super) fn as_object(value: &mut Value, place: impl Display) -> Result<&mut O
 
 /// An index into a list of the document.
 pub(super) fn as_index(value: &Value, place: impl Display) -> Result<usize, RewriteError> {
-    value.as_u64().and_then(|n| usize::try_from(n).ok()).ok_or_else(|| form(place, "an index"))
+    json::as_index(value).ok_or_else(|| form(place, "an index"))
 }
 
 /// A member that is a list; empty if there is none.
@@ -32,25 +36,27 @@ pub(super) fn list<'v>(object: &'v mut Object, key: &str) -> Result<&'v mut [Val
     }
 }
 
+/// Puts a list where there may be one; glTF has no empty ones.
+pub(super) fn put_list(object: &mut Object, key: &str, list: Vec<Value>) {
+    object.remove(key);
+    if !list.is_empty() {
+        object.insert(key.to_owned(), Value::Array(list));
+    }
+}
+
 /// The accessors of a primitive's attributes and of its morph targets, with the names of the attributes.
 pub(super) fn attributes(primitive: &mut Value) -> Result<Vec<(&str, &mut Value)>, RewriteError> {
-    let primitive = as_object(primitive, "primitive")?;
     let mut found = Vec::new();
-    for (key, value) in primitive {
-        match (key.as_str(), value) {
-            (_, Value::Null) => {}
-            ("attributes", value) => {
-                let named = as_object(value, "attributes")?;
-                found.extend(named.iter_mut().map(|(name, accessor)| (name.as_str(), accessor)));
-            }
-            ("targets", Value::Array(targets)) => {
-                for target in targets {
-                    let named = as_object(target, "target")?;
-                    found.extend(named.iter_mut().map(|(name, accessor)| (name.as_str(), accessor)));
-                }
-            }
+    for (key, value) in as_object(primitive, "primitive")? {
+        let (lists, place) = match (key.as_str(), value) {
+            (_, Value::Null) => continue,
+            ("attributes", value) => (std::slice::from_mut(value), "attributes"),
+            ("targets", Value::Array(targets)) => (targets.as_mut_slice(), "target"),
             ("targets", _) => return Err(form("targets", "a list")),
-            _ => {}
+            _ => continue,
+        };
+        for named in lists {
+            found.extend(as_object(named, place)?.iter_mut().map(|(name, accessor)| (name.as_str(), accessor)));
         }
     }
     found.retain(|(_, accessor)| !accessor.is_null());
@@ -58,10 +64,7 @@ pub(super) fn attributes(primitive: &mut Value) -> Result<Vec<(&str, &mut Value)
 }
 
 /// Visits each index of an accessor that the format itself has.
-pub(super) fn for_each_accessor(
-    document: &mut Object,
-    visit: &mut dyn FnMut(&mut Value) -> Result<(), RewriteError>,
-) -> Result<(), RewriteError> {
+pub(super) fn for_each_accessor(document: &mut Object, visit: Visit<'_>) -> Result<(), RewriteError> {
     for (k, animation) in list(document, "animations")?.iter_mut().enumerate() {
         for sampler in list(as_object(animation, format_args!("animations[{k}]"))?, "samplers")? {
             let sampler = as_object(sampler, format_args!("animations[{k}].samplers"))?;
@@ -85,22 +88,12 @@ pub(super) fn for_each_accessor(
     Ok(())
 }
 
-fn visit_member(
-    object: &mut Object,
-    key: &str,
-    visit: &mut dyn FnMut(&mut Value) -> Result<(), RewriteError>,
-) -> Result<(), RewriteError> {
-    match object.get_mut(key) {
-        None | Some(Value::Null) => Ok(()),
-        Some(value) => visit(value),
-    }
+fn visit_member(object: &mut Object, key: &str, visit: Visit<'_>) -> Result<(), RewriteError> {
+    object.get_mut(key).filter(|value| !value.is_null()).map_or(Ok(()), visit)
 }
 
 /// Visits each index of a buffer view in a value, extensions included, extras not.
-pub(super) fn for_each_view(
-    value: &mut Value,
-    visit: &mut dyn FnMut(&mut Value) -> Result<(), RewriteError>,
-) -> Result<(), RewriteError> {
+pub(super) fn for_each_view(value: &mut Value, visit: Visit<'_>) -> Result<(), RewriteError> {
     match value {
         Value::Array(list) => list.iter_mut().try_for_each(|value| for_each_view(value, visit)),
         Value::Object(object) => object.iter_mut().try_for_each(|(key, value)| match key.as_str() {

@@ -25,4 +25,9 @@ impl RewriteError {
     pub(super) fn too_large(len: usize) -> Self {
         malformed!("{len} bytes are too many for a GLB").into()
     }
+
+    /// Refuses so many bytes.
+    pub(super) fn check_size(len: usize) -> Result<(), Self> {
+        u32::try_from(len).map(|_| ()).map_err(|_| Self::too_large(len))
+    }
 }

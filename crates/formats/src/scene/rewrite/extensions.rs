@@ -32,14 +32,18 @@ pub(super) fn any_unknown(document: &mut Object) -> Result<bool, RewriteError> {
         }
     }
     let mut any = false;
-    for (key, value) in document {
-        match key.as_str() {
-            "bufferViews" | "buffers" | "extras" => {}
-            "extensions" => any |= unknown_among(value, key)?,
-            _ => any |= unknown_in(value, key)?,
-        }
+    for (key, value) in document.iter().filter(|(key, _)| !matches!(key.as_str(), "bufferViews" | "buffers")) {
+        any |= unknown_at(key, value, key)?;
     }
     Ok(any)
+}
+
+fn unknown_at(key: &str, value: &Value, place: &str) -> Result<bool, RewriteError> {
+    match key {
+        "extras" => Ok(false),
+        "extensions" => unknown_among(value, place),
+        _ => unknown_in(value, place),
+    }
 }
 
 fn unknown_in(value: &Value, place: &str) -> Result<bool, RewriteError> {
@@ -52,11 +56,7 @@ fn unknown_in(value: &Value, place: &str) -> Result<bool, RewriteError> {
         }
         Value::Object(object) => {
             for (key, value) in object {
-                match key.as_str() {
-                    "extras" => {}
-                    "extensions" => any |= unknown_among(value, place)?,
-                    _ => any |= unknown_in(value, place)?,
-                }
+                any |= unknown_at(key, value, place)?;
             }
         }
         _ => {}

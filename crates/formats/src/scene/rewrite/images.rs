@@ -7,7 +7,6 @@ use crate::scene::buffers::load_file;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
-/// The content of a file, and the images that are in it.
 #[derive(Debug)]
 pub(super) struct OutsideImage {
     pub(super) bytes: Vec<u8>,

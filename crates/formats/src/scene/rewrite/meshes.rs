@@ -1,10 +1,11 @@
 //! Other triangles for meshes, and other meshes for nodes.
 
 use super::copies::{Copies, Original};
-use super::document::{Object, as_index, as_object, attributes, form, list};
+use super::document::{Object, as_index, as_object, attributes, form, list, put_list};
 use super::error::RewriteError;
 use super::variants::{Plan, Variant, Variants};
 use crate::scene::accessor::{AccessorRole, Elements};
+use crate::scene::build::Compact;
 use crate::scene::primitive::read_indices;
 use crate::scene::source::GltfSource;
 use serde_json::{Value, json};
@@ -74,10 +75,7 @@ pub(super) fn change(
         k += 1;
         !gone.contains(&(k - 1))
     });
-    // glTF has no empty lists.
-    if !meshes.is_empty() {
-        root.insert("meshes".to_owned(), Value::Array(meshes));
-    }
+    put_list(root, "meshes", meshes);
     Ok(())
 }
 
@@ -160,29 +158,14 @@ fn primitives_for(
             Plan::Keep => primitives.push(kept[k].clone()),
             Plan::Drop => {}
             Plan::Triangles(triangles) => {
-                let (used, indices) = compact(&corners[k], triangles);
-                primitives.push(copies.primitive(&before["primitives"][k], &used, &indices, true, &place(k))?);
+                let in_file = triangles.iter().map(|triangle| triangle.map(|v| corners[k][v as usize]));
+                let mesh = Compact::new(in_file.clone().flatten().collect(), in_file);
+                let (before, indices) = (&before["primitives"][k], mesh.triangles.as_flattened());
+                primitives.push(copies.primitive(before, &mesh.corners, indices, true, &place(k))?);
             }
         }
     }
     Ok(primitives)
-}
-
-/// The corners that triangles use, ascending, and the triangles as indices into them.
-fn compact(corners: &[usize], triangles: &[[u32; 3]]) -> (Vec<usize>, Vec<u32>) {
-    let mut place = vec![None; corners.len()];
-    for &v in triangles.iter().flatten() {
-        place[v as usize] = Some(0);
-    }
-    let mut used = Vec::new();
-    for (place, &corner) in place.iter_mut().zip(corners) {
-        if let Some(place) = place {
-            // A primitive has fewer than 2^32 corners.
-            *place = used.len() as u32;
-            used.push(corner);
-        }
-    }
-    (used, triangles.iter().flatten().filter_map(|&v| place[v as usize]).collect())
 }
 
 /// Puts the meshes of nodes; returns the nodes that have none any more.

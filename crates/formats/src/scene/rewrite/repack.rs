@@ -1,7 +1,9 @@
 //! Accessors, buffer views and one buffer, without what nothing refers to.
 
 use super::copies::{Layout, NewAccessor, Original, dense};
-use super::document::{Object, as_index, as_object, attributes, for_each_accessor, for_each_view, list};
+use super::document::{
+    Object, Visit, as_index, as_object, attributes, for_each_accessor, for_each_view, list, put_list,
+};
 use super::error::RewriteError;
 use super::images::{OutsideImage, put};
 use crate::error::Within;
@@ -88,17 +90,11 @@ pub(super) fn repack(
     }
     let buffers = if packed.binary.is_empty() { Vec::new() } else { vec![json!({"byteLength": packed.binary.len()})] };
     for (key, list) in [("accessors", accessors), ("bufferViews", packed.views), ("buffers", buffers)] {
-        // glTF has no empty lists.
-        if list.is_empty() {
-            root.remove(key);
-        } else {
-            root.insert(key.to_owned(), Value::Array(list));
-        }
+        put_list(root, key, list);
     }
     Ok(packed.binary)
 }
 
-/// What becomes of an accessor.
 #[derive(Debug)]
 enum Fate {
     Gone,
@@ -129,9 +125,13 @@ fn fates(
     let elements =
         |accessor: usize| Elements::new(original.document, original.buffers, accessor, AccessorRole::Attribute).ok();
     let is_partial = |accessor: usize, whole: &[bool]| -> Result<bool, RewriteError> {
-        let mut views = Vec::new();
-        each_view_of(&old[accessor], &mut |view| views.push(view))?;
-        Ok(views.iter().any(|&v| partial.get(v) == Some(&true) && !whole[v]))
+        let mut is_partial = false;
+        for_each_view(&mut old[accessor].clone(), &mut |value| {
+            let view = as_index(value, "bufferView")?;
+            is_partial |= partial.get(view) == Some(&true) && !whole[view];
+            Ok(())
+        })?;
+        Ok(is_partial)
     };
     // What is not understood stays where it is.
     for accessor in (0..old.len()).filter(|&a| used[a]) {
@@ -150,9 +150,7 @@ fn fates(
                 let all = 0..elements.count;
                 // A small file may name the same bytes very often.
                 n_bytes = n_bytes.saturating_add(elements.count.saturating_mul(elements.size));
-                if u32::try_from(n_bytes).is_err() {
-                    return Err(RewriteError::too_large(n_bytes));
-                }
+                RewriteError::check_size(n_bytes)?;
                 dense(old, accessor, &elements, all, elements.count, layout).map(Fate::New)
             }
             _ => Ok(Fate::Same),
@@ -161,7 +159,6 @@ fn fates(
     (0..old.len()).map(fate).collect()
 }
 
-/// Which accessors are attributes of vertices.
 fn vertex_accessors(root: &mut Object, n_accessors: usize) -> Result<Vec<bool>, RewriteError> {
     let mut is_vertices = vec![false; n_accessors];
     for mesh in list(root, "meshes")?.iter_mut().filter_map(Value::as_object_mut) {
@@ -178,10 +175,7 @@ fn vertex_accessors(root: &mut Object, n_accessors: usize) -> Result<Vec<bool>, 
 }
 
 /// Visits the buffer views that anything but accessors refers to.
-fn outside_of_accessors(
-    root: &mut Object,
-    visit: &mut dyn FnMut(&mut Value) -> Result<(), RewriteError>,
-) -> Result<(), RewriteError> {
+fn outside_of_accessors(root: &mut Object, visit: Visit<'_>) -> Result<(), RewriteError> {
     for (key, value) in root {
         if !matches!(key.as_str(), "accessors" | "bufferViews" | "buffers" | "extras") {
             for_each_view(value, visit)?;
@@ -190,15 +184,8 @@ fn outside_of_accessors(
     Ok(())
 }
 
-fn each_view_of(accessor: &Value, visit: &mut dyn FnMut(usize)) -> Result<(), RewriteError> {
-    // Accessors are small, and references are only visited in what may be changed.
-    for_each_view(&mut accessor.clone(), &mut |value| {
-        visit(as_index(value, "bufferView")?);
-        Ok(())
-    })
-}
-
 fn views_of(accessor: &Value, marks: &mut [bool]) -> Result<(), RewriteError> {
+    // Accessors are small, and references are only visited in what may be changed.
     for_each_view(&mut accessor.clone(), &mut |value| mark(value, marks))
 }
 
@@ -209,7 +196,6 @@ fn mark(value: &mut Value, marks: &mut [bool]) -> Result<(), RewriteError> {
     Ok(())
 }
 
-/// The binary chunk, and the buffer views into it.
 #[derive(Debug, Default)]
 struct Packed {
     binary: Vec<u8>,
@@ -222,9 +208,7 @@ impl Packed {
         let len = self.binary.len();
         let offset = len + (rest + 8 - len % 8) % 8;
         let end = offset.saturating_add(bytes.len());
-        if u32::try_from(end).is_err() {
-            return Err(RewriteError::too_large(end));
-        }
+        RewriteError::check_size(end)?;
         self.binary.resize(offset, 0);
         self.binary.extend_from_slice(bytes);
         json.insert("buffer".to_owned(), json!(0));

@@ -46,14 +46,10 @@ impl<'a> Variants<'a> {
         let mut known: BTreeMap<(usize, Vec<Plan<'a>>), usize> = BTreeMap::new();
         let mut add = |mesh: usize, plans: Vec<Plan<'a>>, node: Option<usize>| {
             let variants = by_mesh.entry(mesh).or_default();
-            let k = match known.get(&(mesh, plans.clone())) {
-                Some(&k) => k,
-                None => {
-                    known.insert((mesh, plans.clone()), variants.len());
-                    variants.push(Variant { plans, nodes: Vec::new() });
-                    variants.len() - 1
-                }
-            };
+            let k = *known.entry((mesh, plans.clone())).or_insert(variants.len());
+            if k == variants.len() {
+                variants.push(Variant { plans, nodes: Vec::new() });
+            }
             variants[k].nodes.extend(node);
         };
         let n_primitives = |mesh: usize| document.meshes[mesh].primitives.len();
@@ -70,13 +66,8 @@ impl<'a> Variants<'a> {
                 let is_area = document.meshes[origin.mesh].primitives[k].mode >= FIRST_OF_TRIANGLES;
                 match &triangles[origin.first_object + k] {
                     None => Plan::Keep,
-                    Some(list) if list.is_empty() => {
-                        if is_area {
-                            Plan::Drop
-                        } else {
-                            Plan::Keep
-                        }
-                    }
+                    Some(list) if list.is_empty() && is_area => Plan::Drop,
+                    Some(list) if list.is_empty() => Plan::Keep,
                     Some(list) if origin.mirrors => Plan::Triangles(list.iter().map(|&[a, b, c]| [a, c, b]).collect()),
                     Some(list) => Plan::Triangles(Cow::Borrowed(list)),
                 }
