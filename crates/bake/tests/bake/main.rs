@@ -3,6 +3,7 @@
 mod any_input;
 mod backends;
 mod bakeable;
+mod corridors;
 mod doubled;
 mod explain;
 mod eye_level;
@@ -15,6 +16,7 @@ mod line_space;
 mod live;
 mod mirrors;
 mod object_parts;
+mod one_sided;
 mod places;
 mod plan;
 mod quake;
