@@ -1,9 +1,7 @@
 //! The arguments common to all commands.
 
-use crate::command::{Done, Verbosity};
 use crate::commands::*;
-use crate::error::Result;
-use clap::{Parser, Subcommand};
+use clap::Parser;
 
 /// Precomputes which parts of a scene can be seen from which others, exactly and conservatively
 #[derive(Debug, Parser)]
@@ -27,18 +25,17 @@ pub(crate) struct Arguments {
     version: Option<bool>,
 }
 
-/// Makes the enum of all commands, and what runs one.
+/// Makes the enum of some commands, and what runs one.
 macro_rules! commands {
-    ($($(#[$about:meta])* $name:ident($args:ty) => $run:path,)*) => {
+    (enum $enum:ident: $($(#[$about:meta])* $name:ident($args:ty) => $run:path,)*) => {
         /// What to do.
-        #[derive(Debug, Subcommand)]
-        pub(crate) enum Command {
+        #[derive(Debug, clap::Subcommand)]
+        pub(crate) enum $enum {
             $($(#[$about])* $name($args),)*
         }
 
-        impl Command {
-            /// Does it.
-            pub(crate) fn run(&self, verbosity: Verbosity) -> Result<Done> {
+        impl $enum {
+            pub(crate) fn run(&self, verbosity: crate::command::Verbosity) -> crate::error::Result<crate::command::Done> {
                 match self {
                     $(Self::$name(args) => $run(args, verbosity),)*
                 }
@@ -46,8 +43,10 @@ macro_rules! commands {
         }
     };
 }
+pub(crate) use commands;
 
 commands! {
+    enum Command:
     /// Build the visibility table of a floor plan, a Doom map, a scene in space, or a Quake map
     Build(Box<build::BuildArgs>) => build::run,
     /// Write the REJECT lumps of a WAD, or of all WADs in a folder; all other lumps stay as they are

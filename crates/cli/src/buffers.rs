@@ -43,7 +43,6 @@ pub(crate) struct BufferArgs {
 }
 
 impl BufferArgs {
-    /// As a request has them.
     pub(crate) fn request(&self) -> BufferRequest {
         let Self { planes, texels, occluders, no_carry, sheets, backend } = *self;
         let carry = no_carry.then_some(false);

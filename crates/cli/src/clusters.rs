@@ -41,14 +41,8 @@ impl fmt::Display for Clusters {
 
 impl Clusters {
     /// The pairs that are undecided, one on each line.
-    pub(crate) fn undecided_pairs(&self) -> impl fmt::Display + '_ {
-        struct Pairs<'p>(&'p [[u32; 2]]);
-        impl fmt::Display for Pairs<'_> {
-            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                self.0.iter().try_for_each(|[a, b]| writeln!(f, "  clusters {a} and {b}"))
-            }
-        }
-        Pairs(&self.summary.undecided)
+    pub(crate) fn undecided_pairs(&self) -> String {
+        self.summary.undecided.iter().map(|[a, b]| format!("  clusters {a} and {b}\n")).collect()
     }
 
     /// How many there are, with their portals.
@@ -69,7 +63,6 @@ impl Clusters {
         self.summary.see_seconds
     }
 
-    /// Time of the search, in words.
     pub(crate) fn time(&self) -> String {
         seconds_of(self.summary.see_seconds)
     }

@@ -90,7 +90,6 @@ impl Done {
         Self { answer, print: Box::new(move || print().and_then(|()| last())) }
     }
 
-    /// Prints, and returns the answer.
     pub(crate) fn print(self) -> Result<Answer> {
         (self.print)()?;
         Ok(self.answer)

@@ -3,6 +3,7 @@
 use crate::error::{Result, bail};
 use crate::numbers::coordinates;
 use crate::region::refuse_reversed;
+use crate::view::lifted;
 use sightlines::pvs::DoorBox;
 use std::str::FromStr;
 
@@ -31,7 +32,6 @@ impl FromStr for DoorArg {
         }
         let max = min.split_off(min.len() / 2);
         refuse_reversed(&min, &max)?;
-        let lifted = |p: &[f64]| std::array::from_fn(|k| p.get(k).copied().unwrap_or(0.0));
         let door = DoorBox { name: name.to_owned(), min: lifted(&min), max: lifted(&max) };
         Ok(Self { door, n_dimensions: min.len() })
     }

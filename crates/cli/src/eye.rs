@@ -38,7 +38,6 @@ impl EyeArgs {
         self.up.unwrap_or(named).0
     }
 
-    /// The camera.
     pub(crate) fn camera(&self, up: Point3) -> Result<Camera> {
         let camera = Camera::look_at(self.eye, self.look_at, up, self.fov, self.size);
         camera.and_then(|camera| camera.with_depths(self.near, self.far)).map_err(|error| {

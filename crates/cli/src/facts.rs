@@ -4,19 +4,17 @@ use crate::output::{JsonSchema, Serialize, seconds_of};
 use sightlines::formats::scene::{Axis, LengthUnit, SceneFormat, SceneInfo};
 use std::fmt;
 
-/// Times to cut and to see.
 pub(crate) fn times(cut_seconds: f64, what: &str, see_seconds: f64) -> String {
     let [cut, see] = [cut_seconds, see_seconds].map(seconds_of);
     format!("{cut} to cut the {what}, {see} to compute visibility")
 }
 
-/// The name of an axis.
 pub(crate) fn axis(axis: Axis) -> &'static str {
-    match axis {
-        Axis::X => "x",
-        Axis::Y => "y",
-        Axis::Z => "z",
-    }
+    ["x", "y", "z"][axis.idx()]
+}
+
+pub(crate) fn axis_named(text: &str) -> Option<Axis> {
+    Axis::ALL.into_iter().find(|&named| axis(named) == text)
 }
 
 /// What a file states about its scene, for people: format, axis, unit.

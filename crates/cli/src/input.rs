@@ -172,7 +172,6 @@ pub(crate) fn doom(path: &Path, name: Option<&str>) -> Result<DoomMap> {
     Ok(DoomMap::parse(&wad, lumps).map_err(|error| ReadError::new(path, error))?)
 }
 
-/// Names the WAD in which no map was chosen.
 fn which_map(path: &Path, error: MapChoiceError) -> anyhow::Error {
     let file = path.display();
     match error {
@@ -186,7 +185,6 @@ fn which_map(path: &Path, error: MapChoiceError) -> anyhow::Error {
     }
 }
 
-/// Names, of many the first.
 fn list(names: &[String]) -> String {
     const MOST: usize = 40;
     let shown = names.iter().take(MOST).map(String::as_str).collect::<Vec<_>>().join(", ");

@@ -53,9 +53,7 @@ impl ResumeArgs {
     pub(crate) fn is_given(&self) -> bool {
         self.resume || self.state.is_some()
     }
-}
 
-impl ResumeArgs {
     fn open(&self, inputs: &Inputs, outputs: &[&Path], key: Key) -> Result<Journal> {
         let path = self.path(outputs.first().copied().unwrap_or(Path::new("out")));
         if inputs.paths().chain(outputs.iter().copied()).any(|other| output::is_one_place(other, &path)) {
@@ -172,19 +170,13 @@ impl<'a> Kept<'a> {
         outputs: &[&Path],
         identify: impl FnOnce() -> Identity,
     ) -> Result<Self> {
+        if !matches!(keeping, Keeping::Nowhere) {
+            inputs.check()?;
+        }
         let (journal, job) = match keeping {
-            Keeping::File(args) => {
-                inputs.check()?;
-                (Some(args.open(inputs, outputs, identify().key())?), None)
-            }
-            Keeping::FileIfItFits(args) => {
-                inputs.check()?;
-                (args.open_if_it_fits(outputs, identify().key()), None)
-            }
-            Keeping::Job(open) => {
-                inputs.check()?;
-                (None, Some(open(&identify())?))
-            }
+            Keeping::File(args) => (Some(args.open(inputs, outputs, identify().key())?), None),
+            Keeping::FileIfItFits(args) => (args.open_if_it_fits(outputs, identify().key()), None),
+            Keeping::Job(open) => (None, Some(open(&identify())?)),
             Keeping::Nowhere => (None, None),
         };
         let outputs = outputs.iter().map(|path| path.to_path_buf()).collect();
@@ -227,59 +219,45 @@ impl<'a> Kept<'a> {
     }
 
     /// After the end: results are of no use any more if all went well. Otherwise, if the program was interrupted, they are kept; returns what to say of that.
-    pub(crate) fn finish(self, is_done: bool) -> Option<Interrupted> {
+    pub(crate) fn finish(self, is_done: bool) -> Option<String> {
         if let Some(failure) = self.journal.as_ref().and_then(Journal::failure) {
             tracing::warn!("{}; a run that is stopped cannot go on from there", plain(&failure));
         }
         if is_done {
-            if let Some(Err(error)) = self.job.map(JobStore::end_writing) {
-                tracing::warn!("{}", plain(&error.to_string()));
-            }
-            if let Some(Err(error)) = self.journal.map(Journal::remove) {
-                tracing::warn!("{}", plain(&error.to_string()));
-            }
+            warn_of_failure(self.job.map(JobStore::end_writing));
+            warn_of_failure(self.journal.map(Journal::remove));
             return None;
         }
         if !interrupt::requested() {
             return None;
         }
         let state = self.journal.and_then(|journal| {
-            if let Err(error) = journal.flush() {
-                tracing::warn!("{}", plain(&error.to_string()));
-            }
+            warn_of_failure(Some(journal.flush()));
             journal.is_in_file().then(|| journal.path().to_owned())
         });
-        if let Some(Err(error)) = self.job.map(JobStore::flush) {
-            tracing::warn!("{}", plain(&error.to_string()));
-        }
-        Some(Interrupted { state })
+        warn_of_failure(self.job.map(JobStore::flush));
+        Some(how_to_go_on(state.as_deref()))
     }
 }
 
-/// The program was interrupted.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Interrupted {
-    /// What a later run can go on from.
-    pub(crate) state: Option<PathBuf>,
+/// Says what went wrong with results, which is no reason to stop.
+fn warn_of_failure<E: ToString>(done: Option<Result<(), E>>) {
+    if let Some(Err(error)) = done {
+        tracing::warn!("{}", plain(&error.to_string()));
+    }
 }
 
-impl std::fmt::Display for Interrupted {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match (interrupt::memory(), &self.state) {
-            (None, Some(path)) => {
-                write!(f, "interrupted; the same command with --resume goes on from {}", path.display())
-            }
-            (None, None) => f.write_str("interrupted; nothing was written"),
-            (Some(why), Some(path)) => write!(
-                f,
-                "stopped: {why}; with --resume and a larger --memory, or fewer --threads, the same command goes on from {}; \
-                 `job plan` shares it among processes",
-                path.display()
-            ),
-            (Some(why), None) => write!(
-                f,
-                "stopped: {why}; nothing was written. Try a larger --memory, fewer --threads, or `job plan`, which shares the work among processes"
-            ),
-        }
+/// That the program was interrupted, and how a later run goes on from what is in a file.
+fn how_to_go_on(state: Option<&Path>) -> String {
+    match (interrupt::memory(), state.map(Path::display)) {
+        (None, Some(path)) => format!("interrupted; the same command with --resume goes on from {path}"),
+        (None, None) => "interrupted; nothing was written".to_owned(),
+        (Some(why), Some(path)) => format!(
+            "stopped: {why}; with --resume and a larger --memory, or fewer --threads, the same command goes on from {path}; \
+             `job plan` shares it among processes"
+        ),
+        (Some(why), None) => format!(
+            "stopped: {why}; nothing was written. Try a larger --memory, fewer --threads, or `job plan`, which shares the work among processes"
+        ),
     }
 }

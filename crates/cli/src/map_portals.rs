@@ -32,7 +32,6 @@ pub(crate) fn portals_for(bsp: &Bsp, map: &Path, named: Option<&Path>) -> Result
     Ok(MapPortals { prt, path, text, is_made: false })
 }
 
-/// Makes the portals of a map.
 pub(crate) fn made(bsp: &Bsp, map: &Path) -> Result<MapPortals> {
     let made = portals_of_map(bsp).map_err(|error| cannot_be_made(map, &error))?;
     let text = write_prt(&made.prt).into_bytes();
@@ -62,7 +61,6 @@ impl MapPortals {
         if self.is_made { MADE } else { self.prt.dialect().name() }
     }
 
-    /// Says on standard error that there was no portal file.
     pub(crate) fn announce(&self) {
         if self.is_made {
             let n = count(self.prt.n_portals() as u64, "portal");

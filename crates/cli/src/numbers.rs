@@ -2,18 +2,24 @@
 
 use crate::error::{Result, anyhow};
 use sightlines::geometry::check_coordinate;
+use std::str::FromStr;
 use std::time::Duration;
+
+/// A number that fits, or that the text is not what it should be.
+pub(crate) fn number<T: FromStr>(text: &str, fits: impl FnOnce(&T) -> bool, what: &str) -> Result<T, String> {
+    text.parse().ok().filter(fits).ok_or_else(|| format!("not {what}"))
+}
 
 /// Number of threads of a command; 0 stands for one for each core.
 pub(crate) fn threads(text: &str) -> Result<usize, String> {
-    const MOST: usize = 1024;
-    match text.parse::<usize>() {
-        Ok(n) if n <= MOST => Ok(n),
-        _ => Err(format!("not a whole number from 0 to {MOST}")),
-    }
+    at_most(text, 1024)
 }
 
-/// Coordinates, separated by commas.
+/// A whole number with a bound.
+pub(crate) fn at_most(text: &str, most: usize) -> Result<usize, String> {
+    number(text, |n| *n <= most, &format!("a whole number from 0 to {most}"))
+}
+
 pub(crate) fn coordinates(text: &str) -> Result<Vec<f64>> {
     let coordinate = |part: &str| -> Result<f64> {
         let x: f64 = part.trim().parse().map_err(|_| anyhow!("'{}' is not a number", part.trim()))?;
@@ -22,28 +28,18 @@ pub(crate) fn coordinates(text: &str) -> Result<Vec<f64>> {
     text.split(',').map(coordinate).collect()
 }
 
-/// A share of a whole.
 pub(crate) fn share(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(x) if (0.0..=1.0).contains(&x) => Ok(x),
-        _ => Err("not a number from 0 to 1".to_owned()),
-    }
+    number(text, |x| (0.0..=1.0).contains(x), "a number from 0 to 1")
 }
 
 /// A length in scene units.
 pub(crate) fn size(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(x) if x.is_finite() && x >= 0.0 => Ok(x),
-        _ => Err("not a number from 0 on".to_owned()),
-    }
+    number(text, |x: &f64| x.is_finite() && *x >= 0.0, "a number from 0 on")
 }
 
 /// A length in scene units that is one.
 pub(crate) fn above_zero(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(x) if x.is_finite() && x > 0.0 => Ok(x),
-        _ => Err("not a number above 0".to_owned()),
-    }
+    number(text, |x: &f64| x.is_finite() && *x > 0.0, "a number above 0")
 }
 
 /// A duration: a number of seconds, or one with the unit s, m or h.

@@ -53,7 +53,20 @@ pub(crate) fn unless_none(n: usize, words: impl FnOnce(usize) -> String) -> Stri
     if n == 0 { String::new() } else { words(n) }
 }
 
-/// Writes a file as a whole.
+/// Whether a name ends so, in any case of letters.
+pub(crate) fn has_ending(path: &Path, ending: &str) -> bool {
+    path.extension().is_some_and(|own| own.eq_ignore_ascii_case(ending))
+}
+
+/// Refuses a name that does not end as what is written is called.
+pub(crate) fn check_ending(path: &Path, what: &str, ending: &str) -> Result<()> {
+    if has_ending(path, ending) {
+        return Ok(());
+    }
+    let (path, format) = (path.display(), ending.to_uppercase());
+    Err(anyhow!("{path}: the {what} is written as {format}; give a name that ends in .{ending}"))
+}
+
 pub(crate) fn save(path: &Path, bytes: &[u8]) -> Result<()> {
     tracing::debug!("writing {} bytes to {}", bytes.len(), path.display());
     Ok(atomic_write(path, bytes)?)
@@ -81,17 +94,14 @@ pub(crate) fn check(inputs: &[&Path], outputs: &[&Path]) -> Result<()> {
     Ok(())
 }
 
-/// A folder that cannot be made.
 pub(crate) fn cannot_be_made(path: &Path, error: io::Error) -> anyhow::Error {
     anyhow!("{}: cannot be made: {error}", path.display())
 }
 
-/// An output that is an input.
 pub(crate) fn same_file(path: &Path) -> anyhow::Error {
     anyhow!("{}: the output would replace the input", path.display())
 }
 
-/// Two outputs for one file.
 pub(crate) fn two_outputs(path: &Path) -> anyhow::Error {
     anyhow!("{}: two outputs would be written to this file", path.display())
 }

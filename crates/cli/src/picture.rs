@@ -40,12 +40,10 @@ impl PictureKind {
     }
 }
 
-/// The picture of a plan's table that came from `source`.
 pub(crate) fn draw_plan(source: &Path, table: &Table, options: &DrawOptions<'_>) -> Result<String> {
     plan_svg(table, options).in_file(source)
 }
 
-/// Writes a picture, of the kind that the file's name ends in.
 pub(crate) fn save_picture(svg: &str, out: &Path) -> Result<()> {
     match PictureKind::of(out)? {
         PictureKind::Svg => output::save(out, svg.as_bytes()),
@@ -63,16 +61,7 @@ pub(crate) fn up_of(table: &Table) -> Up {
     }
 }
 
-/// The height of the middle of a cell.
 pub(crate) fn middle(table: &Table, id: CellId, up: Up) -> f64 {
     let cell = &table.cells()[id.idx()];
     0.5 * cell.min[up.axis()] + 0.5 * cell.max[up.axis()]
-}
-
-/// Refuses a name that does not end in `.png`.
-pub(crate) fn check_png_name(path: &Path) -> Result<()> {
-    if !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png")) {
-        bail!("{}: the picture is written as PNG; give a name that ends in .png", path.display());
-    }
-    Ok(())
 }

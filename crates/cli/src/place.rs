@@ -2,6 +2,7 @@
 
 use crate::error::{Result, bail};
 use crate::numbers::coordinates;
+use crate::view::lifted;
 use sightlines::geometry::Point2;
 use sightlines::pvs::{CellId, Table};
 use std::path::Path;
@@ -30,12 +31,6 @@ impl std::fmt::Display for Point {
 }
 
 impl Point {
-    /// The coordinates, if they are as many as the table has dimensions.
-    pub(crate) fn of(&self, table: &Table, path: &Path) -> Result<&[f64]> {
-        self.coordinates(table.dimension(), path)
-    }
-
-    /// The coordinates, if they are as many as `dimension`.
     pub(crate) fn coordinates(&self, dimension: u8, path: &Path) -> Result<&[f64]> {
         let found = self.0.len();
         if usize::from(dimension) != found {
@@ -44,26 +39,17 @@ impl Point {
         Ok(&self.0)
     }
 
-    /// The point with z = 0 in a plane, if it has as many coordinates as the table has dimensions.
-    pub(crate) fn lifted(&self, table: &Table, path: &Path) -> Result<[f64; 3]> {
-        let coordinates = self.of(table, path)?;
-        Ok(std::array::from_fn(|k| coordinates.get(k).copied().unwrap_or(0.0)))
-    }
-
     /// The point in the plane, if it is one.
-    pub(crate) fn planar(&self, table: &Table, path: &Path) -> Result<Point2> {
-        let coordinates = self.of(table, path)?;
-        Ok(Point2::new(coordinates[0], coordinates[1]))
+    pub(crate) fn planar(&self, path: &Path) -> Result<Point2> {
+        self.coordinates(2, path).map(|at| Point2::new(at[0], at[1]))
     }
 
     /// The point in space, if it is one.
-    pub(crate) fn spatial(&self, table: &Table, path: &Path) -> Result<[f64; 3]> {
-        let coordinates = self.of(table, path)?;
-        Ok([coordinates[0], coordinates[1], coordinates[2]])
+    pub(crate) fn spatial(&self, path: &Path) -> Result<[f64; 3]> {
+        self.coordinates(3, path).map(lifted)
     }
 }
 
-/// Checks that a table has a cell.
 pub(crate) fn cell(id: u32, table: &Table, path: &Path) -> Result<CellId> {
     let n_cells = table.n_cells();
     if id as usize >= n_cells {
@@ -98,7 +84,10 @@ impl Place {
     pub(crate) fn cells(&self, table: &Table, path: &Path) -> Result<Vec<CellId>> {
         match self {
             Self::Cell(id) => Ok(vec![cell(*id, table, path)?]),
-            Self::Point(point) => Ok(table.place_at(point.lifted(table, path)?).cells().to_vec()),
+            Self::Point(point) => {
+                let at = point.coordinates(table.dimension(), path)?;
+                Ok(table.place_at(lifted(at)).cells().to_vec())
+            }
         }
     }
 }

@@ -11,7 +11,6 @@ use sightlines::geometry::Segment2;
 use sightlines::pvs::Table;
 use std::path::Path;
 
-/// The lines of a plan that block sight.
 pub(crate) fn walls(plan: &Plan) -> Vec<Segment2> {
     plan.lines().iter().filter(|line| line.opaque).map(|line| Segment2::new(line.a, line.b)).collect()
 }
@@ -31,7 +30,6 @@ impl GapArg {
         [("--gap", self.gap.is_some())]
     }
 
-    /// The plan of a file with its walls joined.
     pub(crate) fn join(self, path: &Path, plan: Plan) -> Result<Plan> {
         let joined = self.gap.map_or(Gap::OfFile, Gap::Width).join(&plan).in_file(path)?;
         Ok(joined.unwrap_or(plan))

@@ -23,7 +23,6 @@ pub(crate) fn difference(table: &Table, scene: &Scene) -> Option<String> {
     has_changed.then(|| "its triangles differ from those of this file".to_owned())
 }
 
-/// The error of another scene than that of the table.
 pub(crate) fn other(path: &Path, what: impl std::fmt::Display) -> anyhow::Error {
     anyhow!("{}: the table was made of another scene: {what}", path.display())
 }

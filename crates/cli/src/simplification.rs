@@ -84,7 +84,6 @@ fn choice_about(choice: MethodChoice) -> &'static str {
 }
 
 impl HowArgs {
-    /// The share that is allowed.
     pub(crate) fn budget(&self) -> f64 {
         self.budget
     }
@@ -103,7 +102,6 @@ impl HowArgs {
         Self { threads: 0, ..self.clone() }
     }
 
-    /// The options, for views in at least so many parts.
     pub(crate) fn options(&self, n_parts: usize) -> SimplifyOptions {
         let standard = SimplifyOptions::default();
         let Self { budget, collapse, flat, ignore_mirrors, threads, .. } = *self;

@@ -49,7 +49,6 @@ pub(crate) struct SurfaceArgs {
 }
 
 impl SurfaceArgs {
-    /// These arguments as options of readers.
     pub(crate) fn options(&self) -> SceneReadOptions {
         let Self { opaque, see_through, still, scene_name, .. } = self.clone();
         SceneReadOptions { opaque, see_through, still, backs: self.backs().unwrap_or_default(), scene: scene_name }
@@ -82,7 +81,6 @@ impl SurfaceArgs {
         options
     }
 
-    /// Each argument by its name, and whether it was given.
     pub(crate) fn given(&self) -> [(&'static str, bool); 5] {
         [
             ("--see-through", !self.see_through.is_empty()),
@@ -144,7 +142,7 @@ pub(crate) struct Surfaces {
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub(crate) struct SeenSurfaces {
     #[serde(flatten)]
-    all: Surfaces,
+    pub(crate) all: Surfaces,
     /// If triangles that hide have one side: how many of them viewers in the cells of the table can see from behind.
     #[serde(skip_serializing_if = "Option::is_none")]
     backs: Option<SeenBacks>,
@@ -248,13 +246,6 @@ impl fmt::Display for Surfaces {
             )?;
         }
         Ok(())
-    }
-}
-
-impl SeenSurfaces {
-    /// As [`Surfaces::brief`].
-    pub(crate) fn brief(&self) -> Vec<String> {
-        self.all.brief()
     }
 }
 

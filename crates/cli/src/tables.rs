@@ -22,7 +22,6 @@ pub(crate) enum Opened {
 }
 
 impl Opened {
-    /// How it was made, by keys.
     pub(crate) fn info(&self) -> &[(String, String)] {
         match self {
             Self::Plain(cells) => cells.table().info(),
@@ -48,7 +47,6 @@ pub(crate) fn packed(path: &Path, cache_bytes: usize) -> Result<Packed<File>> {
 /// Bytes of blocks of a packed table that are kept while it is unpacked, or asked again and again.
 pub(crate) const CACHE: usize = 64 << 20;
 
-/// Reads a table of either kind.
 pub(crate) fn read(path: &Path) -> Result<Table> {
     match input::kind_of(path)? {
         Some(InputKind::Packed) => packed(path, CACHE)?.to_table().in_file(path),
@@ -56,7 +54,6 @@ pub(crate) fn read(path: &Path) -> Result<Table> {
     }
 }
 
-/// Parses the class of a packed table.
 pub(crate) fn size_class() -> impl TypedValueParser<Value = SizeClass> {
     one_of(&SizeClass::ALL, SizeClass::name, |_| "")
 }
@@ -79,7 +76,6 @@ pub(crate) trait Cells:
         CellSource::dimension(self)
     }
 
-    /// Numbers of cells and of objects.
     fn counts(&self) -> [usize; 2] {
         [CellSource::n_cells(self), CellSource::n_objects(self)]
     }

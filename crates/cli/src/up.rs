@@ -1,6 +1,7 @@
 //! The axis that points up in a scene, as an argument.
 
 use crate::error::Result;
+use crate::facts::axis_named;
 use crate::input::refuse;
 use sightlines::formats::Input;
 use sightlines::formats::scene::Axis;
@@ -16,12 +17,7 @@ pub(crate) struct UpArgs {
 }
 
 fn axis(text: &str) -> Result<Axis, String> {
-    match text {
-        "x" => Ok(Axis::X),
-        "y" => Ok(Axis::Y),
-        "z" => Ok(Axis::Z),
-        _ => Err("not x, y or z".to_owned()),
-    }
+    axis_named(text).ok_or_else(|| "not x, y or z".to_owned())
 }
 
 impl UpArgs {

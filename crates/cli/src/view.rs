@@ -1,7 +1,9 @@
 //! The view of a viewer as arguments: the method and the lens.
 
 use crate::error::Result;
+use crate::facts::axis_named;
 use crate::input::refuse;
+use crate::numbers;
 use crate::tables::Cells;
 use sightlines::eye_to_cell::{Method, UnknownMethod, View, ViewError};
 use sightlines::formats::scene::Axis;
@@ -80,7 +82,6 @@ impl LensArgs {
         self.fov.is_some() || self.aspect.is_some()
     }
 
-    /// The up direction that is given.
     pub(crate) fn up(&self) -> Option<Up> {
         self.up
     }
@@ -131,11 +132,9 @@ pub(crate) struct Up(pub(crate) [f64; 3]);
 impl Up {
     /// An axis.
     pub(crate) const fn axis(axis: Axis) -> Self {
-        match axis {
-            Axis::X => Self([1.0, 0.0, 0.0]),
-            Axis::Y => Self([0.0, 1.0, 0.0]),
-            Axis::Z => Self([0.0, 0.0, 1.0]),
-        }
+        let mut up = [0.0; 3];
+        up[axis.idx()] = 1.0;
+        Self(up)
     }
 }
 
@@ -143,9 +142,8 @@ impl FromStr for Up {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let axes = [("x", [1.0, 0.0, 0.0]), ("y", [0.0, 1.0, 0.0]), ("z", [0.0, 0.0, 1.0])];
-        if let Some((_, up)) = axes.into_iter().find(|(name, _)| *name == text) {
-            return Ok(Self(up));
+        if let Some(axis) = axis_named(text) {
+            return Ok(Self::axis(axis));
         }
         let wrong = || "not x, y, z or a vector of three comma-separated numbers".to_owned();
         let numbers: Vec<f64> = text.split(',').map(|x| number(x).ok_or_else(wrong)).collect::<Result<_, _>>()?;
@@ -160,10 +158,7 @@ fn number(text: &str) -> Option<f64> {
 }
 
 fn degrees(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(x) if x > 0.0 && x <= 360.0 => Ok(x),
-        _ => Err("not a number above 0 and at most 360".to_owned()),
-    }
+    numbers::number(text, |x| *x > 0.0 && *x <= 360.0, "a number above 0 and at most 360")
 }
 
 fn aspect(text: &str) -> Result<f64, String> {
@@ -180,10 +175,7 @@ fn aspect(text: &str) -> Result<f64, String> {
 
 /// How many mirrors a line may meet one after the other.
 pub(crate) fn bounces(text: &str) -> Result<usize, String> {
-    match text.parse::<usize>() {
-        Ok(n) if n <= MOST_BOUNCES => Ok(n),
-        _ => Err(format!("not a whole number from 0 to {MOST_BOUNCES}")),
-    }
+    numbers::at_most(text, MOST_BOUNCES)
 }
 
 #[cfg(test)]

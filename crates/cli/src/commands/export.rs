@@ -7,7 +7,6 @@ use sightlines::report::{export_json, write_json};
 use std::io::Write;
 use std::path::PathBuf;
 
-/// Arguments of `export`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct ExportArgs {
     /// The table

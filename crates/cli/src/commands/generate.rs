@@ -1,8 +1,9 @@
 //! `generate`: scenes to try things on.
 
+use crate::args::commands;
 use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::Result;
-use crate::glb::{self, save_glb};
+use crate::glb::save_glb;
 use crate::output::{self, JsonSchema, Serialize, bytes, cannot_be_made, count};
 use sightlines::geometry::Aabb;
 use sightlines::scenes::{CityOptions, CityTile, TowerOptions, city_tiles, tower, tower_rooms};
@@ -11,25 +12,22 @@ use std::fmt;
 use std::fs;
 use std::path::PathBuf;
 
-/// Arguments of `generate`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct GenerateArgs {
     #[command(subcommand)]
     what: What,
 }
 
-/// What to generate.
-#[derive(Debug, clap::Subcommand)]
-enum What {
+commands! {
+    enum What:
     /// A furnished office tower in metres, y up, as GLB
-    Tower(TowerArgs),
+    Tower(TowerArgs) => write_tower,
     /// A city in metres, y up, in tiles: a folder with the plan world.json, and for each tile a GLB and a file of view cells
-    World(WorldArgs),
+    World(WorldArgs) => write_world,
 }
 
-/// Arguments of `generate world`.
 #[derive(Debug, clap::Args)]
-struct WorldArgs {
+pub(crate) struct WorldArgs {
     /// Seed of the generator
     #[arg(long, help_heading = "World", value_name = "N", default_value_t = CityOptions::default().seed)]
     seed: u64,
@@ -52,9 +50,8 @@ struct WorldArgs {
     json: JsonArg,
 }
 
-/// Arguments of `generate tower`.
 #[derive(Debug, clap::Args)]
-struct TowerArgs {
+pub(crate) struct TowerArgs {
     /// Seed of the generator
     #[arg(long, help_heading = "Tower", value_name = "N", default_value_t = TowerOptions::default().seed)]
     seed: u64,
@@ -84,14 +81,11 @@ struct TowerArgs {
     json: JsonArg,
 }
 
-pub(crate) fn run(args: &GenerateArgs, _: Verbosity) -> Result<Done> {
-    match &args.what {
-        What::Tower(args) => write_tower(args),
-        What::World(args) => write_world(args),
-    }
+pub(crate) fn run(args: &GenerateArgs, verbosity: Verbosity) -> Result<Done> {
+    args.what.run(verbosity)
 }
 
-fn write_world(args: &WorldArgs) -> Result<Done> {
+fn write_world(args: &WorldArgs, _: Verbosity) -> Result<Done> {
     let WorldArgs { seed, blocks, per_tile, detail, border, ref output, json } = *args;
     let options = CityOptions { seed, blocks_x: blocks, blocks_z: blocks, detail };
     let tiles = city_tiles(options, per_tile)?;
@@ -139,8 +133,8 @@ impl fmt::Display for WorldOutcome {
     }
 }
 
-fn write_tower(args: &TowerArgs) -> Result<Done> {
-    glb::check_name(&args.output)?;
+fn write_tower(args: &TowerArgs, _: Verbosity) -> Result<Done> {
+    output::check_ending(&args.output, "scene", "glb")?;
     output::check(&[], &[&args.output])?;
     let options = TowerOptions {
         seed: args.seed,

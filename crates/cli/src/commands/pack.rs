@@ -10,7 +10,6 @@ use sightlines::pvs::Table;
 use std::fmt;
 use std::path::PathBuf;
 
-/// Arguments of `pack`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct PackArgs {
     /// The table
@@ -31,7 +30,6 @@ pub(crate) struct PackArgs {
     json: JsonArg,
 }
 
-/// Arguments of `unpack`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct UnpackArgs {
     /// The packed table

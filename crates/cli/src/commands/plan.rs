@@ -14,7 +14,6 @@ use sightlines::formats::{Input, InputKind, SceneFile};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// Arguments of `plan`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct PlanCommandArgs {
     #[arg(value_name = "IN", help = crate::input::with_formats(

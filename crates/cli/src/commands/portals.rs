@@ -8,7 +8,6 @@ use sightlines::formats::quake::{LeafClusters, read_bsp};
 use std::fmt;
 use std::path::PathBuf;
 
-/// Arguments of `portals`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct PortalsArgs {
     /// The map: of Quake, Half-Life, Hexen II, Quake II, Qbism, Quake III or Wolfenstein

@@ -8,7 +8,6 @@ use sightlines::relevance::{ReachOptions, Reaches, Ways, WhoMoves};
 use std::fmt;
 use std::path::PathBuf;
 
-/// Arguments of `relevance`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct RelevanceArgs {
     /// The table

@@ -1,7 +1,7 @@
 //! What is heard in a map of Quake II, from the visibility that the map has.
 
 use super::console::{Console, Kind};
-use crate::error::{ErrorAbout, Result, anyhow, bail};
+use crate::error::{ErrorAbout, Result, bail};
 use crate::output::{self, bytes};
 use sightlines::formats::quake::visibility::lump_with_new_hearing;
 use sightlines::formats::quake::{BspFormat, read_bsp};
@@ -16,15 +16,11 @@ pub(super) fn renew(map: &Path, console: &Console) -> Result<()> {
         bail!("{}: this is a map of {format}: -phsonly is for Quake II", path.display(), format = bsp.format().name());
     }
     console.say(Kind::Progress, &format!("map        {}: {}", map.display(), bsp.format().name()))?;
-    let lump = match lump_with_new_hearing(&bsp) {
-        Ok(Some(lump)) => lump,
-        Ok(None) => {
-            return Err(anyhow!(
-                "{}: the map has no visibility yet, of which -phsonly makes what is heard: run it without that option first",
-                path.display()
-            ));
-        }
-        Err(source) => return Err(anyhow!("{}: {source}", path.display())),
+    let Some(lump) = lump_with_new_hearing(&bsp).in_file(&path)? else {
+        bail!(
+            "{}: the map has no visibility yet, of which -phsonly makes what is heard: run it without that option first",
+            path.display()
+        );
     };
     let written = bsp.with_visibility(&lump).in_file(&path)?;
     output::save(map, &written)?;

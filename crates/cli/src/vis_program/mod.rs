@@ -23,7 +23,6 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-/// The options, as long ones.
 pub(crate) fn command() -> clap::Command {
     VisProgramArgs::command()
 }
@@ -60,7 +59,6 @@ fn run(args: &VisProgramArgs, map: &Path, console: &Console) -> Result<Answer> {
     Ok(Answer::Yes)
 }
 
-/// Computes what is visible.
 fn see(args: &VisProgramArgs, map: &Path, console: &Console) -> Result<()> {
     let mut vis = VisArgs::of_map(map.to_owned());
     (vis.fast, vis.threads, vis.resume.save_after) = (args.fast, args.threads, args.save_after);
@@ -125,7 +123,6 @@ fn elapsed(time: Duration) -> String {
 }
 
 impl VisProgramArgs {
-    /// The sounds that are turned off.
     fn silenced(&self) -> Vec<Sound> {
         let off = |sound: &Sound| {
             self.noambient
@@ -139,7 +136,6 @@ impl VisProgramArgs {
         Sound::ALL.into_iter().filter(off).collect()
     }
 
-    /// The options given that have no effect.
     fn without_effect(&self) -> Vec<&'static str> {
         let given = [
             (self.targetchecks.is_some(), "-targetchecks has no effect: it belongs to another method"),

@@ -48,7 +48,6 @@ impl Chosen {
         Self { method: choice.method, reasons: choice.reasons, facts }
     }
 
-    /// The methods, in words.
     pub(super) fn method(&self) -> &str {
         &self.method
     }

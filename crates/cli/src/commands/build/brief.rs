@@ -45,11 +45,6 @@ pub(super) fn of_cells(n_cells: usize, noun: &str, n_portals: usize) -> String {
 }
 
 impl Built {
-    /// The three lines, and those about what was asked for besides the table.
-    pub(super) fn brief(&self) -> impl fmt::Display + '_ {
-        BriefBuilt(self)
-    }
-
     /// Whether the table of a scene is worth it.
     pub(super) fn worth(&self) -> Option<String> {
         let viewer = match &self.outcome {
@@ -69,7 +64,7 @@ impl Built {
             Outcome::Map(outcome) => outcome.brief(),
             Outcome::Rows(outcome) => outcome.brief(),
         };
-        self.surfaces.iter().flat_map(|surfaces| surfaces.brief()).for_each(|kind| {
+        self.surfaces.iter().flat_map(|surfaces| surfaces.all.brief()).for_each(|kind| {
             brief.taken += ", ";
             brief.taken += &kind;
         });
@@ -81,22 +76,19 @@ impl Built {
         brief.cells += &Surroundings(&self.surroundings).brief();
         brief
     }
-}
 
-struct BriefBuilt<'a>(&'a Built);
-
-impl fmt::Display for BriefBuilt<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Brief { kind, taken, method, cells, out, n_bytes, visible, seconds: time } = self.0.three_lines();
+    /// The three lines, and those about what was asked for besides the table.
+    pub(super) fn write_brief(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Brief { kind, taken, method, cells, out, n_bytes, visible, seconds: time } = self.three_lines();
         writeln!(f, "{kind:<14} {taken}")?;
         writeln!(f, "method         {method}; {cells}")?;
         let (size, time) = (bytes(n_bytes as u64), seconds_of(time));
         writeln!(f, "wrote          {out}, {size}, in {time}: {visible}")?;
-        if let Some(sentence) = self.0.worth() {
+        if let Some(sentence) = self.worth() {
             writeln!(f, "worth it       {sentence}")?;
         }
-        self.0.given_doors.iter().try_for_each(|door| write!(f, "{door}"))?;
-        self.0.stab.iter().try_for_each(|stab| write!(f, "{stab}"))?;
-        self.0.proofs.iter().try_for_each(|proofs| write!(f, "{proofs}"))
+        self.given_doors.iter().try_for_each(|door| write!(f, "{door}"))?;
+        self.stab.iter().try_for_each(|stab| write!(f, "{stab}"))?;
+        self.proofs.iter().try_for_each(|proofs| write!(f, "{proofs}"))
     }
 }

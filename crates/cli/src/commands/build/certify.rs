@@ -25,19 +25,16 @@ pub(super) struct CertifyArgs {
 }
 
 impl CertifyArgs {
-    /// Whether proofs are wanted.
     pub(super) fn is_given(&self) -> bool {
         self.certify.is_some()
     }
 
-    /// Refuses a file of proofs that is the input or the table.
     pub(super) fn check(&self, input: &Path, table: &Path) -> Result<()> {
         let Some(file) = self.file(table) else { return Ok(()) };
         output::check(&[input], &[&file])?;
         if file == table { Err(output::same_file(&file)) } else { Ok(()) }
     }
 
-    /// The file of proofs, if they are wanted.
     pub(super) fn file(&self, table: &Path) -> Option<PathBuf> {
         let given = self.certify.as_ref()?;
         Some(given.clone().unwrap_or_else(|| table.with_extension("cert")))

@@ -29,7 +29,6 @@ impl Clock {
         self.limit.map(|_| self as &dyn Budget)
     }
 
-    /// Warns if something was not decided in time.
     pub(super) fn warn_of(&self, path: &Path, report: &Report) {
         match report {
             Report::Scene(report) => self.warn(path, report.limit, report.cut_time),

@@ -46,7 +46,6 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// Arguments of `build`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct BuildArgs {
     #[arg(value_name = "IN", help = crate::input::with_formats(
@@ -116,7 +115,7 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
     let BuildArgs { input: path, output: out, .. } = args;
     crate::threads::use_only(args.bake.threads);
     let clock = limit::Clock::new(args.time_limit);
-    if out.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) {
+    if output::has_ending(out, "json") {
         bail!(
             "{}: `build` writes a table, which is not JSON: name it {}, and then: sightlines export {} -o {}",
             out.display(),
@@ -125,7 +124,7 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
             out.display()
         );
     }
-    if args.class.is_some() && !packed::is_packed(out) {
+    if args.class.is_some() && !output::has_ending(out, packed::ENDING) {
         bail!("{}: --class is for packed tables, whose names end in .pvz", out.display());
     }
     args.memory.watch();
@@ -173,26 +172,13 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
     let proofs = args.certify.file(out);
     let outputs: Vec<&Path> = std::iter::once(out).chain(&proofs).map(PathBuf::as_path).collect();
     let kept = Kept::open(keeping, &inputs, &outputs, || args.identity(&inputs, &source, recipe))?;
-    let made = || -> Result<Built> {
+    let made = || -> Result<_> {
         let runtime = Runtime { units: kept.units(), ..runtime };
         let plan = announce::Plan::new(&source.content, recipe, auto.as_ref(), args.time_limit);
         if let Some(file) = args.by_rows(&source, recipe, class) {
             let outcome =
                 packed::write_rows(path, file, (&prepared, &runtime), plan, (out, show_progress, &clock), &kept)?;
-            return Ok(Built {
-                auto,
-                outcome: Outcome::Rows(Box::new(outcome)),
-                viewers: None,
-                surroundings,
-                placed,
-                surfaces: None,
-                given_doors: Vec::new(),
-                stab: None,
-                proofs: None,
-                peak_bytes: memory::peak_bytes(),
-                is_chosen,
-                verbose,
-            });
+            return Ok((Outcome::Rows(Box::new(outcome)), None, None, Vec::new(), None, None, memory::peak_bytes()));
         }
         let baked = bake_announced(path, &prepared, &runtime, plan, show_progress);
         let baked = baked.map_err(|error| source.failed(path, error))?;
@@ -210,24 +196,15 @@ pub(crate) fn make(args: &BuildArgs, keeping: Keeping<'_>, show_progress: bool, 
             (Bakeable::Scene(file), BakeInput::Scene(scene, _)) => Some(Surfaces::new(file).seen(&baked.table, scene)),
             _ => None,
         };
-        let peak_bytes = memory::peak_bytes();
-        Ok(Built {
-            auto,
-            outcome,
-            viewers,
-            surroundings,
-            placed,
-            surfaces,
-            given_doors,
-            stab,
-            proofs,
-            peak_bytes,
-            is_chosen,
-            verbose,
-        })
+        Ok((outcome, viewers, surfaces, given_doors, stab, proofs, memory::peak_bytes()))
     };
     let made = made();
-    kept.end(made)
+    let (outcome, viewers, surfaces, given_doors, stab, proofs, peak_bytes) = kept.end(made)?;
+    #[rustfmt::skip]
+    let built = Built {
+        auto, outcome, viewers, surroundings, placed, surfaces, given_doors, stab, proofs, peak_bytes, is_chosen, verbose,
+    };
+    Ok(built)
 }
 
 /// What to do where there is no room for a build.
@@ -285,13 +262,12 @@ impl BuildArgs {
         }
         let needs = source.content.needs(recipe, by_rows(class));
         let threads = self.memory.threads(self.bake.threads, needs).map_err(|source| {
-            let advice = if packed::is_packed(&self.output) { FEWER_CELLS } else { BY_ROWS };
+            let advice = if output::has_ending(&self.output, packed::ENDING) { FEWER_CELLS } else { BY_ROWS };
             anyhow!("{}: {source}; {advice}", self.input.display())
         })?;
         Ok((class, threads))
     }
 
-    /// Refuses options that mean nothing for an input.
     fn refuse_meaningless(&self, input: &Input) -> Result<()> {
         if !matches!(input, Input::Bsp(_)) {
             refuse(&self.input, &[("--prt", self.prt.is_some())], "Quake maps", "none")?;
@@ -306,14 +282,10 @@ impl BuildArgs {
 
     /// Refuses what tables by from-region queries cannot have.
     fn refuse_for_regions(&self, source: &Source, recipe: &Recipe) -> Result<()> {
-        if !matches!(source.content, Bakeable::Scene(_)) || !recipe.takes_regions() {
-            return Ok(());
-        }
-        if recipe.has_given_cells() {
-            let of_trees = [("--stab-trees", self.stab_trees.is_some())];
-            refuse(&self.input, &of_trees, "cells with portals", "to have boxes as cells")?;
-        }
-        Ok(())
+        let is_scene = matches!(source.content, Bakeable::Scene(_));
+        let has_boxes = is_scene && recipe.takes_regions() && recipe.has_given_cells();
+        let of_trees = [("--stab-trees", has_boxes && self.stab_trees.is_some())];
+        refuse(&self.input, &of_trees, "cells with portals", "to have boxes as cells")
     }
 }
 
@@ -343,11 +315,11 @@ impl Outcome {
                 Self::Regions(Box::new(region::Outcome::new(out, file, recipe.has_given_cells(), table, did)))
             }
             (Bakeable::Portals(prt), Report::Clusters(did)) => {
-                Self::Portals(portals::Outcome::new(out, prt, fast, did, n_bytes).verbose(verbose))
+                Self::Portals(portals::Outcome::new(out, prt, fast, did, n_bytes, verbose))
             }
             (Bakeable::Map(bsp, prt), Report::Map(did)) => {
                 let format = if source.is_made { MADE } else { prt.dialect().name() };
-                Self::Map(quake::Outcome::new(out, bsp, format, fast, did, n_bytes).verbose(verbose))
+                Self::Map(quake::Outcome::new(out, bsp, format, fast, did, n_bytes, verbose))
             }
             _ => unreachable!("the report of a bake is of the kind of its input"),
         }
@@ -407,7 +379,7 @@ pub(crate) struct Built {
 impl fmt::Display for Built {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if !self.verbose {
-            return write!(f, "{}", self.brief());
+            return self.write_brief(f);
         }
         self.auto.iter().try_for_each(|auto| write!(f, "{auto}"))?;
         write!(f, "{}", self.outcome)?;

@@ -43,7 +43,6 @@ pub(crate) struct BakeArgs {
 }
 
 impl BakeArgs {
-    /// These arguments as a request; all others are not named.
     pub(super) fn request(&self) -> BakeRequest {
         let Self { subdivide, tau, view_region, detail_below, gap, max_cells, keep_solid, fast, threads: _ } = *self;
         BakeRequest {

@@ -19,14 +19,11 @@ use sightlines::pvs::Table;
 use std::fmt;
 use std::path::Path;
 
-/// Whether an output is packed, by its name.
-pub(super) fn is_packed(out: &Path) -> bool {
-    out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("pvz"))
-}
+/// How the name of a packed output ends.
+pub(super) const ENDING: &str = "pvz";
 
-/// The bytes of a table under a name.
 pub(super) fn bytes_of(table: &Table, path: &Path, out: &Path, class: Option<SizeClass>) -> Result<Vec<u8>> {
-    if !is_packed(out) {
+    if !output::has_ending(out, ENDING) {
         return Ok(table.to_bytes());
     }
     let options = PackOptions { class, ..PackOptions::default() };
@@ -43,10 +40,9 @@ pub(super) fn of_rows<'s>(
     let n = recipe.cells.most()?;
     let is_large = class.map_or(n > MAX_SMALL_CELLS as u64, |class| class == SizeClass::Large);
     let is_by_cell = matches!(recipe.method, SceneMethod::FromRegion(_));
-    (is_large && is_by_cell && is_packed(out)).then_some(file)
+    (is_large && is_by_cell && output::has_ending(out, ENDING)).then_some(file)
 }
 
-/// Bakes and writes a table row by row.
 pub(super) fn write_rows(
     path: &Path,
     file: &SceneFile,

@@ -9,7 +9,6 @@ use sightlines::report::Summary;
 use std::fmt;
 use std::path::Path;
 
-/// Warns of what is only approximate.
 pub(super) fn warn(path: &Path, report: &PlanReport) {
     let say = |n: usize, noun: &str, what: &str| {
         if n > 0 {
@@ -84,11 +83,6 @@ impl Outcome {
         }
     }
 
-    /// Cells, portals, visible pairs, and what has to be drawn.
-    pub(crate) fn facts(&self) -> impl fmt::Display + '_ {
-        &self.table
-    }
-
     pub(super) fn brief(&self) -> Brief {
         let table = &self.table;
         let map = self.map.as_ref().map_or("a plan".to_owned(), |name| format!("map {name}"));
@@ -107,12 +101,10 @@ impl Outcome {
         }
     }
 
-    /// The name of the subdivision that was used.
     pub(crate) fn subdivision(&self) -> &'static str {
         if self.subdivide == "kd" { "a k-d tree" } else { "a constrained triangulation" }
     }
 
-    /// Time to cut and to see.
     pub(crate) fn times(&self) -> String {
         times(self.cut_seconds, "plan", self.see_seconds)
     }
@@ -127,7 +119,7 @@ impl fmt::Display for Outcome {
             let joints = count(self.n_joints as u64, "joint");
             writeln!(f, "precision      {joints} where walls miss each other by no more than {:.2e} units", self.gap)?;
         }
-        write!(f, "{}", self.facts())?;
+        write!(f, "{}", self.table)?;
         writeln!(f, "time           {}", self.times())
     }
 }

@@ -8,7 +8,6 @@ use sightlines::formats::Prt;
 use std::fmt;
 use std::path::Path;
 
-/// Prints the method, and what it found about the clusters.
 pub(super) fn write_method(
     f: &mut fmt::Formatter<'_>,
     fast: bool,
@@ -23,7 +22,6 @@ pub(super) fn write_method(
     Ok(())
 }
 
-/// The method, in words.
 const fn method(fast: bool) -> &'static str {
     if fast { "the first, coarse bound only" } else { "exact stabbing of convex portals" }
 }
@@ -55,31 +53,33 @@ pub(crate) struct Outcome {
     clusters: Clusters,
     /// Bytes of the table.
     n_bytes: usize,
+    /// Whether pairs that are undecided are listed.
     #[serde(skip)]
     verbose: bool,
 }
 
 impl Outcome {
-    pub(crate) fn new(out: &Path, prt: &Prt, fast: bool, found: &ClusterVisibility, n_bytes: usize) -> Self {
+    pub(crate) fn new(
+        out: &Path,
+        prt: &Prt,
+        fast: bool,
+        found: &ClusterVisibility,
+        n_bytes: usize,
+        verbose: bool,
+    ) -> Self {
         Self {
             out: out.display().to_string(),
             portal_format: prt.dialect().name(),
             fast,
             clusters: Clusters::new(found),
             n_bytes,
-            verbose: false,
+            verbose,
         }
     }
 
     pub(super) fn brief(&self) -> Brief {
         let taken = format!("a {} file", self.portal_format);
         of_clusters(taken, self.fast, &self.clusters, &self.out, self.n_bytes)
-    }
-
-    /// Lists pairs that are undecided.
-    pub(crate) fn verbose(mut self, verbose: bool) -> Self {
-        self.verbose = verbose;
-        self
     }
 }
 

@@ -52,6 +52,7 @@ pub(crate) struct Outcome {
     slack: f64,
     /// Bytes of the table.
     n_bytes: usize,
+    /// Whether pairs that are undecided are listed.
     #[serde(skip)]
     verbose: bool,
 }
@@ -64,6 +65,7 @@ impl Outcome {
         fast: bool,
         report: &MapReport,
         n_bytes: usize,
+        verbose: bool,
     ) -> Self {
         let WorldSummary { n_faces, n_unlisted_faces, n_listed, n_reaching, n_planes, slack, .. } = report.world;
         Self {
@@ -79,7 +81,7 @@ impl Outcome {
             n_planes,
             slack,
             n_bytes,
-            verbose: false,
+            verbose,
         }
     }
 
@@ -89,18 +91,11 @@ impl Outcome {
         of_clusters(taken, self.fast, &self.clusters, &self.out, self.n_bytes)
     }
 
-    /// The map and its portals.
     fn taken(&self) -> String {
         match self.portal_format {
             MADE => format!("a {} map, with portals made from it", self.format),
             portals => format!("a {} map with its {portals} file", self.format),
         }
-    }
-
-    /// Lists pairs that are undecided.
-    pub(crate) fn verbose(mut self, verbose: bool) -> Self {
-        self.verbose = verbose;
-        self
     }
 }
 

@@ -18,6 +18,7 @@ use sightlines::pvs::Table;
 use sightlines::report::{Summary, ViewerShare};
 use std::fmt;
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 
 /// What decides which cells and objects are visible, for scenes in space.
 #[derive(Debug, Clone, clap::Args)]
@@ -61,20 +62,19 @@ pub(crate) struct RegionArgs {
     split: Option<u32>,
 }
 
+fn parts<T: FromStr, const N: usize>(text: &str) -> Option<[T; N]> {
+    let parts: Option<Vec<T>> = text.split(',').map(|n| n.trim().parse().ok()).collect();
+    parts?.try_into().ok()
+}
+
 fn counts(text: &str) -> Result<[u32; 3], String> {
-    let parts: Vec<u32> = text.split(',').map(|n| n.trim().parse().unwrap_or(0)).collect();
-    match <[u32; 3]>::try_from(parts) {
-        Ok(n) if n.iter().all(|&n| n > 0) => Ok(n),
-        _ => Err("not three numbers from 1 on, with commas between; only scenes in space have a grid".to_owned()),
-    }
+    let three = parts(text).filter(|n| n.iter().all(|&n| n > 0));
+    three.ok_or("not three numbers from 1 on, with commas between; only scenes in space have a grid".to_owned())
 }
 
 fn heights(text: &str) -> Result<[f64; 2], String> {
-    let parts: Vec<f64> = text.split(',').map(|n| n.trim().parse().unwrap_or(f64::NAN)).collect();
-    match <[f64; 2]>::try_from(parts) {
-        Ok([low, high]) if low < high && low.is_finite() && high.is_finite() => Ok([low, high]),
-        _ => Err("not two numbers, the lower one first, with a comma between".to_owned()),
-    }
+    let two = parts(text).filter(|[low, high]: &[f64; 2]| low < high && low.is_finite() && high.is_finite());
+    two.ok_or("not two numbers, the lower one first, with a comma between".to_owned())
 }
 
 impl RegionArgs {

@@ -58,7 +58,6 @@ impl Source {
         }
     }
 
-    /// The names of objects of a scene.
     pub(super) fn names(&self, objects: &[u32]) -> Vec<String> {
         let Bakeable::Scene(SceneFile { scene, .. }) = &self.content else { return Vec::new() };
         objects.iter().map(|&object| scene.objects()[object as usize].name.clone()).collect()

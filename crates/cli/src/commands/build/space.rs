@@ -12,7 +12,6 @@ use sightlines::report::{Summary, ViewerShare};
 use std::fmt;
 use std::path::Path;
 
-/// Warns of mirrors that do not reflect.
 pub(super) fn warn(path: &Path, report: &SceneReport) {
     let say = |n: usize, noun: &str, what: &str| {
         if n > 0 {
@@ -157,32 +156,8 @@ impl Outcome {
     }
 
     /// All lines but the first, which says what was written.
-    pub(crate) fn facts(&self) -> impl fmt::Display + '_ {
-        SpaceFacts(self)
-    }
-}
-
-/// Triangles of objects that are smaller in every direction than detail may be.
-fn n_detail_triangles(scene: &Scene, detail_below: f64) -> usize {
-    let is_small = |o: &&SceneObject| {
-        let b = o.bounds();
-        (0..3).all(|k| b.max[k] - b.min[k] < detail_below)
-    };
-    scene.occluders().map(|(_, object)| object).filter(is_small).map(|o| o.triangles.len()).sum()
-}
-
-impl fmt::Display for Outcome {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "wrote {}, {}", self.out, bytes(self.table.n_bytes as u64))?;
-        write!(f, "{}", self.facts())
-    }
-}
-
-struct SpaceFacts<'a>(&'a Outcome);
-
-impl fmt::Display for SpaceFacts<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let o = self.0;
+    pub(crate) fn write_facts(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let o = self;
         writeln!(f, "scene          {}", o.stated)?;
         writeln!(f, "method         a k-d tree in space, exact axial stabbing of exact portals")?;
         let [n, axial, others] = [o.n_triangles, o.n_axial_triangles, o.n_other_triangles];
@@ -211,5 +186,21 @@ impl fmt::Display for SpaceFacts<'_> {
         }
         o.time_limit.iter().try_for_each(|left| writeln!(f, "time limit     {left}"))?;
         writeln!(f, "time           {}", times(o.cut_seconds, "scene", o.see_seconds))
+    }
+}
+
+/// Triangles of objects that are smaller in every direction than detail may be.
+fn n_detail_triangles(scene: &Scene, detail_below: f64) -> usize {
+    let is_small = |o: &&SceneObject| {
+        let b = o.bounds();
+        (0..3).all(|k| b.max[k] - b.min[k] < detail_below)
+    };
+    scene.occluders().map(|(_, object)| object).filter(is_small).map(|o| o.triangles.len()).sum()
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "wrote {}, {}", self.out, bytes(self.table.n_bytes as u64))?;
+        self.write_facts(f)
     }
 }

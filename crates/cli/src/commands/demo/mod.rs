@@ -4,17 +4,17 @@ pub(crate) mod office;
 pub(crate) mod tower;
 
 use crate::command::{Done, JsonArg, Verbosity};
+use crate::commands::build::bake_visibly;
 use crate::error::{ErrorAbout, Result};
 use crate::output::{self, JsonSchema, Serialize, bytes, cannot_be_made};
 use crate::reasons::reasons;
+use sightlines::bake::{BakeInput, BakeRequest, Baked};
 use sightlines::progress::memory;
-use sightlines::pvs::Table;
 use sightlines::viewer::{Figure, Page};
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Arguments of `demo`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct DemoArgs {
     /// The scene: an office floor in the plane, or a small furnished tower in space
@@ -49,14 +49,21 @@ pub(crate) fn run(args: &DemoArgs, verbosity: Verbosity) -> Result<Done> {
 /// The most lines of sight on the page.
 const MAX_LINES: usize = 20_000;
 
-/// Writes the page of a table into the folder of the demo; returns its name there.
-fn save_page(args: &DemoArgs, title: &str, table_name: &str, table: &Table, figure: &Figure) -> Result<String> {
-    let name = "view.html".to_owned();
-    let reasons = reasons(table, MAX_LINES, false);
-    let page = Page { figure: Some(figure), reasons: reasons.as_ref(), ..Page::new(title, table_name, table) };
-    let written = page.html().in_file(args.out.join(table_name))?;
-    output::save(&args.out.join(&name), written.html.as_bytes())?;
-    Ok(name)
+/// Bakes what was read from a file of the demo, and writes the table and its page; returns the names of these three in the folder of the demo.
+fn bake<'i>(
+    args: &DemoArgs,
+    [title, source, table]: [&str; 3],
+    (input, figure): (impl Into<BakeInput<'i>>, &Figure),
+    show_progress: bool,
+) -> Result<(Baked, Vec<String>)> {
+    let path = args.out.join(source);
+    let baked = bake_visibly(&path, input, &BakeRequest::default(), show_progress).in_file(&path)?;
+    let (path, name) = (args.out.join(table), "view.html".to_owned());
+    output::save(&path, &baked.table.to_bytes())?;
+    let reasons = reasons(&baked.table, MAX_LINES, false);
+    let page = Page { figure: Some(figure), reasons: reasons.as_ref(), ..Page::new(title, table, &baked.table) };
+    output::save(&args.out.join(&name), page.html().in_file(path)?.html.as_bytes())?;
+    Ok((baked, vec![name, source.to_owned(), table.to_owned()]))
 }
 
 /// What all demos did: where their files are, and what they took.

@@ -1,12 +1,12 @@
 //! The demo in the plane: an office floor.
 
-use super::{DemoArgs, Made, save_page};
+use super::{DemoArgs, Made, bake};
 use crate::command::{Done, Verbosity};
-use crate::commands::build::{bake_visibly, plan};
-use crate::error::{ErrorAbout, Result};
+use crate::commands::build::plan;
+use crate::error::Result;
 use crate::output::{self, JsonSchema, Serialize, bytes, percent};
 use crate::picture::{PictureKind, draw_plan, save_picture};
-use sightlines::bake::{BakeRequest, Report};
+use sightlines::bake::Report;
 use sightlines::formats::geojson;
 use sightlines::pvs::Table;
 use sightlines::report::{DrawOptions, PictureSubject, cells_by_seen_floor};
@@ -24,12 +24,8 @@ pub(super) fn run(args: &DemoArgs, Verbosity { show_progress, .. }: Verbosity) -
     output::save(&plan_path, geojson::write_plan(&office).as_bytes())?;
     // The plan is read back from the file, as `build` would do.
     let floor = geojson::read_plan(&plan_path)?;
-    let baked = bake_visibly(&plan_path, &floor, &BakeRequest::default(), show_progress);
-    let baked = baked.in_file(&plan_path)?;
-    output::save(&table_path, &baked.table.to_bytes())?;
-    let figure = Figure::of_plan(&floor);
-    let page = save_page(args, "An office floor", "plan.pvs", &baked.table, &figure)?;
-    let mut files = vec![page, "plan.geojson".to_owned(), "plan.pvs".to_owned()];
+    let read = (&floor, &Figure::of_plan(&floor));
+    let (baked, mut files) = bake(args, ["An office floor", "plan.geojson", "plan.pvs"], read, show_progress)?;
     for (name, view) in views(&baked.table) {
         let options = DrawOptions { view, ..DrawOptions::default() };
         for kind in PictureKind::ENDINGS {
@@ -74,7 +70,7 @@ impl fmt::Display for Demo {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { n_walls, built, done } = self;
         writeln!(f, "an office floor of {n_walls} walls (seed {}), cut by {}", done.seed, built.subdivision())?;
-        write!(f, "{}", built.facts())?;
+        write!(f, "{}", built.table)?;
         writeln!(f, "table          {}", bytes(built.table.n_bytes as u64))?;
         writeln!(f, "time           {}", built.times())?;
         done.memory(f)?;

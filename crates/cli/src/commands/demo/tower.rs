@@ -1,13 +1,13 @@
 //! The demo in space: a small furnished tower.
 
-use super::{DemoArgs, Made, save_page};
+use super::{DemoArgs, Made, bake};
 use crate::command::{Done, Verbosity};
-use crate::commands::build::{bake_visibly, space};
+use crate::commands::build::space;
 use crate::error::{ErrorAbout, Result};
 use crate::glb::save_glb;
 use crate::output::{self, JsonSchema, Serialize, bytes, percent};
 use crate::picture::{self, PictureKind, save_picture};
-use sightlines::bake::{BakeRequest, Report};
+use sightlines::bake::Report;
 use sightlines::formats::scene::read_scene;
 use sightlines::pvs::Table;
 use sightlines::report::{IsometricOptions, PictureSubject, SliceOptions, isometric_svg, secluded_cell, slice_svg};
@@ -24,12 +24,8 @@ pub(super) fn run(args: &DemoArgs, Verbosity { show_progress, .. }: Verbosity) -
     save_glb(&scene_path, &tower(options)?)?;
     // The scene is read back from the file, as `build` would do.
     let file = read_scene(&scene_path)?;
-    let baked = bake_visibly(&scene_path, &file, &BakeRequest::default(), show_progress);
-    let baked = baked.in_file(&scene_path)?;
-    output::save(&table_path, &baked.table.to_bytes())?;
-    let figure = Figure::of_scene(&file.scene);
-    let page = save_page(args, "A small tower", "tower.pvs", &baked.table, &figure)?;
-    let mut files = vec![page, "tower.glb".to_owned(), "tower.pvs".to_owned()];
+    let read = (&file, &Figure::of_scene(&file.scene));
+    let (baked, mut files) = bake(args, ["A small tower", "tower.glb", "tower.pvs"], read, show_progress)?;
     for (name, svg) in pictures(&table_path, &baked.table)? {
         for kind in PictureKind::ENDINGS {
             let picture = format!("tower-{name}.{kind}");
@@ -80,7 +76,7 @@ impl fmt::Display for Demo {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { n_floors, built, done } = self;
         writeln!(f, "a furnished tower of {} (seed {})", output::count(*n_floors, "floor"), done.seed)?;
-        write!(f, "{}", built.facts())?;
+        built.write_facts(f)?;
         writeln!(f, "table          {}", bytes(built.table.n_bytes as u64))?;
         done.memory(f)?;
         writeln!(f)?;

@@ -6,7 +6,7 @@ mod joints;
 mod scene;
 mod viewer;
 use crate::command::{Answer, Done, Verbosity};
-use crate::error::{Result, anyhow};
+use crate::error::{ErrorAbout, Result};
 use crate::input::refuse;
 use crate::picture::{PictureKind, save_picture};
 use crate::place::{self, Point};
@@ -15,12 +15,11 @@ use crate::{input, output};
 use joints::Rings;
 use sightlines::geometry::{Point2, check_coordinate};
 use sightlines::pvs::Table;
-use sightlines::report::{DrawError, DrawOptions, Drawing, MAX_SIZE, MIN_SIZE, PictureSubject, Surfaces, plan_drawing};
+use sightlines::report::{DrawOptions, Drawing, MAX_SIZE, MIN_SIZE, PictureSubject, Surfaces, plan_drawing};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use viewer::{Shown, Viewer};
 
-/// Arguments of `draw`.
 #[derive(Debug, clap::Args)]
 #[command(mut_arg("up", |up| up.help("Scenes in space: the axis that points up in the picture; with --dir also the up direction of the view, \
     which may be a vector [default: the one stored in the table, else y]").help_heading("Picture")))]
@@ -156,15 +155,10 @@ fn plan(
 ) -> Result<Drawing> {
     let view = match (args.cell, &args.eye) {
         (Some(id), _) => PictureSubject::Cell(place::cell(id, table, &args.table)?),
-        (None, Some(eye)) => PictureSubject::Eye(eye.planar(table, &args.table)?),
+        (None, Some(eye)) => PictureSubject::Eye(eye.planar(&args.table)?),
         (None, None) => PictureSubject::Plan,
     };
     let sight = shown.map(|shown| shown.sight(|[x, y, _]| Point2::new(x, y)));
     let options = DrawOptions { view, sight, joints, near_misses, size: args.size, legend, ..DrawOptions::default() };
-    plan_drawing(table, &options).map_err(failed(&args.table))
-}
-
-/// What becomes of an error of a picture of a table.
-fn failed(path: &Path) -> impl FnOnce(DrawError) -> anyhow::Error + '_ {
-    move |source| anyhow!("{}: {source}", path.display())
+    plan_drawing(table, &options).in_file(&args.table)
 }

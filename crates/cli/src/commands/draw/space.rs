@@ -1,8 +1,8 @@
 //! Pictures of tables in space.
 
+use super::DrawArgs;
 use super::viewer::Shown;
-use super::{DrawArgs, failed};
-use crate::error::{Result, anyhow};
+use crate::error::{ErrorAbout, Result, anyhow};
 use crate::picture::{middle, up_of};
 use crate::place;
 use crate::view;
@@ -21,7 +21,6 @@ fn up(args: &DrawArgs, table: &Table) -> Up {
     }
 }
 
-/// The requested picture.
 pub(super) fn draw(
     args: &DrawArgs,
     table: &Table,
@@ -33,7 +32,7 @@ pub(super) fn draw(
     let up = up(args, table);
     let view = match (args.cell, &args.eye) {
         (Some(id), _) => PictureSubject::Cell(place::cell(id, table, path)?),
-        (None, Some(eye)) => PictureSubject::Eye(eye.spatial(table, path)?),
+        (None, Some(eye)) => PictureSubject::Eye(eye.spatial(path)?),
         (None, None) => PictureSubject::Plan,
     };
     let sight = shown.map(|shown| shown.sight(|p| p));
@@ -57,10 +56,9 @@ pub(super) fn draw(
             SliceOptions { view, sight, up, height, surfaces, legend, size: args.size, ..SliceOptions::default() };
         slice_drawing(table, &options)
     };
-    drawn.map_err(failed(path))
+    drawn.in_file(path)
 }
 
-/// The height of the eye.
 fn height_of(table: &Table, view: PictureSubject<[f64; 3]>, up: Up) -> Option<f64> {
     match view {
         PictureSubject::Plan => None,

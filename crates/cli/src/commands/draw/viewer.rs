@@ -12,7 +12,6 @@ use sightlines::pvs::Table;
 use sightlines::{report, walkthrough};
 use std::sync::Arc;
 
-/// Refuses options of a view where there is no eye.
 pub(super) fn refuse_without_eye(args: &DrawArgs) -> Result<()> {
     let sight::SightArgs { dir, lens, method, closed } = &args.sight;
     if args.eye.is_some() {
@@ -60,12 +59,10 @@ impl Viewer {
         self.methods.list()
     }
 
-    /// Whether there are several pictures.
     pub(super) fn has_panels(&self) -> bool {
         self.methods == Methods::All
     }
 
-    /// What is seen by a method.
     pub(super) fn shown(&mut self, method: Method) -> Shown<'_> {
         self.looks.set_method(method);
         Shown { seen: self.looks.look(&self.sight.view).seen, sight: &self.sight }
@@ -79,7 +76,6 @@ pub(super) struct Shown<'a> {
 }
 
 impl Shown<'_> {
-    /// How much is seen, in words.
     pub(super) fn counts(&self) -> String {
         let [cells, objects] = [(self.seen.cells().len(), "cell"), (self.seen.objects().len(), "object")];
         let objects = if objects.0 > 0 { format!(", {}", count(objects.0 as u64, objects.1)) } else { String::new() };

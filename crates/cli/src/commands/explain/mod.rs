@@ -19,7 +19,6 @@ use sightlines::formats::quake::{graph_of_prt, read_prt};
 use sightlines::pvs::{CellId, Table, TableKind};
 use std::path::PathBuf;
 
-/// Arguments of `explain`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct ExplainArgs {
     /// The table, or the portal file of a Quake map
@@ -93,7 +92,6 @@ pub(crate) fn run(args: &ExplainArgs, _: Verbosity) -> Result<Done> {
 }
 
 impl ExplainArgs {
-    /// Refuses options that mean nothing for such a file.
     fn refuse_meaningless(&self, kind: GraphKind, found: &'static str) -> Result<()> {
         let given = [
             (

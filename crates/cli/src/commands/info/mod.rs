@@ -17,7 +17,6 @@ use sightlines::report::{self, Summary};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// Arguments of `info`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct InfoArgs {
     #[arg(value_name = "FILE", help = crate::input::with_formats(

@@ -19,9 +19,8 @@ use sightlines::geometry::Point2;
 use sightlines::isovist::{Boundary, Isovist, IsovistFinder, LimitError, Limits, Measures, Sector, WallMesh};
 use sightlines::report::{Area, AreaEdge, MAX_SIZE, MIN_SIZE, areas_csv, areas_geojson, areas_png, areas_svg};
 use std::fmt;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-/// Arguments of `isovist`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct IsovistArgs {
     #[arg(value_name = "PLAN|SCENE", help = crate::input::with_formats(
@@ -99,31 +98,23 @@ pub(crate) fn run(args: &IsovistArgs, _: Verbosity) -> Result<Done> {
     let mesh = WallMesh::new(&plan).in_file(&args.plan)?;
     let areas = areas(&mesh, &eyes(args)?, &limits)?;
     let names = Measures::default().named().map(|(name, _)| name);
-    let n_bytes = match kind {
-        Kind::GeoJson => save(&args.output, &areas_geojson(&areas, &names, crs.as_deref()))?,
-        Kind::Csv => save(&args.output, &areas_csv(&areas, &names))?,
-        Kind::Svg => save(&args.output, &areas_svg(&areas, &walls(&plan), args.size, &legend(&areas)))?,
-        Kind::Png => {
-            let png = areas_png(&areas, &walls(&plan), args.size, &legend(&areas)).in_file(&args.output)?;
-            output::save(&args.output, &png)?;
-            png.len() as u64
-        }
+    let bytes = match kind {
+        Kind::GeoJson => areas_geojson(&areas, &names, crs.as_deref()).into_bytes(),
+        Kind::Csv => areas_csv(&areas, &names).into_bytes(),
+        Kind::Svg => areas_svg(&areas, &walls(&plan), args.size, &legend(&areas)).into_bytes(),
+        Kind::Png => areas_png(&areas, &walls(&plan), args.size, &legend(&areas)).in_file(&args.output)?,
     };
+    output::save(&args.output, &bytes)?;
     let total = |value: &dyn Fn(&Area) -> f64| areas.iter().map(value).sum::<f64>() / areas.len() as f64;
     let outcome = Outcome {
         out: args.output.display().to_string(),
-        n_bytes,
+        n_bytes: bytes.len() as u64,
         n_walls: walls(&plan).len(),
         n_isovists: areas.len(),
         mean_area: total(&|area| area.values[0]),
         mean_occlusivity: total(&|area| area.values[2]),
     };
     Ok(Done::new(args.json, outcome))
-}
-
-fn save(path: &Path, text: &str) -> Result<u64> {
-    output::save(path, text.as_bytes())?;
-    Ok(text.len() as u64)
 }
 
 fn legend(areas: &[Area]) -> String {
@@ -133,7 +124,6 @@ fn legend(areas: &[Area]) -> String {
     }
 }
 
-/// The plan, and the member `crs` of its file.
 fn plan(args: &IsovistArgs) -> Result<(Plan, Option<String>)> {
     let (path, map) = (&args.plan, args.map.as_deref());
     match input::read(path, map, &SceneReadOptions::default(), &args.plans.options(path)?)? {
@@ -147,7 +137,7 @@ fn plan(args: &IsovistArgs) -> Result<(Plan, Option<String>)> {
 
 fn limits(args: &IsovistArgs) -> Result<Limits> {
     let sector = match (&args.dir, args.fov) {
-        (Some(direction), Some(angle)) => Some(Sector { direction: planar(direction, args)?, angle }),
+        (Some(direction), Some(angle)) => Some(Sector { direction: direction.planar(&args.plan)?, angle }),
         (None, None) => None,
         _ => return Err(anyhow!("--dir and --fov go together: a direction, and how wide the view around it is")),
     };
@@ -165,15 +155,10 @@ fn limits(args: &IsovistArgs) -> Result<Limits> {
     Ok(limits)
 }
 
-fn planar(point: &Point, args: &IsovistArgs) -> Result<Point2> {
-    let coordinates = point.coordinates(2, &args.plan)?;
-    Ok(Point2::new(coordinates[0], coordinates[1]))
-}
-
 fn eyes(args: &IsovistArgs) -> Result<Vec<Eye>> {
     let mut eyes = Vec::new();
     for point in &args.at {
-        eyes.push(Eye { at: planar(point, args)?, name: None, from: "--at".to_owned() });
+        eyes.push(Eye { at: point.planar(&args.plan)?, name: None, from: "--at".to_owned() });
     }
     if let Some(path) = &args.points {
         let points = read_points(path)?;

@@ -38,8 +38,7 @@ pub(super) fn run(args: &IsovistArgs, kind: Kind) -> Result<Done> {
     let numbers = |Estimate { value, low, high }: Estimate| [value, low, high];
     let mut all = Vec::new();
     for (seed, point) in (1u64..).zip(&args.at) {
-        let eye = point.coordinates(3, path)?;
-        let eye = [eye[0], eye[1], eye[2]];
+        let eye = point.spatial(path)?;
         let volume = numbers(around.volume(eye, args.rays, seed));
         let shares = around.visible_shares(eye, table.as_ref(), (args.rays / 16).max(64), seed);
         all.push(SeenInSpace { eye, volume, shares: shares.into_iter().map(numbers).collect() });

@@ -1,6 +1,6 @@
 //! `job merge`: the output, from all parts.
 
-use super::task::{Made, Task};
+use super::task::Task;
 use super::{absolute, open, stopped};
 use crate::command::{Answer, Done, JsonArg, Verbosity};
 use crate::error::Result;
@@ -11,7 +11,6 @@ use sightlines::checkpoint::{Identity, Job, JobProgress, JobRole, JobSlot, JobSt
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// Arguments of `job merge`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct MergeArgs {
     /// The folder of the job
@@ -29,10 +28,8 @@ pub(crate) struct MergeArgs {
 
 /// How far a merge came.
 pub(super) enum Progress {
-    /// The output is written.
-    Written(Box<Made>, PathBuf),
-    /// The output was written by another process, which printed this.
-    Elsewhere(PathBuf, Option<String>),
+    /// The output is written, and what the process printed that wrote it, if it is known.
+    Written(PathBuf, Option<String>),
     /// All is done, and another worker has written the output.
     Shared(PathBuf),
     /// The next phase is known, and its shards are to be done.
@@ -68,7 +65,7 @@ pub(super) fn through(
     let open = |identity: &Identity| Ok(slot.open(identity, || JobStore::new(job.clone(), role.clone(), after))?);
     let made = task.make(Keeping::Job(&open), show_progress, verbose);
     let made = match made {
-        Ok(made) => return Ok(Progress::Written(Box::new(made), task.output().to_owned())),
+        Ok(made) => return Ok(Progress::Written(task.output().to_owned(), Some(made))),
         Err(error) => error,
     };
     if interrupt::requested() {
@@ -92,8 +89,7 @@ pub(crate) fn run(args: &MergeArgs, Verbosity { show_progress, verbose }: Verbos
 pub(super) fn report(job: &Path, found: Progress, json: JsonArg) -> Done {
     let name = job.display().to_string();
     let (merged, answer) = match found {
-        Progress::Written(made, out) => (Merged::written(name, &out, Some(made.to_string())), Answer::Yes),
-        Progress::Elsewhere(out, said) => (Merged::written(name, &out, said), Answer::Yes),
+        Progress::Written(out, said) => (Merged::written(name, &out, said), Answer::Yes),
         Progress::Shared(out) => (Merged::shared(name, &out), Answer::Yes),
         Progress::Planned(job, phase) => (Merged::planned(name, &job, phase), Answer::Incomplete),
         Progress::Missing { job, phase, shards } => {

@@ -8,14 +8,13 @@ pub(crate) mod submit;
 mod task;
 mod work;
 
+use crate::args::commands;
 use crate::command::{Done, Verbosity};
 use crate::error::{ErrorAbout, Result, anyhow};
 use crate::interrupt;
-use clap::Subcommand;
 use sightlines::checkpoint::Job;
 use std::path::{Path, PathBuf};
 
-/// Arguments of `job`.
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = "Exit codes: 0 done; 2 bad input or usage; 3 shards are to be done, first or again; 130 interrupted.\n\
@@ -26,32 +25,24 @@ pub(crate) struct JobArgs {
     what: JobCommand,
 }
 
-/// What to do with a job.
-#[derive(Debug, Subcommand)]
-enum JobCommand {
+commands! {
+    enum JobCommand:
     /// Cut a build into shards of about the same cost: put `job plan -o JOB` before the command
-    Plan(plan::PlanArgs),
+    Plan(plan::PlanArgs) => plan::run,
     /// Do some shards, and write the part of each
-    Shard(shard::ShardArgs),
+    Shard(shard::ShardArgs) => shard::run,
     /// Do all of a job together with other workers, which prepare once: shards that nobody has claimed, phase by phase, and what the command writes
-    Work(work::WorkArgs),
+    Work(work::WorkArgs) => work::run,
     /// Put all parts together: writes what the command writes without a job, or plans the shards that come next
-    Merge(merge::MergeArgs),
+    Merge(merge::MergeArgs) => merge::run,
     /// Have all shards done and merged: by processes on this machine, by Slurm, or by a command of yours
-    Submit(submit::SubmitArgs),
+    Submit(submit::SubmitArgs) => submit::run,
     /// Print what is done, missing and broken
-    Status(status::StatusArgs),
+    Status(status::StatusArgs) => status::run,
 }
 
 pub(crate) fn run(args: &JobArgs, verbosity: Verbosity) -> Result<Done> {
-    match &args.what {
-        JobCommand::Plan(args) => plan::run(args, verbosity),
-        JobCommand::Shard(args) => shard::run(args, verbosity),
-        JobCommand::Work(args) => work::run(args, verbosity),
-        JobCommand::Merge(args) => merge::run(args, verbosity),
-        JobCommand::Submit(args) => submit::run(args, verbosity),
-        JobCommand::Status(args) => status::run(args, verbosity),
-    }
+    args.what.run(verbosity)
 }
 
 /// The command was interrupted.
@@ -69,7 +60,6 @@ fn stopped() -> anyhow::Error {
     }
 }
 
-/// Opens a job that this version of the program has planned.
 fn open(folder: &Path) -> Result<Job> {
     Ok(Job::open(folder, crate::kept::PROGRAM)?)
 }

@@ -5,6 +5,7 @@ use super::task::Task;
 use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::Result;
 use crate::kept::{Keeping, PROGRAM};
+use crate::numbers::number;
 use sightlines::checkpoint::report::Planned;
 use sightlines::checkpoint::{Identity, Job, JobProgress, JobRole, JobSlot, JobStore, Manifest};
 use std::path::PathBuf;
@@ -13,7 +14,6 @@ use std::time::Duration;
 /// Shards of a phase, unless the number is given: 8 for each of eight workers, so that nobody waits long for the last one.
 const SHARDS: usize = 64;
 
-/// Arguments of `job plan`.
 #[derive(Debug, clap::Args)]
 #[command(
     override_usage = "sightlines job plan [OPTIONS] -o JOB build|vis|reject|tiles IN [OPTIONS OF THE COMMAND]..."
@@ -33,10 +33,7 @@ pub(crate) struct PlanArgs {
 }
 
 fn shards(text: &str) -> Result<usize, String> {
-    match text.parse() {
-        Ok(n @ 1..=100_000) => Ok(n),
-        _ => Err("not a number from 1 to 100000".to_owned()),
-    }
+    number(text, |n| (1..=100_000).contains(n), "a number from 1 to 100000")
 }
 
 pub(crate) fn run(args: &PlanArgs, Verbosity { show_progress, .. }: Verbosity) -> Result<Done> {

@@ -13,7 +13,6 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// Arguments of `job shard`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct ShardArgs {
     /// The folder of the job
@@ -63,7 +62,6 @@ pub(crate) fn run(args: &ShardArgs, Verbosity { show_progress, .. }: Verbosity) 
     Ok(Done::new(args.json, done))
 }
 
-/// Computes shards of one phase.
 fn compute(job: &Job, name: &Path, shards: Vec<usize>, args: &ShardArgs, show_progress: bool) -> Result<()> {
     let task = Task::of(job)?.with_threads(Some(args.threads)).with_memory(args.memory);
     let slot = JobSlot::default();

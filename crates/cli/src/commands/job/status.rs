@@ -6,7 +6,6 @@ use crate::error::Result;
 use sightlines::checkpoint::report::Status;
 use std::path::PathBuf;
 
-/// Arguments of `job status`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct StatusArgs {
     /// The folder of the job

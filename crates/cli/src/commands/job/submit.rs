@@ -31,7 +31,6 @@ enum Kind {
     Command,
 }
 
-/// Arguments of `job submit`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct SubmitArgs {
     /// The folder of the job
@@ -130,7 +129,7 @@ pub(crate) fn run(args: &SubmitArgs, Verbosity { show_progress, verbose }: Verbo
     let found = match run_rounds((&folder, PROGRAM), (&engine, args.retries), &host, merge) {
         Ok(Rounds::Merged(written)) => written,
         Ok(Rounds::Missing { phase, shards }) => Progress::Missing { job: open(&folder)?, phase, shards },
-        Ok(Rounds::Elsewhere(told)) => Progress::Elsewhere(output_of(&open(&folder)?, out.as_deref())?, told),
+        Ok(Rounds::Elsewhere(told)) => Progress::Written(output_of(&open(&folder)?, out.as_deref())?, told),
         Err(error) if matches!(error.downcast_ref(), Some(EngineError::Stopped)) => return Err(interrupted()),
         Err(error) => return Err(error),
     };

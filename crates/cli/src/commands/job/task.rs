@@ -7,7 +7,6 @@ use crate::kept::Keeping;
 use crate::memory::MemoryArgs;
 use clap::{Parser, Subcommand};
 use sightlines::checkpoint::Job;
-use std::fmt;
 use std::path::{Path, PathBuf};
 
 /// A command line that a job can share. `-v` and `-q` may be in it, as in any other.
@@ -31,7 +30,6 @@ enum Command {
     Vis(vis::VisArgs),
 }
 
-/// Their names.
 const NAMES: [&str; 4] = ["build", "reject", "tiles", "vis"];
 
 /// The command that a job shares, with its arguments.
@@ -41,26 +39,6 @@ pub(super) enum Task {
     Reject(reject::RejectArgs),
     Tiles(Box<tiles::TilesBuildArgs>),
     Vis(vis::VisArgs),
-}
-
-/// What a task has written.
-#[derive(Debug)]
-pub(super) enum Made {
-    Build(Box<build::Built>),
-    Reject(reject::Outcome),
-    Tiles(tiles::Outcome),
-    Vis(Box<vis::Outcome>),
-}
-
-impl fmt::Display for Made {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Build(outcome) => outcome.fmt(f),
-            Self::Reject(outcome) => outcome.fmt(f),
-            Self::Tiles(outcome) => outcome.fmt(f),
-            Self::Vis(outcome) => outcome.fmt(f),
-        }
-    }
 }
 
 impl Task {
@@ -136,7 +114,6 @@ impl Task {
         self
     }
 
-    /// What it writes.
     pub(super) fn output(&self) -> &Path {
         match self {
             Self::Build(args) => &args.output,
@@ -146,13 +123,13 @@ impl Task {
         }
     }
 
-    /// Does it, with units in a store.
-    pub(super) fn make(&self, keeping: Keeping<'_>, show_progress: bool, verbose: bool) -> Result<Made> {
+    /// Does it, with units in a store; returns what the command says of it.
+    pub(super) fn make(&self, keeping: Keeping<'_>, show_progress: bool, verbose: bool) -> Result<String> {
         Ok(match self {
-            Self::Build(args) => Made::Build(Box::new(build::make(args, keeping, show_progress, verbose)?)),
-            Self::Reject(args) => Made::Reject(reject::make(args, keeping, show_progress)?),
-            Self::Tiles(args) => Made::Tiles(tiles::make(args, keeping, show_progress)?),
-            Self::Vis(args) => Made::Vis(Box::new(vis::make(args, keeping, show_progress)?)),
+            Self::Build(args) => build::make(args, keeping, show_progress, verbose)?.to_string(),
+            Self::Reject(args) => reject::make(args, keeping, show_progress)?.to_string(),
+            Self::Tiles(args) => tiles::make(args, keeping, show_progress)?.to_string(),
+            Self::Vis(args) => vis::make(args, keeping, show_progress)?.to_string(),
         })
     }
 }

@@ -11,7 +11,6 @@ use sightlines::checkpoint::JobRole;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// Arguments of `job work`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct WorkArgs {
     /// The folder of the job

@@ -25,7 +25,6 @@ use std::time::Instant;
 /// Rays that weigh faces for each level: they only choose what is collapsed first, and there are many levels.
 const N_RAYS: u64 = 1 << 12;
 
-/// Arguments of `levels`.
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = "The folder gets level_0.glb, level_1.glb and so on, and index.json, which assigns a level to each \
@@ -129,7 +128,6 @@ impl LevelsArgs {
     }
 }
 
-/// Writes the folder.
 fn write(
     args: &LevelsArgs,
     (scene, method): (&Scene, &'static str),

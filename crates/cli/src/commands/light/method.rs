@@ -18,7 +18,6 @@ pub(super) enum UmbraMethod {
 }
 
 impl UmbraMethod {
-    /// All methods.
     pub(super) fn all() -> Vec<Self> {
         std::iter::once(Self::Sheets).chain(OcclusionMethod::ALL.map(Self::FromRegion)).collect()
     }
@@ -38,29 +37,19 @@ impl UmbraMethod {
         }
     }
 
-    /// The method for a scene.
     fn prepared(self, scene: &Scene) -> Result<OcclusionMethodFactory, MethodError> {
         let buffers = BufferOptions { occluders: MOST_OCCLUDERS, ..BufferOptions::default() };
-        match self {
-            Self::Sheets => {
-                let sheets = BufferOptions { planes: 0, ..buffers };
-                OcclusionMethodFactory::new(OcclusionMethod::Multifocal, scene, &sheets)
-            }
-            Self::FromRegion(method) => {
-                OcclusionMethodFactory::new(method, scene, &BufferOptions { sheets: 0, ..buffers })
-            }
-        }
+        let (method, buffers) = match self {
+            Self::Sheets => (OcclusionMethod::Multifocal, BufferOptions { planes: 0, ..buffers }),
+            Self::FromRegion(method) => (method, BufferOptions { sheets: 0, ..buffers }),
+        };
+        OcclusionMethodFactory::new(method, scene, &buffers)
     }
 }
 
-/// What any of these methods hides, each used once.
 pub(super) fn union(methods: &[UmbraMethod], scene: &Scene) -> Result<UnionMethod, MethodError> {
-    let mut different: Vec<UmbraMethod> = Vec::new();
-    methods.iter().for_each(|method| {
-        if !different.contains(method) {
-            different.push(*method)
-        }
-    });
-    let instance = |method: &UmbraMethod| Ok(method.prepared(scene)?.instance());
-    Ok(UnionMethod::for_polygons(different.iter().map(instance).collect::<Result<_, MethodError>>()?))
+    let is_first = |(k, method): &(usize, &UmbraMethod)| !methods[..*k].contains(method);
+    let instance = |(_, method): (usize, &UmbraMethod)| Ok(method.prepared(scene)?.instance());
+    let instances = methods.iter().enumerate().filter(is_first).map(instance);
+    Ok(UnionMethod::for_polygons(instances.collect::<Result<_, MethodError>>()?))
 }

@@ -10,7 +10,6 @@ use crate::eye::EyeArgs;
 use crate::input;
 use crate::named::one_of;
 use crate::output;
-use crate::picture;
 use crate::region::Region;
 use crate::surfaces::{self, SurfaceArgs};
 use crate::view::Up;
@@ -28,7 +27,6 @@ const MOST_DEPTH: u32 = 24;
 /// The most rays for a pixel.
 const MOST_RAYS: u32 = 65_536;
 
-/// Arguments of `light`.
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = "Visible faces are divided into pieces until each is proven to be in full umbra (blue) or fully lit \
@@ -80,7 +78,7 @@ pub(crate) struct LightArgs {
 }
 
 pub(crate) fn run(args: &LightArgs, _: Verbosity) -> Result<Done> {
-    picture::check_png_name(&args.output)?;
+    output::check_ending(&args.output, "picture", "png")?;
     output::check(&[&args.scene], &[&args.output])?;
     input::check_is_scene(&args.scene)?;
     // All that hides casts shadows, and nothing else is drawn.
@@ -134,7 +132,6 @@ pub(crate) fn run(args: &LightArgs, _: Verbosity) -> Result<Done> {
     Ok(Done::new(args.json, outcome))
 }
 
-/// A pixel as the picture has it.
 fn pixel(shade: Shade) -> LightPixel {
     match shade {
         Shade::Nothing => LightPixel::Nothing,

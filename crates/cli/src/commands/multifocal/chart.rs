@@ -13,12 +13,7 @@ const AXES: [char; 3] = ['x', 'y', 'z'];
 pub(super) fn svg(path: &Path, outcome: &Outcome, buffer: &Buffer, white: u32, up: Axis) -> Result<String> {
     let &Outcome { axis, at, window, texels, unit, .. } = outcome;
     let across = [(axis + 1) % 3, (axis + 2) % 3];
-    let up = match up {
-        Axis::X => 0,
-        Axis::Y => 1,
-        Axis::Z => 2,
-    };
-    let is_first_up = across[0] == up;
+    let is_first_up = across[0] == up.idx();
     // To the right of who looks along the plane's axis is that axis times up; the axes of the window follow it in turn. So the second is to the
     // right of who looks forwards with the first up, and the first to the left with the second up.
     let is_forwards = at > outcome.volume[1][axis];

@@ -5,7 +5,7 @@ pub(crate) mod outcome;
 
 use crate::buffers::method_failed;
 use crate::command::{Done, JsonArg, Verbosity};
-use crate::error::{ErrorAbout, Result, anyhow};
+use crate::error::{ErrorAbout, Result};
 use crate::input;
 use crate::named::{measure, one_of};
 use crate::output;
@@ -23,7 +23,6 @@ use sightlines::multifocal_cpu::fields::{Features, NearestField};
 use sightlines::report::{PngError, buffer_png, distance_png, voronoi_png};
 use std::path::{Path, PathBuf};
 
-/// Arguments of `multifocal`.
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = "The picture has one pixel for each texel: blue where nothing is known to block; otherwise grey, from \
@@ -126,7 +125,6 @@ pub(crate) fn run(args: &MultifocalArgs, _: Verbosity) -> Result<Done> {
     Ok(Done::new(args.json, outcome))
 }
 
-/// The pictures to write.
 fn outputs(args: &MultifocalArgs) -> impl Iterator<Item = &PathBuf> {
     pixels(args).chain(&args.chart)
 }
@@ -138,7 +136,7 @@ fn pixels(args: &MultifocalArgs) -> impl Iterator<Item = &PathBuf> {
 
 /// Refuses names of pictures that are no PNG, that name the same file twice, or the scene, and files that cannot be written.
 fn check_outputs(args: &MultifocalArgs) -> Result<()> {
-    pixels(args).try_for_each(|path| picture::check_png_name(path))?;
+    pixels(args).try_for_each(|path| output::check_ending(path, "picture", "png"))?;
     args.chart.iter().try_for_each(|path| PictureKind::of(path).map(drop))?;
     output::check(&[&args.scene], &outputs(args).map(PathBuf::as_path).collect::<Vec<_>>())
 }
@@ -159,7 +157,6 @@ fn white(buffer: &Buffer) -> u32 {
     buffer.values().iter().copied().max().unwrap_or(0).saturating_sub(1)
 }
 
-/// Draws all pictures, then writes them.
 fn write(
     args: &MultifocalArgs,
     plane: &BufferPlane,
@@ -179,10 +176,7 @@ fn write(
             pictures.push((path, distance_png(texels, &distances, field.farthest())));
         }
     }
-    let drawn = |(path, png): (&'_ Path, Result<Vec<u8>, PngError>)| match png {
-        Ok(png) => Ok((path.to_owned(), png)),
-        Err(error) => Err(anyhow!("{}: {error}", path.display())),
-    };
-    let drawn: Vec<(PathBuf, Vec<u8>)> = pictures.into_iter().map(drawn).collect::<Result<_, _>>()?;
+    let drawn = pictures.into_iter().map(|(path, png)| Ok((path, png.in_file(path)?)));
+    let drawn: Vec<(&Path, Vec<u8>)> = drawn.collect::<Result<_>>()?;
     drawn.iter().try_for_each(|(path, png)| output::save(path, png))
 }

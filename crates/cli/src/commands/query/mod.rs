@@ -16,7 +16,6 @@ use std::fmt;
 use std::ops::Range;
 use std::path::PathBuf;
 
-/// Arguments of `query`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct QueryArgs {
     /// The table, plain or packed

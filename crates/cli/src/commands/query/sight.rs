@@ -27,7 +27,6 @@ pub(super) struct ViewerArgs {
 }
 
 impl ViewerArgs {
-    /// Whether any option describes the view.
     pub(super) fn is_given(&self) -> bool {
         let Self { sight: SightArgs { dir, lens, method, closed }, bounces } = self;
         dir.is_some() || lens.is_given() || method.is_some() || !closed.is_empty() || bounces.is_some()
@@ -56,7 +55,6 @@ pub(super) fn look<C: Cells>(cells: &C, path: &Path, eye: &[f64], at: &[CellId],
     Ok(Seen { place, outside, dir, fov, one, methods: answers, all: cells.counts() })
 }
 
-/// Answers by one method.
 fn answer<C: Cells>(
     viewer: &mut Viewer<C>,
     method: Method,

@@ -2,10 +2,10 @@
 
 use super::outcome::{FileOutcome, FileStatus, FolderOutcome};
 use super::{BAR, Map, RejectArgs, warn, warn_of_lost};
-use crate::error::{Result, anyhow, bail};
+use crate::error::{ErrorAbout, Result, anyhow, bail};
 use crate::interrupt;
 use crate::kept::{self, Keeping, Kept};
-use crate::output::{self, cannot_be_made};
+use crate::output::{self, cannot_be_made, has_ending};
 use crate::progress::Bar;
 use sightlines::bake::{RejectError, RejectMaps, RejectTables, RejectWadsError, reject_wads};
 use sightlines::checkpoint::Inputs;
@@ -48,14 +48,12 @@ pub(super) fn make(args: &RejectArgs, keeping: Keeping<'_>, show_progress: bool)
 
 /// The WADs in a folder, in the order of their names; hidden ones are none.
 fn list(folder: &Path) -> Result<Vec<PathBuf>> {
-    let failed = |error| anyhow!("{}: {error}", folder.display());
     let mut paths = Vec::new();
-    for entry in fs::read_dir(folder).map_err(failed)? {
-        let path = entry.map_err(failed)?.path();
-        let is_named = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("wad"));
+    for entry in fs::read_dir(folder).in_file(folder)? {
+        let path = entry.in_file(folder)?.path();
         let is_hidden = path.file_name().is_some_and(|name| name.as_encoded_bytes().starts_with(b"."));
         // What cannot be looked at is an error once it is read.
-        if is_named && !is_hidden && fs::metadata(&path).map_or(true, |found| found.is_file()) {
+        if has_ending(&path, "wad") && !is_hidden && fs::metadata(&path).map_or(true, |found| found.is_file()) {
             paths.push(path);
         }
     }
@@ -158,7 +156,6 @@ impl Folder<'_> {
         })
     }
 
-    /// Writes those that were done, one after the other.
     fn write(
         &mut self,
         maps: &[RejectMaps],

@@ -9,6 +9,7 @@ use crate::command::{Done, JsonArg, Verbosity};
 use crate::error::{Result, anyhow};
 use crate::kept::{self, Keeping, Kept, ResumeArgs};
 use crate::memory::MemoryArgs;
+use crate::named::one_of;
 use crate::output::{self, count};
 use crate::progress::Bar;
 use outcome::{Map, WadOutcome};
@@ -20,7 +21,6 @@ use sightlines::progress::memory;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
-/// Arguments of `reject`.
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = "Of a folder, all files in it whose names end in .wad, in any case, are done in the order of their names, but for hidden ones; not those in \
@@ -42,8 +42,8 @@ pub(crate) struct RejectArgs {
     rmb: Option<PathBuf>,
     /// The game whose engines read the tables. Those of Heretic and Hexen look through every line with a left side, those of Doom only if it is flagged as two-sided.
     /// Without it tables are right for all; Hexen's format and a UDMF namespace of either game count more
-    #[arg(long, help_heading = "Method", value_name = "GAME", value_enum)]
-    game: Option<GameArg>,
+    #[arg(long, help_heading = "Method", value_name = "GAME", value_parser = one_of(&GAMES, game_name, |_| ""))]
+    game: Option<Game>,
     /// Stop at a map that cannot be done and write nothing, instead of doing the others
     #[arg(long, help_heading = "Method")]
     strict: bool,
@@ -62,21 +62,10 @@ pub(crate) struct RejectArgs {
 }
 
 /// Values of `--game`.
-#[derive(Debug, Clone, Copy, clap::ValueEnum)]
-enum GameArg {
-    Doom,
-    Heretic,
-    Hexen,
-}
+const GAMES: [Game; 3] = [Game::Doom, Game::Heretic, Game::Hexen];
 
-impl From<GameArg> for Game {
-    fn from(game: GameArg) -> Self {
-        match game {
-            GameArg::Doom => Self::Doom,
-            GameArg::Heretic => Self::Heretic,
-            GameArg::Hexen => Self::Hexen,
-        }
-    }
+fn game_name(game: Game) -> &'static str {
+    ["doom", "heretic", "hexen"][game as usize]
 }
 
 pub(crate) fn run(args: &RejectArgs, Verbosity { show_progress, .. }: Verbosity) -> Result<Done> {
@@ -136,7 +125,7 @@ impl RejectArgs {
             force: self.force,
             strict: self.strict,
             rmb: None,
-            game: self.game.map(Game::from),
+            game: self.game,
             threads: self.threads,
             progress: Some(bar),
             units: kept.units(),
@@ -157,7 +146,6 @@ impl RejectArgs {
     }
 }
 
-/// Names the REJECT lumps that are nowhere.
 fn warn_of_lost(path: &Path, wad: &Wad) {
     for (index, lump) in wad.lumps().iter().enumerate().filter(|(_, lump)| lump.is_lost()) {
         let (path, name) = (path.display(), lump.name);

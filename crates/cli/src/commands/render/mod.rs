@@ -9,7 +9,6 @@ use crate::eye::EyeArgs;
 use crate::input;
 use crate::named::one_of;
 use crate::output::{self, count};
-use crate::picture;
 use crate::progress::Bar;
 use crate::surfaces::{self, SurfaceArgs};
 use crate::tables::{self, CACHE};
@@ -26,7 +25,6 @@ use std::path::{Path, PathBuf};
 /// The most pixels of a sheet: 400 MB of colours.
 const MOST_PIXELS: u64 = 1 << 27;
 
-/// Arguments of `render`.
 #[derive(Debug, clap::Args)]
 #[command(
     group = clap::ArgGroup::new("drawn by").args(["method", "compare"]).required(true).multiple(true),
@@ -137,7 +135,7 @@ pub(crate) fn run(args: &RenderArgs, Verbosity { show_progress, .. }: Verbosity)
 
 /// Refuses options that do not go together, and outputs that would replace what is read.
 fn check(args: &RenderArgs) -> Result<()> {
-    picture::check_png_name(&args.output)?;
+    output::check_ending(&args.output, "picture", "png")?;
     let inputs: Vec<&Path> = std::iter::once(&args.scene).chain(&args.table).map(PathBuf::as_path).collect();
     output::check(&inputs, &[&args.output])?;
     let has_buffer = args.method.contains(&Technique::Zbuffer) || args.method.is_empty();
@@ -222,7 +220,6 @@ fn side_by_side(
     (rows, png)
 }
 
-/// What pixels are coloured by.
 fn shown(args: &RenderArgs, faces: &Faces, seen: &[u32]) -> Vec<u32> {
     let shown = |&face: &u32| if args.by_object && face != NOTHING { faces.object(face) } else { face };
     seen.iter().map(shown).collect()

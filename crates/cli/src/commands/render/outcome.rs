@@ -134,7 +134,6 @@ impl fmt::Display for Outcome {
 }
 
 impl Outcome {
-    /// The lines about the one picture.
     fn write_one(&self, f: &mut fmt::Formatter<'_>, row: &Row) -> fmt::Result {
         let [polygons, fragments, splits] =
             [(row.polygons, "face"), (row.fragments, "fragment"), (row.all_splits(), "split")]

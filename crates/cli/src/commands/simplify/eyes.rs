@@ -30,7 +30,6 @@ pub(super) struct EyesArgs {
 }
 
 impl EyesArgs {
-    /// The table, if there is one.
     pub(super) fn table(&self) -> Result<Option<Table>> {
         self.table.as_ref().map(|path| input::table(path)).transpose()
     }

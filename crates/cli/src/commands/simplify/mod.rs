@@ -16,7 +16,6 @@ use sightlines::simplify::{HiddenBy, MakeMethod, SimplifyError, SimplifyOptions,
 use std::path::PathBuf;
 use std::time::Instant;
 
-/// Arguments of `simplify`.
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = "Triangles that no eye in the boxes can see are always removed. The budget is a share of the sphere \

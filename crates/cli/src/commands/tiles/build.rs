@@ -21,7 +21,6 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::time::Instant;
 
-/// Arguments of `tiles build`.
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = "The plan of a world: {\"sightlines_world\": 1, \"border\": 20, \"tiles\": [{\"name\": \"market\", \

@@ -8,7 +8,6 @@ use sightlines::tiles::{TileTables, TiledWorld};
 use std::fmt;
 use std::path::PathBuf;
 
-/// Arguments of `tiles check`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct TilesCheckArgs {
     /// The folder of the world

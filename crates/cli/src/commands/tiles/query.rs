@@ -12,7 +12,6 @@ use std::path::PathBuf;
 /// Bytes of blocks of a table that a query keeps.
 const CACHE: usize = 16 << 20;
 
-/// Arguments of `tiles query`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct TilesQueryArgs {
     /// The folder of the world
@@ -51,8 +50,7 @@ pub(crate) struct Found {
 
 pub(super) fn run(args: &TilesQueryArgs, _: Verbosity) -> Result<Done> {
     let world = TiledWorld::open(&args.world)?;
-    let eye = args.eye.coordinates(3, &args.world)?;
-    let eye = [eye[0], eye[1], eye[2]];
+    let eye = args.eye.spatial(&args.world)?;
     let (mut at, mut inside, mut seen, mut scratch) = (Vec::new(), Vec::new(), Seen::default(), TileScratch::default());
     world.tiles_at(eye, &mut at);
     for &tile in &at {

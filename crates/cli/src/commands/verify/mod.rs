@@ -19,7 +19,6 @@ use sightlines::verify::{VerifyOptions, verify};
 use std::path::PathBuf;
 use std::time::Instant;
 
-/// Arguments of `verify`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct VerifyArgs {
     /// The table (plain or packed), or a Quake map or WAD whose own visibility or REJECT lump is checked, or a VisPatch file with the visibility of

@@ -3,6 +3,7 @@
 use crate::error::{ErrorAbout, Result, anyhow, bail};
 use crate::input;
 use crate::map_portals::{do_not_fit, portals_for};
+use crate::output::has_ending;
 use sightlines::bake::BakeError;
 use sightlines::formats::InputKind;
 use sightlines::formats::doom::Game;
@@ -18,7 +19,7 @@ use std::path::{Path, PathBuf};
 /// # Errors
 /// For a map without visibility of its own, for files that cannot be read, and for those that do not go together.
 pub(super) fn read(path: &Path, scene: &Path, map: Option<&str>, prt: Option<&Path>) -> Result<Option<OwnVisibility>> {
-    if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("vis")) && path.is_file() {
+    if has_ending(path, "vis") && path.is_file() {
         return of_bsp(path, &patched(path, scene)?, scene, prt).map(Some);
     }
     match input::kind_of(path)? {

@@ -30,7 +30,6 @@ impl ProofArgs {
         self.strict
     }
 
-    /// Whether proofs were requested.
     pub(super) fn is_given(&self) -> bool {
         self.proofs.is_some() || self.strict
     }

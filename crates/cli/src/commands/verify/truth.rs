@@ -29,7 +29,6 @@ impl Real {
         if let Self::Scene(_, left_out) = self { left_out } else { &[] }
     }
 
-    /// Reads a scene of any kind; of a map also its portals.
     pub(super) fn read(
         path: &Path,
         map: Option<&str>,

@@ -30,7 +30,6 @@ use sightlines::visibility_graph::{
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Arguments of `vga`.
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = "Points are the centres of a grid, at multiples of the spacing: those that steps between neighbours reach from the \
@@ -154,9 +153,7 @@ pub(crate) fn run(args: &VgaArgs, Verbosity { show_progress, .. }: Verbosity) ->
             (points, Some(size))
         }
         (Some(path), _) => (points::of_file(path)?, None),
-        (None, None) => {
-            return Err(needs_spacing(args));
-        }
+        (None, None) => return Err(needs_spacing(args)),
     };
     let measures = measures(args, kind);
     let drawn = kind.is_picture().then(|| shown(args, &measures));
@@ -194,7 +191,6 @@ pub(crate) fn run(args: &VgaArgs, Verbosity { show_progress, .. }: Verbosity) ->
     Ok(Done::new(args.json, outcome))
 }
 
-/// The values of measures.
 fn columns_of(analysis: &Analysis, measures: &[Measure]) -> Vec<(Measure, Vec<f64>)> {
     measures.iter().map(|&measure| (measure, analysis.values(measure).unwrap_or_default())).collect()
 }
@@ -251,7 +247,6 @@ fn needs_spacing(args: &VgaArgs) -> anyhow::Error {
     anyhow!("{}: a picture of points needs --spacing, the side of the square around each", args.output.display())
 }
 
-/// The plan of a file.
 fn plan_of(args: &VgaArgs) -> Result<Plan> {
     let (path, map) = (&args.plan, args.map.as_deref());
     let options = args.plans.options(path)?;
@@ -273,11 +268,7 @@ fn plan_of(args: &VgaArgs) -> Result<Plan> {
 }
 
 fn seeds(args: &VgaArgs) -> Result<Vec<Point2>> {
-    let seed = |seed: &Point| {
-        let at = seed.coordinates(2, &args.plan).about("--seed")?;
-        Ok(Point2::new(at[0], at[1]))
-    };
-    args.seed.iter().map(seed).collect()
+    args.seed.iter().map(|seed| seed.planar(&args.plan).about("--seed")).collect()
 }
 
 /// What is computed: what is named; else the measure of a picture, and of tables local measures.
@@ -295,12 +286,10 @@ fn positive(text: &str) -> Result<f64, String> {
     if x.is_finite() && x > 0.0 { Ok(x) } else { Err("not a positive number".to_owned()) }
 }
 
-/// The measure of a picture.
 fn shown(args: &VgaArgs, measures: &[Measure]) -> Measure {
     args.measure.or(measures.first().copied()).unwrap_or(Measure::Connectivity)
 }
 
-/// What sees what, decided on a mesh of the walls.
 fn graph(args: &VgaArgs, plan: &Plan, points: &Points, effort: &WorkOptions<'_>) -> Result<VisibilityGraph> {
     let at = points.coordinates();
     let mesh = WallMesh::around(plan, at.iter().copied()).in_file(&args.plan)?;
@@ -311,7 +300,6 @@ fn graph(args: &VgaArgs, plan: &Plan, points: &Points, effort: &WorkOptions<'_>)
     built.in_file(&args.plan)
 }
 
-/// The bytes of the output.
 fn written(
     args: &VgaArgs,
     kind: Kind,

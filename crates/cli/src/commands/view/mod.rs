@@ -14,7 +14,6 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// Arguments of `view`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct ViewArgs {
     /// The table, plain or packed

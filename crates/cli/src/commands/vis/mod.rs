@@ -29,8 +29,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Arguments of `vis`.
-#[derive(Debug, clap::Args)]
+#[derive(Debug, Default, clap::Args)]
 pub(crate) struct VisArgs {
     /// The map, of Quake, Quake II or III, Half-Life, Hexen II, or one of their relatives that `info` names
     #[arg(value_name = "MAP.bsp")]
@@ -73,20 +72,7 @@ pub(crate) struct VisArgs {
 impl VisArgs {
     /// For a map with its portal file beside it, which is replaced.
     pub(crate) fn of_map(map: PathBuf) -> Self {
-        Self {
-            map,
-            prt: None,
-            fast: false,
-            threads: 0,
-            memory: MemoryArgs::default(),
-            resume: ResumeArgs::default(),
-            certify: None,
-            visdist: None,
-            overrides: None,
-            silence: Vec::new(),
-            output: None,
-            json: JsonArg::default(),
-        }
+        Self { map, ..Self::default() }
     }
 }
 
@@ -147,7 +133,8 @@ pub(crate) fn compute(args: &VisArgs, run: VisRun<'_, '_>) -> Result<Outcome> {
         portals.announce();
     }
     let MapPortals { prt, path: prt_path, text, .. } = portals;
-    if is_patch(out) {
+    let is_patch = output::has_ending(out, "vis");
+    if is_patch {
         VisPatch::check(&name_of(&args.map), &bsp).in_file(&args.map)?;
     }
     check_portals(&bsp, &prt).map_err(|source| do_not_fit(&prt_path, &args.map, &source))?;
@@ -182,7 +169,7 @@ pub(crate) fn compute(args: &VisArgs, run: VisRun<'_, '_>) -> Result<Outcome> {
         proven.map_err(|error| anyhow!("{}: {error}; nothing was written", prt_path.display()))
     });
     let certified = certified.transpose()?;
-    let bytes = if is_patch(out) { patch(&args.map, &map.bytes)? } else { map.bytes.clone() };
+    let bytes = if is_patch { patch(&args.map, &map.bytes)? } else { map.bytes.clone() };
     if let Err(error) = output::save(out, &bytes) {
         kept.finish(false);
         return Err(error);
@@ -227,17 +214,10 @@ impl VisArgs {
     }
 }
 
-/// Whether the visibility is written without the map.
-fn is_patch(out: &Path) -> bool {
-    out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("vis"))
-}
-
-/// The name by which engines know a map.
 fn name_of(map: &Path) -> String {
     map.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// The bytes of a VisPatch file with the visibility of a map.
 fn patch(path: &Path, map: &[u8]) -> Result<Vec<u8>> {
     let patch = || write_vis_patches(&[VisPatch::of_map(&name_of(path), &Bsp::parse(map.to_vec())?)?]);
     patch().in_file(path)

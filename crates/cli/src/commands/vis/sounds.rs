@@ -16,7 +16,6 @@ pub(crate) enum Sound {
 }
 
 impl Sound {
-    /// All of them.
     pub(crate) const ALL: [Self; 4] = [Self::Sky, Self::Water, Self::Slime, Self::Lava];
 
     fn texture(self) -> AmbientTexture {

@@ -14,7 +14,6 @@ use sightlines::report::{WalkReport, walk_svg};
 use sightlines::walkthrough::{CameraPose, MeasureError, WalkMeasure, WalkOptions, usual_step, wander};
 use std::path::{Path, PathBuf};
 
-/// Arguments of `walk`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct WalkArgs {
     /// The table, plain or packed; blocks of a packed one are read on demand
