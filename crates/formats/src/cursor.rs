@@ -30,7 +30,6 @@ impl<'t> Cursor<'t> {
         Self { text, at: 0, line: 1, line_start: 0 }
     }
 
-    /// What was not read yet.
     pub(crate) fn rest(&self) -> &'t [u8] {
         &self.text[self.at..]
     }
@@ -39,7 +38,6 @@ impl<'t> Cursor<'t> {
         Place { line: self.line, column: self.at - self.line_start + 1 }
     }
 
-    /// Reads so many bytes.
     pub(crate) fn take(&mut self, n: usize) -> &'t [u8] {
         let taken = &self.rest()[..n];
         for (k, _) in taken.iter().enumerate().filter(|(_, byte)| **byte == b'\n') {

@@ -69,12 +69,11 @@ impl NewFolder {
     }
 
     fn beside(&self) -> Result<&Path, FolderError> {
-        if self.beside.get().is_none() {
-            let made = create_beside(&self.target);
-            let made = made.map_err(|error| cannot_be_made(&self.target, error))?;
-            return Ok(self.beside.get_or_init(|| made));
+        if let Some(beside) = self.beside.get() {
+            return Ok(beside);
         }
-        Ok(self.beside.get().map_or(&self.target, |beside| beside))
+        let made = create_beside(&self.target).map_err(|error| cannot_be_made(&self.target, error))?;
+        Ok(self.beside.get_or_init(|| made))
     }
 
     /// Writes a file into it.

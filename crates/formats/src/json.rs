@@ -28,7 +28,6 @@ impl<P: Display> Context<P> {
         E::custom("refused")
     }
 
-    /// The error for what the JSON reader reports.
     pub(crate) fn explain(&mut self, error: &serde_json::Error) -> Malformed {
         let found = match error.classify() {
             Category::Eof => "the text ends too early",
@@ -70,7 +69,6 @@ pub(crate) trait Shape<'de>: Sized {
     }
 }
 
-/// What a function makes of any value.
 pub(crate) struct Any<F>(pub(crate) F);
 
 impl<'de, T, F: FnOnce(Scalar<'_>) -> T> Shape<'de> for Any<F> {
@@ -91,7 +89,6 @@ impl<'de, T, F: FnOnce(Scalar<'_>) -> T> Shape<'de> for Any<F> {
     }
 }
 
-/// Reads a value as a shape.
 pub(crate) struct Seed<S>(pub(crate) S);
 
 impl<'de, S: Shape<'de>> DeserializeSeed<'de> for Seed<S> {

@@ -4,7 +4,6 @@
 //! on: vertices, lines, sides, the number of sectors, things. Lumps that node builders make are passed through,
 //! whatever their format. Maps of the console games are recognised and refused by name.
 
-mod choose;
 mod content;
 mod engine;
 mod list;
@@ -15,10 +14,9 @@ mod rmb;
 mod source;
 mod udmf;
 
-pub use choose::{MapChoiceError, choose_map};
 pub use content::Game;
 pub use content::{LineDef, Thing};
-pub use list::{MapLumps, list_maps};
+pub use list::{MapChoiceError, MapLumps, choose_map, list_maps};
 pub use lumps::{MapFormat, MapLump};
 pub use map::DoomMap;
 pub use rmb::RmbFile;

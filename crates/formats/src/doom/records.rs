@@ -7,9 +7,6 @@ use crate::error::{Malformed, malformed};
 use crate::wad::Wad;
 
 /// Reads the lumps of a map in a binary format.
-///
-/// # Errors
-/// [`Malformed`] for a missing lump, or one of odd size.
 pub(super) fn parse(wad: &Wad, lumps: &MapLumps) -> Result<Content, Malformed> {
     let read = Records { wad, lumps };
     let hexen = lumps.format() == MapFormat::Hexen;
@@ -31,7 +28,6 @@ pub(super) fn parse(wad: &Wad, lumps: &MapLumps) -> Result<Content, Malformed> {
     Ok(Content { vertices, lines, side_sectors, n_sectors, things, specials, numbering, game })
 }
 
-/// Access to the records of a map's lumps.
 struct Records<'w> {
     wad: &'w Wad,
     lumps: &'w MapLumps,

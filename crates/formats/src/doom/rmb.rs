@@ -35,13 +35,9 @@ struct Effect {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum EffectKind {
     /// Sees nothing, or only itself.
-    Blind {
-        own: bool,
-    },
+    Blind(bool),
     /// Is seen from nowhere, or only from itself.
-    Safe {
-        own: bool,
-    },
+    Safe(bool),
     Include,
     Exclude,
 }
@@ -75,13 +71,8 @@ impl RmbFile {
             let word = if word.is_empty() { content.as_str() } else { word };
             // The bracket that ended the word belongs to the rest.
             let found = effect(word, content[word.len()..].trim()).within(format_args!("line {line}"))?;
-            effects.extend(found.map(|(kind, sectors, targets)| Effect {
-                line,
-                map: map.clone(),
-                kind,
-                sectors,
-                targets,
-            }));
+            let map = map.clone();
+            effects.extend(found.map(|(kind, sectors, targets)| Effect { line, map, kind, sectors, targets }));
         }
         Ok(Self { effects })
     }
@@ -123,8 +114,8 @@ impl RmbFile {
         let (mut blind, mut safe) = (vec![None; n as usize], vec![None; n as usize]);
         for effect in self.effects_on(map) {
             let (list, own) = match effect.kind {
-                EffectKind::Blind { own } => (&mut blind, own),
-                EffectKind::Safe { own } => (&mut safe, own),
+                EffectKind::Blind(own) => (&mut blind, own),
+                EffectKind::Safe(own) => (&mut safe, own),
                 EffectKind::Include | EffectKind::Exclude => continue,
             };
             effect.sectors.iter().for_each(|&s| list[s as usize] = Some(own));
@@ -172,7 +163,7 @@ fn effect(word: &str, rest: &str) -> Result<Option<Found>, Malformed> {
                 1 => true,
                 _ => return Err(malformed!("the distance {distance} is not supported, only 0 and 1 are")),
             };
-            let kind = if option == "BLIND" { EffectKind::Blind { own } } else { EffectKind::Safe { own } };
+            let kind = if option == "BLIND" { EffectKind::Blind(own) } else { EffectKind::Safe(own) };
             Ok(Some((kind, sectors, Vec::new())))
         }
         _ => Err(malformed!("the option {option} is not supported")),

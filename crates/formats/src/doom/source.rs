@@ -85,7 +85,6 @@ impl DoomMapSource {
         Ok(())
     }
 
-    /// LINEDEFS and SIDEDEFS; every line has sides of its own.
     fn lines_and_sides(&self) -> (Vec<u8>, Vec<u8>) {
         let (mut lines, mut sides) = (Vec::new(), Vec::new());
         let mut side = |sector: Option<u16>| {

@@ -49,13 +49,11 @@ impl Clips {
         Ok(self.0.len() - 1)
     }
 
-    /// The clip and those around it.
     fn all(&self, clip: Option<usize>) -> impl Iterator<Item = &Clip> {
         let first = clip.map(|k| &self.0[k]);
         std::iter::successors(first, |clip| clip.outer.map(|k| &self.0[k]))
     }
 
-    /// The point of a clip's bounds that is nearest.
     pub(super) fn nearest(&self, clip: Option<usize>, point: [f64; 2]) -> [f64; 2] {
         let into = |p: [f64; 2], of: &Clip| {
             if of.is_hole {

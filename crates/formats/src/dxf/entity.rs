@@ -75,7 +75,6 @@ pub(super) enum Read<'a> {
     End(Group<'a>),
 }
 
-/// The groups of one entity.
 pub(super) struct Fields<'f, 'a> {
     pub(super) kind: &'static str,
     pub(super) line: usize,
@@ -112,7 +111,6 @@ impl<'a> Fields<'_, 'a> {
         Ok([self.number(210, 0.0)?, self.number(220, 0.0)?, self.number(230, 1.0)?])
     }
 
-    /// All numbers with that code.
     pub(super) fn numbers(&self, code: i32) -> Result<Vec<f64>, Malformed> {
         self.groups.iter().filter(|group| group.code == code).map(Group::number).collect()
     }
@@ -182,7 +180,6 @@ fn light_polyline(fields: &Fields<'_, '_>) -> Result<Shape, Malformed> {
     Ok(Shape::Path { vertices, is_closed: fields.integer(70)? & 1 != 0, is_own: true })
 }
 
-/// Flags of a POLYLINE and its vertices.
 mod flag {
     pub(super) const CLOSED: i64 = 1;
     pub(super) const SMOOTH: i64 = 4;

@@ -24,7 +24,6 @@ pub(super) struct Drawn {
 pub(super) struct Expanded {
     pub(super) entities: Vec<Drawn>,
     pub(super) clips: Clips,
-    /// What is ignored, by kind.
     ignored: BTreeMap<String, usize>,
     n_hidden: usize,
     hidden_layers: BTreeSet<u32>,
@@ -34,11 +33,9 @@ pub(super) struct Expanded {
     n_invisible: usize,
 }
 
-/// Most kinds and layers in a warning.
 const MOST: usize = 12;
 
 impl Expanded {
-    /// A sentence for each reason why entities were left out.
     pub(super) fn warnings(&self, drawing: &Drawing) -> Vec<String> {
         let mut warnings = Vec::new();
         if !self.ignored.is_empty() {

@@ -84,7 +84,6 @@ impl Filters {
         spatial.and_then(|handle| self.clips.get(&handle)).map_or(Clip::NotUnderstood, |stored| self.inverted(stored))
     }
 
-    /// A clip, which may have been inverted.
     fn inverted(&self, stored: &Stored) -> Clip {
         let own = stored.extension.and_then(|handle| self.dictionaries.get(&handle));
         let record = own.and_then(|own| entry(own, b"ACAD_XREC_ROUNDTRIP")).flatten();
@@ -98,7 +97,6 @@ impl Filters {
     }
 }
 
-/// The points of some groups.
 fn corners(groups: &[Group<'_>]) -> Result<Vec<[f64; 2]>, Malformed> {
     let of =
         |code| groups.iter().filter(move |group| group.code == code).map(Group::number).collect::<Result<Vec<_>, _>>();

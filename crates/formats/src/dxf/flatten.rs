@@ -7,7 +7,6 @@ use crate::plan::{PlanFile, PlanLines};
 use sightlines_cells::PlanLine;
 use sightlines_geometry::{Aabb, Point2, Segment2, check_coordinate};
 
-/// The plan of all pieces, entity by entity.
 pub(super) fn flatten(expanded: &Expanded, deviation: Option<f64>) -> Result<PlanFile, Malformed> {
     let deviation = deviation.unwrap_or_else(|| default_deviation(expanded));
     let mut lines = PlanLines::default();

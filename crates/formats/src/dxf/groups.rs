@@ -21,7 +21,6 @@ impl<'a> Group<'a> {
         self.code == code && self.value == value.as_bytes()
     }
 
-    /// The error of a group that stands where another should.
     pub(super) fn expected(&self, what: &str) -> Malformed {
         malformed!("expected {what}").on_line(self.line)
     }
@@ -126,7 +125,6 @@ pub(super) fn next_record<'a>(groups: &mut Groups<'a>, fields: &mut Vec<Group<'a
     Ok(record)
 }
 
-/// The error of an end mark within a section.
 pub(super) fn unended(end: &Group<'_>) -> Malformed {
     end.expected("the end of the section before EOF")
 }
@@ -141,7 +139,6 @@ pub(crate) fn is_dxf(head: &[u8]) -> bool {
     head.starts_with(BINARY) || Groups::new(head).next().is_ok_and(|group| group.is(0, "SECTION"))
 }
 
-/// The number that a group has as a handle.
 pub(super) fn handle(group: &Group<'_>) -> Option<u64> {
     u64::from_str_radix(std::str::from_utf8(group.value).ok()?, 16).ok()
 }

@@ -41,7 +41,6 @@ impl Layers {
         })
     }
 
-    /// Notes what the table of layers states of one.
     pub(super) fn state(&mut self, id: u32, is_frozen: bool, is_off: bool) {
         let layer = &mut self.layers[id as usize];
         (layer.is_frozen, layer.is_off) = (is_frozen, is_off);
@@ -77,7 +76,6 @@ impl Layers {
     }
 
     fn no_such(&self, unknown: &[String]) -> Malformed {
-        /// Most names of a list.
         const MOST: usize = 40;
         let names = list(self.layers.iter().map(|layer| layer.name.escape_debug().to_string()), MOST);
         let there = match self.layers.len() {

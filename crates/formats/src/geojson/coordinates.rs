@@ -1,6 +1,6 @@
-//! The coordinates of a geometry: nested lists, read flat.
+//! Geometries, and their coordinates: nested lists, read flat.
 
-use super::context::Context;
+use super::Context;
 use crate::json::{Scalar, Seed, Shape};
 use serde::de::{Error, MapAccess, SeqAccess};
 use sightlines_geometry::{Point2, check_coordinate};
@@ -33,7 +33,6 @@ const MAX_DEPTH: u8 = 3;
 const OTHERWISE: &str = "the coordinates are not lists of positions of two numbers or more, all equally deep";
 
 impl Coordinates {
-    /// Reads the value of a member `coordinates`.
     pub(super) fn read<'de, A: MapAccess<'de>>(context: &mut Context, map: &mut A) -> Result<Self, A::Error> {
         let mut out = Self::default();
         context.expect(OTHERWISE);
@@ -117,4 +116,44 @@ impl<'de> Shape<'de> for Nested<'_, '_> {
             _ => Err(self.context.fail(OTHERWISE)),
         }
     }
+}
+
+/// A kind of geometry.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum GeometryKind {
+    Point,
+    MultiPoint,
+    LineString,
+    MultiLineString,
+    Polygon,
+    MultiPolygon,
+}
+
+impl GeometryKind {
+    /// All of them in their order, with their names in GeoJSON, and how many lists there are around a position.
+    const ALL: [(Self, &str, u8); 6] = [
+        (Self::Point, "Point", 0),
+        (Self::MultiPoint, "MultiPoint", 1),
+        (Self::LineString, "LineString", 1),
+        (Self::MultiLineString, "MultiLineString", 2),
+        (Self::Polygon, "Polygon", 2),
+        (Self::MultiPolygon, "MultiPolygon", 3),
+    ];
+
+    /// The kind that has a name in GeoJSON.
+    pub(super) fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|(_, own, _)| *own == name).map(|(kind, ..)| kind)
+    }
+
+    pub(super) const fn depth(self) -> u8 {
+        Self::ALL[self as usize].2
+    }
+}
+
+/// A geometry whose coordinates have the depth of its kind.
+#[derive(Debug)]
+pub(super) struct Geometry {
+    pub(super) kind: GeometryKind,
+    pub(super) coordinates: Coordinates,
+    pub(super) index: Option<usize>,
 }

@@ -3,9 +3,8 @@
 //! Members come in any order, so an object is understood at its end; only the features of a collection
 //! are handed over one by one.
 
-use super::context::Place;
-use super::coordinates::Coordinates;
-use super::geometry::{Geometry, GeometryKind};
+use super::Place;
+use super::coordinates::{Coordinates, Geometry, GeometryKind};
 use super::plan_builder::PlanBuilder;
 use super::properties::{NO_PROPERTIES, OfFeature, Properties, name_of, text_of};
 use super::write::PRECISION;

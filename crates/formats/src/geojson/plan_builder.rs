@@ -1,8 +1,7 @@
 //! A plan while it is read, feature by feature.
 
-use super::context::Context;
-use super::coordinates::Coordinates;
-use super::geometry::{Geometry, GeometryKind};
+use super::Context;
+use super::coordinates::{Coordinates, Geometry, GeometryKind};
 use super::properties::{Properties, wrong};
 use crate::error::Malformed;
 use crate::plan::{PlanFile, PlanLines};
@@ -13,7 +12,6 @@ use sightlines_geometry::{Aabb, Point2};
 pub(super) struct PlanBuilder {
     lines: PlanLines,
     objects: Vec<PlanObject>,
-    /// The JSON text of the member `crs`.
     pub(super) crs: Option<String>,
     /// What the file states of its precision.
     pub(super) precision: Option<f64>,

@@ -1,12 +1,11 @@
 //! The properties of a feature that concern sight.
 
+use super::Context;
 use super::MAX_GROUPS;
-use super::context::Context;
 use crate::error::{Malformed, malformed};
 use crate::json::{Any, Scalar, Seed, Shape};
 use serde::de::{Error, MapAccess};
 
-/// Text.
 pub(super) fn text_of(value: Scalar<'_>) -> Option<String> {
     if let Scalar::Text(text) = value { Some(text.to_owned()) } else { None }
 }

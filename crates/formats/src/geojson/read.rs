@@ -1,9 +1,8 @@
 //! Reading: one pass over the text, feature by feature, of one JSON text or of one after the other.
 
-use super::context::Place;
+use super::Place;
 use super::node::{Level, Node};
 use super::plan_builder::PlanBuilder;
-use super::sequence::{Sequence, is_sequence};
 use crate::bytes::without_mark;
 use crate::error::{Malformed, in_file};
 use crate::json::{NOT_AN_OBJECT, Seed};
@@ -11,7 +10,7 @@ use crate::{PlanFile, ReadError, ReadErrorKind};
 use serde::de::DeserializeSeed;
 use sightlines_cells::Plan;
 use std::fs::File;
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
 /// Reads a plan from a GeoJSON text; see the module for what means what.
@@ -100,4 +99,23 @@ fn run<'de, R: serde_json::de::Read<'de>>(
         }
     }
     Ok(())
+}
+
+/// The byte before each text of a sequence (RFC 8142). No JSON text has it outside of a string, and in a string only escaped.
+const RECORD_SEPARATOR: u8 = 0x1E;
+
+pub(crate) fn is_sequence(text: &[u8]) -> bool {
+    text.trim_ascii_start().first() == Some(&RECORD_SEPARATOR)
+}
+
+/// Reads a sequence with tabs for separators: white space outside of strings, and refused inside. A text that was cut off leaves a string or a
+/// bracket open, so what is behind it makes no whole of it.
+pub(super) struct Sequence<R>(pub(super) R);
+
+impl<R: Read> Read for Sequence<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        let n = self.0.read(buffer)?;
+        buffer[..n].iter_mut().filter(|byte| **byte == RECORD_SEPARATOR).for_each(|byte| *byte = b'\t');
+        Ok(n)
+    }
 }

@@ -70,7 +70,6 @@ pub enum Sign {
 }
 
 impl Sign {
-    /// Whether the first bytes of a file are of the format, whatever its name.
     pub(super) fn is_in(self, head: &[u8]) -> bool {
         match self {
             Self::Magic(all) => all.iter().any(|magic| head.starts_with(magic)),

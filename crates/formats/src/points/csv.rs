@@ -55,7 +55,6 @@ fn separator_of(row: &str) -> char {
     ['\t', ';'].into_iter().find(|&c| row.contains(c)).unwrap_or(',')
 }
 
-/// The values of a line, without blanks around them and without quotes.
 fn split(row: &str, separator: char) -> Result<Vec<Value<'_>>, (usize, Malformed)> {
     let unclosed = || malformed!("the quotes are not closed at the end of the value");
     let mut values = Vec::new();

@@ -221,21 +221,15 @@ fn element_size(kind: &str, component: Component) -> Option<usize> {
     }
 }
 
-pub(super) fn view_bytes<'a>(
-    document: &Document,
-    buffers: &'a Buffers<'_>,
-    view: usize,
-) -> Result<&'a [u8], Malformed> {
-    Views { document, buffers }.bytes(view)
-}
-
-struct Views<'a, 'b, 'd> {
-    document: &'d Document,
-    buffers: &'a Buffers<'b>,
+/// A document and its bytes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Views<'a, 'b, 'd> {
+    pub(super) document: &'d Document,
+    pub(super) buffers: &'a Buffers<'b>,
 }
 
 impl<'a> Views<'a, '_, '_> {
-    fn bytes(&self, view: usize) -> Result<&'a [u8], Malformed> {
+    pub(super) fn bytes(&self, view: usize) -> Result<&'a [u8], Malformed> {
         let v = self.document.buffer_views.get(view).ok_or_else(|| no_view(view))?;
         let buffer = v.buffer;
         let whole = self.buffers.get(buffer).within(format_args!("buffer {buffer}"))?;

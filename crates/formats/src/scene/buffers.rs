@@ -89,7 +89,6 @@ impl<'a> Buffers<'a> {
         self
     }
 
-    /// What was read of files and data URIs, by buffer.
     pub(super) fn into_loaded(self) -> Vec<Option<Vec<u8>>> {
         let owned = |cell: OnceCell<Cow<'a, [u8]>>| match cell.into_inner() {
             Some(Cow::Owned(bytes)) => Some(bytes),
@@ -127,7 +126,6 @@ impl<'a> Buffers<'a> {
     }
 }
 
-/// The error of a buffer, or an accessor, that a document does not have.
 pub(super) fn missing() -> Malformed {
     malformed!("it does not exist")
 }

@@ -27,7 +27,6 @@ pub(super) enum SingleSides {
 #[derive(Debug, Default)]
 pub(super) struct Compact {
     pub(super) corners: Vec<usize>,
-    /// Triangles as indices into `corners`.
     pub(super) triangles: Vec<[u32; 3]>,
 }
 
@@ -75,7 +74,6 @@ pub(super) struct Builder {
 }
 
 impl Builder {
-    /// No objects yet, and what the file says of the whole.
     pub(super) fn saying(simplified: Option<Simplification>) -> Self {
         Self { simplified, ..Self::default() }
     }

@@ -44,7 +44,6 @@ pub(super) enum StatedMoves {
     Unclear,
 }
 
-/// Where a role stands.
 const ROLE: [&str; 2] = ["sightlines", "role"];
 /// What stands beside it of what moves.
 const MOVES: &str = "moves";
@@ -75,7 +74,6 @@ pub(super) fn simplified<'de, D: Deserializer<'de>>(deserializer: D) -> Result<O
 struct Found {
     n_keys: usize,
     leaf: Leaf,
-    /// What [`MOVES`] is beside the last key.
     moves: StatedMoves,
 }
 
@@ -101,7 +99,6 @@ impl Leaf {
     }
 }
 
-/// A value, with the keys that lead from there to what is sought.
 struct Path(&'static [&'static str]);
 
 impl Path {

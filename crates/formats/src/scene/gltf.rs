@@ -295,27 +295,25 @@ fn is_single_sided(document: &Document, material: Option<usize>) -> bool {
 
 /// Warnings of extras that state a role that there is not, or that state motion as something that is neither true nor false.
 fn unclear_extras(document: &Document) -> Vec<String> {
-    fn of<'a>(
-        what: &str,
-        said: impl Iterator<Item = (Stated, Option<&'a str>)> + Clone,
-    ) -> impl Iterator<Item = String> {
-        let list = |is_unclear: fn(&Stated) -> bool, state: String| {
-            let names: Vec<&str> = said
-                .clone()
-                .filter(|(stated, _)| is_unclear(stated))
-                .map(|(_, name)| name.unwrap_or_default())
-                .collect();
-            let (first, n) = (names.first()?, names.len());
-            Some(format!("extras of {what} state {state}: {n}, the first called {first:?}"))
-        };
-        let roles = Role::ALL.map(Role::name).join(", ");
-        let role = list(|stated| stated.role == StatedRole::Unknown, format!("a role that is none of {roles}"));
-        let moves = "a \"moves\" that is neither true nor false, which counts as true".to_owned();
-        let moves = list(|stated| stated.moves == StatedMoves::Unclear, moves);
-        role.into_iter().chain(moves)
-    }
     let nodes = document.nodes.iter().map(|node| (node.stated, node.name.as_deref()));
     let meshes = document.meshes.iter().map(|mesh| (mesh.stated, mesh.name.as_deref()));
     let materials = document.materials.iter().flatten().map(|material| (material.stated, material.name.as_deref()));
-    of("nodes", nodes).chain(of("meshes", meshes)).chain(of("materials", materials)).collect()
+    let all: [(&str, Vec<_>); 3] =
+        [("nodes", nodes.collect()), ("meshes", meshes.collect()), ("materials", materials.collect())];
+    let unknown = format!("a role that is none of {}", Role::ALL.map(Role::name).join(", "));
+    let moves = "a \"moves\" that is neither true nor false, which counts as true";
+    let mut warnings = Vec::new();
+    for (what, said) in &all {
+        for (state, is_of_role) in [(unknown.as_str(), true), (moves, false)] {
+            let is_unclear = |stated: &Stated| match is_of_role {
+                true => stated.role == StatedRole::Unknown,
+                false => stated.moves == StatedMoves::Unclear,
+            };
+            let names = said.iter().filter(|(stated, _)| is_unclear(stated)).map(|(_, name)| name.unwrap_or_default());
+            if let (Some(first), n) = (names.clone().next(), names.count()) {
+                warnings.push(format!("extras of {what} state {state}: {n}, the first called {first:?}"));
+            }
+        }
+    }
+    warnings
 }

@@ -46,7 +46,6 @@ pub(super) struct Document {
 }
 
 impl Document {
-    /// The first of its extensions by which a program may move any of its nodes.
     pub(super) fn moves_everything(&self) -> Option<&str> {
         moves_everything(self.extensions.iter().chain(&self.extensions_used).map(String::as_str))
     }
@@ -92,12 +91,10 @@ impl Node {
         self.extensions.as_ref().is_some_and(|extensions| extensions.is_invisible)
     }
 
-    /// The nodes that are coarser levels of it.
     pub(super) fn coarser(&self) -> &[usize] {
         self.extensions.as_ref().map_or(&[], |extensions| &extensions.coarser)
     }
 
-    /// Why programs may move it, and all below it, anywhere.
     pub(super) fn loose(&self) -> Option<String> {
         if self.stated.moves() {
             return Some("extras".to_owned());
@@ -218,7 +215,6 @@ fn lenient<'de, D: Deserializer<'de>, T: DeserializeOwned>(deserializer: D) -> R
     Ok(list.into_iter().map(|element| serde_json::from_value(element).ok()).collect())
 }
 
-/// The number of the usual mode: a list of triangles.
 pub(super) const TRIANGLES: u32 = 4;
 
 fn triangles() -> u32 {

@@ -22,7 +22,6 @@ mod buffers;
 mod build;
 mod extras;
 mod gltf;
-mod instances;
 mod json;
 mod material;
 mod motion;
@@ -38,7 +37,6 @@ mod source;
 mod surface;
 mod transform;
 mod write;
-mod write_error;
 mod write_obj;
 
 pub(crate) use gltf::MAGIC as GLB_MAGIC;
@@ -49,8 +47,7 @@ pub use rewrite::RewriteError;
 pub use role::Role;
 pub use source::{GltfSource, ObjectOrigin, parse_glb_with_source};
 pub use surface::{BackFaces, Classified, ParseBackFacesError, SceneReadOptions};
-pub use write::{Rounding, write_glb, write_rounded_glb, write_simplified_glb};
-pub use write_error::SceneWriteError;
+pub use write::{Rounding, SceneWriteError, write_glb, write_rounded_glb, write_simplified_glb};
 pub use write_obj::{write_obj, write_simplified_obj};
 
 use crate::ReadError;

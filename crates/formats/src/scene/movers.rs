@@ -95,7 +95,6 @@ pub(super) struct NodeExtensions {
 }
 
 impl NodeExtensions {
-    /// Why programs may move the node, if they may.
     pub(super) fn reason(&self) -> Option<String> {
         let name = self.mover.as_deref()?;
         Some(if begins_like(name, &MOVING) { name.to_owned() } else { format!("the unknown extension {name}") })
@@ -134,7 +133,6 @@ impl<'de> Deserialize<'de> for NodeExtensions {
     }
 }
 
-/// The nodes that are listed as levels.
 fn levels(value: &Value) -> Option<Vec<usize>> {
     let ids = value.get("ids")?.as_array()?;
     ids.iter().map(as_index).collect()

@@ -1,15 +1,17 @@
 //! The nodes of a scene of a glTF: where they are in the world, and what they have of those above them.
 
 use super::MAX_OBJECTS;
+use super::accessor::{AccessorRole, Elements};
 use super::buffers::Buffers;
-use super::instances::{no_instances, transforms};
 use super::json::{Document, Mesh, Node, Primitive, SceneRoots};
 use super::material::see_through;
 use super::motion::Motions;
+use super::movers::{INSTANCING, Instances};
 use super::role::{MeshNames, Role, role_of_name};
 use super::surface::Evidence;
 use super::transform::Transform;
 use crate::error::{Malformed, malformed};
+use sightlines_cells::Point3;
 use std::collections::BTreeSet;
 
 /// A node that has a mesh, and where it is in the world.
@@ -125,7 +127,6 @@ pub(super) fn too_many(what: &str, max: usize) -> Malformed {
     malformed!("with it the scene has more than {max} {what}")
 }
 
-/// The scene of a document that has this name, or else this index.
 fn scene_called(document: &Document, name: &str) -> Result<usize, Malformed> {
     let of_name = document.scenes.iter().position(|scene| scene.name.as_deref() == Some(name));
     let of_index = || name.parse().ok().filter(|&index: &usize| index < document.scenes.len());
@@ -159,7 +160,6 @@ fn roots(document: &Document, asked: Option<&str>) -> Result<Vec<usize>, Malform
 }
 
 pub(super) struct Nodes<'a> {
-    /// Those with meshes, parents before children.
     pub(super) placed: Vec<Placed<'a>>,
     /// The parent of each node of the scene, `Some(None)` for a root; `None` for nodes that are of no or another scene.
     pub(super) above: Vec<Option<Option<usize>>>,
@@ -239,4 +239,41 @@ fn coarser_levels(document: &Document, roots: &[usize]) -> BTreeSet<usize> {
         stack.extend(document.nodes[node].children.iter().filter(|child| !all.contains(child)));
     }
     found
+}
+
+/// Where each instance is in the coordinates of its node.
+///
+/// # Source
+/// The specification of `EXT_mesh_gpu_instancing`: the transform of an instance is applied before that of the node.
+fn transforms(instances: &Instances, document: &Document, buffers: &Buffers<'_>) -> Result<Vec<Transform>, Malformed> {
+    let [translation, rotation, scale] = *instances;
+    let misfit =
+        |attribute: &str, accessor: usize| malformed!("{INSTANCING}: {attribute} (accessor {accessor}) does not fit");
+    let read = |attribute: &'static str, accessor: Option<usize>, kind: &str| {
+        let Some(accessor) = accessor else { return Ok(None) };
+        let of_kind = document.accessors.get(accessor).is_some_and(|a| a.kind == kind);
+        match Elements::new(document, buffers, accessor, AccessorRole::Attribute) {
+            Ok(elements) if of_kind => Ok(Some((elements, attribute, accessor))),
+            _ => Err(misfit(attribute, accessor)),
+        }
+    };
+    let all =
+        [read("TRANSLATION", translation, "VEC3")?, read("ROTATION", rotation, "VEC4")?, read("SCALE", scale, "VEC3")?];
+    let n = all.iter().flatten().map(|(elements, ..)| elements.count).min().ok_or_else(no_instances)?;
+    if let Some((_, attribute, accessor)) = all.iter().flatten().find(|(elements, ..)| elements.count != n) {
+        return Err(misfit(attribute, *accessor));
+    }
+    let [translation, rotation, scale] = all.map(|found| found.map(|(elements, ..)| elements));
+    let numbers = |of: Option<Elements<'_>>, k: usize| of.map(|elements| elements.normalized_numbers(k));
+    let point = |of, k, without: Point3| numbers(of, k).and_then(|all| all.try_into().ok()).unwrap_or(without);
+    let transform = |k: usize| {
+        let turn = numbers(rotation, k).and_then(|numbers| numbers.try_into().ok()).unwrap_or([0.0, 0.0, 0.0, 1.0]);
+        Transform::from_parts(point(translation, k, [0.0; 3]), turn, point(scale, k, [1.0; 3]))
+    };
+    (0..n).map(transform).collect()
+}
+
+/// The error of a mesh that is to be drawn many times, and nowhere.
+fn no_instances() -> Malformed {
+    malformed!("{INSTANCING} without TRANSLATION, ROTATION or SCALE")
 }

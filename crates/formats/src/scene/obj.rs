@@ -130,7 +130,6 @@ pub fn parse_obj_with(
     builder.finish(SceneFormat::Obj, options)
 }
 
-/// What is known of the materials of an OBJ.
 struct Surfaces {
     /// Why each lets light through; `None` for one that is opaque.
     known: BTreeMap<String, Option<String>>,
@@ -231,7 +230,6 @@ struct Obj {
     libraries: Vec<String>,
     /// Why faces are none, in the order of the file.
     wrong: Vec<Malformed>,
-    /// What a comment of ours states of the whole.
     simplified: Option<Simplification>,
 }
 
@@ -241,14 +239,12 @@ struct Face {
     line: usize,
     first_corner: usize,
     n_corners: usize,
-    /// Index into the names of materials.
     material: Option<usize>,
 }
 
 #[derive(Debug)]
 struct FaceCut {
     corners: Vec<usize>,
-    /// Indices into `corners`.
     triangles: Vec<[usize; 3]>,
     /// Why it is not known what of these triangles is drawn.
     ambiguous: Option<Malformed>,
@@ -258,7 +254,6 @@ struct FaceCut {
 struct Group {
     name: String,
     first_face: usize,
-    /// Whether a comment of ours states that it hides nothing.
     is_see_through: bool,
 }
 
@@ -436,7 +431,6 @@ fn keyword(line: &[u8]) -> &[u8] {
     &line[..line.iter().position(u8::is_ascii_whitespace).unwrap_or(line.len())]
 }
 
-/// What follows the keyword.
 fn behind(line: &[u8]) -> &[u8] {
     line.trim_ascii_start()[keyword(line).len()..].trim_ascii()
 }

@@ -14,7 +14,6 @@ pub struct GltfSource {
     pub(super) folder: Option<Folder>,
     /// What was read of buffers outside `bytes`, by buffer.
     pub(super) loaded: Loaded,
-    /// The nodes with meshes, in the order of their objects.
     pub(super) origins: Vec<NodeOrigin>,
     /// For meshes that were read, for each primitive the indices in its accessors of its object's vertices, ascending.
     pub(super) corners: Vec<Vec<Vec<usize>>>,
@@ -56,7 +55,6 @@ pub fn parse_glb_with_source(bytes: Vec<u8>, folder: Option<&Path>) -> Result<(S
     parse_with_source(bytes, folder, &SceneReadOptions::default())
 }
 
-/// As [`parse_glb_with_source`], with options.
 pub(super) fn parse_with_source(
     bytes: Vec<u8>,
     folder: Option<&Path>,

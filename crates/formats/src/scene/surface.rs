@@ -106,7 +106,6 @@ pub(super) struct Classification {
     pub(super) reason: String,
     /// Whether a role or an option calls it an occluder, which it is not, because it moves.
     pub(super) is_overruled: bool,
-    /// Whether a role or an option calls it an occluder, which it is.
     pub(super) is_vouched_for: bool,
 }
 

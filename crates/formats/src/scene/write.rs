@@ -1,10 +1,45 @@
 //! Scenes in space as GLB.
 
 use super::Simplification;
-use super::write_error::SceneWriteError;
 use sightlines_cells::{Point3, Scene, SceneObject};
 use sightlines_geometry::Aabb;
 use std::fmt::{Arguments, Write};
+
+/// Why a scene cannot be written as GLB or OBJ.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SceneWriteError {
+    /// GLB holds single precision, and the coordinate needs more.
+    #[error("object {object}, vertex {vertex}: {value:?} is not a number of single precision")]
+    Precision {
+        /// Index of the object.
+        object: usize,
+        /// Index of the vertex in it.
+        vertex: usize,
+        /// The coordinate.
+        value: f64,
+    },
+    /// glTF has no meshes without corners.
+    #[error("object {object} has no vertices")]
+    Empty {
+        /// Index of the object.
+        object: usize,
+    },
+    /// An OBJ cannot hold an object.
+    #[error("object {object}: an OBJ cannot hold {what}")]
+    Obj {
+        /// Index of the object.
+        object: usize,
+        /// What of it.
+        what: &'static str,
+    },
+    /// A GLB has at most 4 GiB.
+    #[error("{len} bytes are too many for a GLB")]
+    TooLarge {
+        /// Bytes of the file.
+        len: usize,
+    },
+}
 
 /// Writes a scene as GLB: a node, a mesh and a primitive per object, without transforms.
 ///
@@ -114,7 +149,6 @@ fn json(value: &impl serde::Serialize) -> String {
     serde_json::to_string(value).expect("texts and finite numbers are JSON")
 }
 
-/// A member behind others, if there is a value.
 fn member(name: &str, value: Option<String>) -> String {
     value.map_or_else(String::new, |value| format!(",\"{name}\":{value}"))
 }
@@ -125,7 +159,6 @@ struct Parts {
     rounding: Rounding,
     nodes: List,
     meshes: List,
-    /// All different.
     materials: Vec<&'static str>,
     accessors: List,
     views: List,

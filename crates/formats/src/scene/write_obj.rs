@@ -1,6 +1,6 @@
 //! Scenes in space as OBJ.
 
-use super::write_error::SceneWriteError;
+use super::write::SceneWriteError;
 use super::{MIRROR_SUFFIX, Simplification};
 use sightlines_cells::{Scene, SceneObject};
 use std::fmt::Write;

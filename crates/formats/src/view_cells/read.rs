@@ -216,7 +216,6 @@ const NO_AXIS: &str = "\"axes\" is not a list of three numbers";
 const NO_MIN: &str = "\"min\" is not a list of three numbers";
 const NO_MAX: &str = "\"max\" is not a list of three numbers";
 
-/// Three coordinates, and what is wrong with anything else.
 struct Corner<'r> {
     context: &'r mut Context<Place>,
     member: &'static str,

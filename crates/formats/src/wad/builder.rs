@@ -51,7 +51,6 @@ impl WadBuilder {
         Ok(self)
     }
 
-    /// Appends a lump under a name that is taken as it stands; returns its entry.
     pub(super) fn push(&mut self, name: LumpName, data: &[u8]) -> Result<Entry, WadError> {
         // Lumps begin at multiples of four, for engines that map the file and read numbers in place.
         let start = self.bytes.len().next_multiple_of(4);

@@ -5,18 +5,15 @@
 //! of scope here.
 
 mod builder;
-mod error;
-mod name;
 mod rewrite;
 
 pub use builder::WadBuilder;
-pub use error::WadError;
-pub use name::LumpName;
 pub use rewrite::Edit;
 
 use crate::ReadError;
 use crate::bytes::{bytes_at, i32_at};
 use crate::error::{Malformed, in_file, malformed};
+use std::fmt;
 use std::fs::File;
 use std::io::Read;
 use std::ops::Range;
@@ -146,7 +143,6 @@ impl Wad {
     }
 }
 
-/// The first twelve bytes, checked against the length of the file.
 struct Header {
     kind: WadKind,
     count: u32,
@@ -230,6 +226,13 @@ fn check_overlaps(lumps: &[Lump]) -> Result<(), Malformed> {
     Ok(())
 }
 
+/// Eight bytes, as they stand in the directory. The name ends at the first zero; what follows it is
+/// kept but means nothing.
+///
+/// `==` compares all eight bytes; [`LumpName::is`] compares names.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub struct LumpName([u8; 8]);
+
 impl LumpName {
     /// A name of up to eight ASCII characters, filled up with zeros.
     ///
@@ -244,4 +247,79 @@ impl LumpName {
         raw[..name.len()].copy_from_slice(name.as_bytes());
         Ok(Self::from_raw(raw))
     }
+
+    /// The name that stands in a directory as these bytes.
+    pub const fn from_raw(raw: [u8; 8]) -> Self {
+        Self(raw)
+    }
+
+    /// All eight bytes.
+    pub const fn raw(&self) -> [u8; 8] {
+        self.0
+    }
+
+    /// The bytes before the first zero.
+    pub fn text(&self) -> &[u8] {
+        let end = self.0.iter().position(|&b| b == 0).unwrap_or(self.0.len());
+        &self.0[..end]
+    }
+
+    /// Whether this is the name `name`. Engines ignore case, so this does.
+    pub fn is(&self, name: &str) -> bool {
+        self.text().eq_ignore_ascii_case(name.as_bytes())
+    }
+}
+
+impl fmt::Display for LumpName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.text().escape_ascii())
+    }
+}
+
+impl fmt::Debug for LumpName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "LumpName(\"{}\")", self.0.escape_ascii())
+    }
+}
+
+/// Why a WAD cannot be written.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum WadError {
+    /// A name that is empty, longer than eight characters, or not ASCII.
+    #[error("\"{}\" cannot be the name of a lump: it takes 1 to 8 ASCII characters", name.escape_debug())]
+    Name {
+        /// The name.
+        name: String,
+    },
+    /// The file to be written would be larger than its 32-bit places can say.
+    #[error("lump {lump} would end at byte {end}, past what a WAD can hold")]
+    TooLarge {
+        /// Index of the lump, or the number of lumps for the directory.
+        lump: usize,
+        /// Where it would end.
+        end: u64,
+    },
+    /// An edit names a lump that is not there.
+    #[error("there is no lump {lump} among {n_lumps}")]
+    NoSuchLump {
+        /// The index.
+        lump: usize,
+        /// How many there are.
+        n_lumps: usize,
+    },
+    /// A map has neither a REJECT lump to replace nor a SECTORS or, as text, ENDMAP lump to put one beside.
+    #[error("map {map} has no SECTORS or ENDMAP lump beside which REJECT could stand")]
+    NoPlace {
+        /// The map's marker.
+        map: LumpName,
+    },
+    /// A map has more sides than lines can name.
+    #[error("map {map}: SIDEDEFS: {n_sides} sides are more than lines can name")]
+    TooManySides {
+        /// The map's marker.
+        map: LumpName,
+        /// How many it has.
+        n_sides: usize,
+    },
 }

@@ -15,9 +15,6 @@ use lexer::{Lexer, Piece};
 use values::Value;
 
 /// Reads a text. Memory within a small multiple of its length; each byte is looked at once or twice.
-///
-/// # Errors
-/// [`Malformed`] with the line and column of the first thing that is wrong.
 pub(super) fn parse(text: &[u8]) -> Result<Content, Malformed> {
     let (lexer, content) = (Lexer::new(text), Content::default());
     let mut reader = Reader { lexer, content, namespace: b"", lines: vec![], sides: vec![] };
@@ -75,19 +72,15 @@ impl<'t> Reader<'t> {
         Ok(true)
     }
 
-    /// Reads a block behind its brace.
     fn block_of(&mut self, name: &[u8], place: Place) -> Result<(), Malformed> {
-        let content = &self.content;
         match name.to_ascii_lowercase().as_slice() {
             b"vertex" => {
-                let index = content.vertices.len();
-                let block = self.block(("vertex", index, place), ["x", "y"])?;
+                let block = self.block(("vertex", self.content.vertices.len(), place), ["x", "y"])?;
                 self.content.vertices.push([block.coordinate(0)?, block.coordinate(1)?]);
             }
             b"linedef" => {
-                let index = content.lines.len();
-                let block = self
-                    .block(("linedef", index, place), ["v1", "v2", "sidefront", "sideback", "twosided", "special"])?;
+                let keys = ["v1", "v2", "sidefront", "sideback", "twosided", "special"];
+                let block = self.block(("linedef", self.content.lines.len(), place), keys)?;
                 let flags = if block.flag(4)? { ML_TWOSIDED } else { 0 };
                 let (right, left) = (block.optional_index(2)?, block.optional_index(3)?);
                 let line = LineDef { v1: block.index(0)?, v2: block.index(1)?, flags, right, left };
@@ -97,19 +90,16 @@ impl<'t> Reader<'t> {
                 self.lines.push(place);
             }
             b"sidedef" => {
-                let index = content.side_sectors.len();
-                let block = self.block(("sidedef", index, place), ["sector"])?;
+                let block = self.block(("sidedef", self.content.side_sectors.len(), place), ["sector"])?;
                 self.content.side_sectors.push(block.index(0)?);
                 self.sides.push(place);
             }
             b"sector" => {
-                let index = content.n_sectors;
-                self.block(("sector", index, place), [])?;
+                self.block(("sector", self.content.n_sectors, place), [])?;
                 self.content.n_sectors += 1;
             }
             b"thing" => {
-                let index = content.things.len();
-                let block = self.block(("thing", index, place), ["x", "y", "type"])?;
+                let block = self.block(("thing", self.content.things.len(), place), ["x", "y", "type"])?;
                 let thing = Thing { x: block.coordinate(0)?, y: block.coordinate(1)?, kind: block.integer(2)? };
                 self.content.things.push(thing);
             }
@@ -142,7 +132,6 @@ impl<'t> Reader<'t> {
         }
     }
 
-    /// Reads a value and the semicolon behind it.
     fn value(&mut self) -> Result<Value<'t>, Malformed> {
         let (piece, place) = self.lexer.next()?;
         if !matches!(piece, Piece::Word(_) | Piece::Quoted(_)) {

@@ -70,7 +70,6 @@ impl<const N: usize> Block<'_, N> {
         self.whole(k, "a whole number")
     }
 
-    /// The number of a block.
     pub(super) fn index(&self, k: usize) -> Result<u32, Malformed> {
         self.whole(k, "the number of a block")
     }

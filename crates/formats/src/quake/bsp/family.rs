@@ -5,17 +5,12 @@ use super::{BspFormat, lump_range};
 use crate::bytes::i32_at;
 use crate::error::{Malformed, malformed};
 
-/// What is wrong with a map of Half-Life: Blue Shift.
 const BLUE_SHIFT: &str = "lump 0 has planes and lump 1 has none, as in maps of Half-Life: Blue Shift, which are not read; with the first \
                           two entries of the directory exchanged this is a map of Half-Life";
 
-/// Bytes of an entry of the directory.
 const ENTRY: usize = 8;
 
 /// The format of a file whose first bytes are those of `begins`, and which has all of its header.
-///
-/// # Errors
-/// [`Malformed`] for relatives that are not read, and for lumps outside the file.
 pub(super) fn told_apart(begins: BspFormat, bytes: &[u8]) -> Result<BspFormat, Malformed> {
     match begins {
         BspFormat::Bsp29 if is_hexen2(bytes) => Ok(BspFormat::Hexen2),

@@ -47,7 +47,6 @@ pub(super) enum Bounds {
 }
 
 impl Bounds {
-    /// The low and the high corner.
     pub(super) fn of(self, record: &[u8]) -> [[f32; 3]; 2] {
         let number = |k: usize| match self {
             Self::Short(at) => f32::from(i16_at(record, at + 2 * k)),
@@ -100,7 +99,6 @@ pub(super) struct Layout {
     pub(super) planes: Records,
     /// The plane comes first in a record, then two children.
     pub(super) nodes: Records,
-    /// Whether children have 16 bits.
     pub(super) short_children: bool,
     pub(super) leafs: Records,
     /// What fills a leaf, if the format has that.
@@ -149,6 +147,13 @@ const fn records(lump: usize, len: usize) -> Records {
     Records { lump, len }
 }
 
+/// Edges, and lists of them, in these lumps; in the variants with wider numbers, too.
+const fn edges(lump: usize, surfedges: usize, is_wide: bool) -> FaceForm {
+    let (len, first, count) =
+        if is_wide { (8, Number::I32(8), Number::U32(12)) } else { (4, Number::I32(4), Number::U16(8)) };
+    FaceForm::Edges(Edges { edges: records(lump, len), surfedges, first, count })
+}
+
 const BSP29: Layout = Layout {
     magic: &[29, 0, 0, 0],
     name: "BSP 29",
@@ -172,19 +177,10 @@ const BSP29: Layout = Layout {
     model_faces: 56,
     vertices: records(3, 12),
     faces: records(7, 20),
-    face_form: FaceForm::Edges(Edges {
-        edges: records(12, 4),
-        surfedges: 13,
-        first: Number::I32(4),
-        count: Number::U16(8),
-    }),
+    face_form: edges(12, 13, false),
     face_texinfo: Some(Number::U16(10)),
     marks: records(11, 2),
 };
-
-/// Faces, edges and marks of the wide variants of version 29.
-const WIDE_FACES: FaceForm =
-    FaceForm::Edges(Edges { edges: records(12, 8), surfedges: 13, first: Number::I32(8), count: Number::U32(12) });
 
 const BSP2: Layout = Layout {
     magic: b"BSP2",
@@ -196,7 +192,7 @@ const BSP2: Layout = Layout {
     leaf_faces: [Number::U32(32), Number::U32(36)],
     leaf_ambient: Some(40),
     faces: records(7, 28),
-    face_form: WIDE_FACES,
+    face_form: edges(12, 13, true),
     face_texinfo: Some(Number::U32(16)),
     marks: records(11, 4),
     ..BSP29
@@ -234,30 +230,21 @@ const QUAKE2: Layout = Layout {
     lump_names: &QUAKE2_LUMPS,
     visibility: 3,
     row_form: RowForm::SeenAndHeard,
-    planes: records(1, 20),
     nodes: records(4, 28),
     short_children: false,
     leafs: records(8, 28),
-    leaf_contents: Some(0),
     leaf_row: Number::I16(4),
-    leaf_bounds: Bounds::Short(8),
-    leaf_faces: [Number::U16(20), Number::U16(22)],
     leaf_ambient: None,
     has_sounds: false,
     models: records(13, 48),
-    model_root: Some(36),
     model_leafs: None,
     model_faces: 40,
     vertices: records(2, 12),
     faces: records(6, 20),
-    face_form: FaceForm::Edges(Edges {
-        edges: records(11, 4),
-        surfedges: 12,
-        first: Number::I32(4),
-        count: Number::U16(8),
-    }),
+    face_form: edges(11, 12, false),
     face_texinfo: None,
     marks: records(9, 2),
+    ..BSP29
 };
 
 const QBISM: Layout = Layout {
@@ -270,12 +257,7 @@ const QBISM: Layout = Layout {
     leaf_bounds: Bounds::Float(12),
     leaf_faces: [Number::U32(36), Number::U32(40)],
     faces: records(6, 28),
-    face_form: FaceForm::Edges(Edges {
-        edges: records(11, 8),
-        surfedges: 12,
-        first: Number::I32(8),
-        count: Number::U32(12),
-    }),
+    face_form: edges(11, 12, true),
     marks: records(9, 4),
     ..QUAKE2
 };
@@ -289,23 +271,19 @@ const QUAKE3: Layout = Layout {
     row_form: RowForm::Raw,
     planes: records(2, 16),
     nodes: records(3, 36),
-    short_children: false,
     leafs: records(4, 48),
     leaf_contents: None,
     leaf_row: Number::I32(0),
     leaf_bounds: Bounds::Int(8),
     leaf_faces: [Number::U32(32), Number::U32(36)],
-    leaf_ambient: None,
-    has_sounds: false,
     models: records(7, 40),
     model_root: None,
-    model_leafs: None,
     model_faces: 24,
     vertices: records(10, 44),
     faces: records(13, 104),
     face_form: FaceForm::Vertices { indices: 11 },
-    face_texinfo: None,
     marks: records(5, 4),
+    ..QUAKE2
 };
 
 const WOLFENSTEIN: Layout = Layout { magic: b"IBSP\x2f\0\0\0", name: "IBSP 47", game: "Wolfenstein", ..QUAKE3 };

@@ -25,7 +25,6 @@ mod rewrite;
 mod surfaces;
 mod tree;
 mod triangles;
-mod world_faces;
 
 pub use covers::FaceCover;
 pub use faces::{AmbientKind, AmbientTexture, AmbientTextures};
@@ -33,9 +32,8 @@ pub(in crate::quake) use layout::RowForm;
 pub use leaf::{BspLeaf, LeafKind, LeafRow};
 pub use places::ClusterPlaces;
 pub use rewrite::VisibilityLump;
-pub use surfaces::LeafFaces;
+pub use surfaces::{LeafFaces, WorldFaces};
 pub use tree::{BspChild, BspNode, BspTree};
-pub use world_faces::WorldFaces;
 
 use crate::bytes::{i32_at, u32_at};
 use crate::error::{Malformed, malformed};
@@ -142,7 +140,6 @@ impl BspFormat {
         format!("lump {index} ({})", self.lump_names()[index])
     }
 
-    /// The bytes of a lump, if they are a whole number of records.
     fn whole_records(self, lump: usize, record: usize, bytes: &[u8]) -> Result<&[u8], Malformed> {
         if bytes.len().is_multiple_of(record) {
             return Ok(bytes);

@@ -69,7 +69,6 @@ impl Bsp {
         Ok(out)
     }
 
-    /// Where the new lump goes.
     fn splice(&self, new_len: usize) -> Splice {
         let n_bytes = self.bytes.len();
         // Multiples of four stay such: what follows moves by a multiple of four. If nothing follows, the file
@@ -177,7 +176,6 @@ struct Splice {
     pad: usize,
 }
 
-/// Writes a number that is known to fit 31 bits.
 fn put(bytes: &mut [u8], at: usize, number: usize) {
     bytes[at..at + 4].copy_from_slice(&(number as u32).to_le_bytes());
 }

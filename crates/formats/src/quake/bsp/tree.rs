@@ -87,7 +87,6 @@ impl Bsp {
         Ok(BspTree { nodes: tree.nodes, root })
     }
 
-    /// The record of model 0, which is the world.
     pub(super) fn world_model(&self) -> Result<&[u8], Malformed> {
         let models = self.records(self.format().layout().models)?;
         models.iter().next().ok_or_else(|| malformed!("{}: there is no model 0", models.label()))
@@ -125,7 +124,6 @@ impl Growing {
     }
 }
 
-/// The lumps that a tree is read from.
 struct NodesOfFile<'b> {
     layout: &'static Layout,
     planes: Records<'b>,
@@ -147,7 +145,6 @@ impl NodesOfFile<'_> {
         })
     }
 
-    /// The normal and the distance of a node's plane.
     fn plane(&self, node: u32) -> Result<(Point3, f64), Malformed> {
         let found = i64::from(u32_at(self.nodes.get(node as usize), 0));
         let plane = self.planes.named((self.nodes.lump, node as usize), found)?;

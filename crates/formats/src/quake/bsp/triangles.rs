@@ -1,8 +1,7 @@
 //! Faces of Quake III: runs of vertices, as triangles or as the grid of a curved face.
 
 use super::records::Records;
-use super::surfaces::Vertices;
-use super::world_faces::WorldFaces;
+use super::surfaces::{Vertices, WorldFaces};
 use super::{Bsp, layout};
 use crate::bytes::i32_at;
 use crate::error::{Malformed, malformed};
@@ -18,9 +17,6 @@ const GRID: usize = 96;
 const CURVED: i32 = 2;
 
 /// The faces of the world, from their records. Memory in proportion to the lumps, as runs may share little.
-///
-/// # Errors
-/// [`Malformed`] for a run, an index or a grid that is not there.
 ///
 /// # Source
 /// The published tools and engine of Quake III for the records.
@@ -70,7 +66,6 @@ pub(super) fn faces(
     Ok(found)
 }
 
-/// The quadrangles of a grid; the line of one that is only that.
 fn grid(points: &[Point3], width: usize, found: &mut WorldFaces) {
     let height = points.len() / width;
     if width == 1 || height == 1 {

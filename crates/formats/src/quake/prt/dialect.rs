@@ -24,7 +24,6 @@ impl PrtDialect {
     /// All that are read.
     pub const ALL: [Self; 5] = [Self::Prt1, Self::Prt2, Self::Prt1Am, Self::HalfLife, Self::Quake3];
 
-    /// The first bytes of files of each that has such.
     pub(crate) const MAGICS: [&'static [u8]; 3] = [b"PRT1", b"PRT2", b"PRT1-AM"];
 
     /// The word that a file begins with, if it is one.

@@ -21,23 +21,21 @@
 
 mod dialect;
 mod faces;
-mod graph;
 mod lexer;
 mod orientation;
 mod read;
-mod repeats;
 mod write;
 
 pub use dialect::{LeafList, PrtDialect};
 pub use faces::SolidFace;
-pub use graph::graph_of_prt;
 pub use read::{line_of_portal, parse_prt};
 pub use write::write_prt;
 
 use super::{LeafClusters, MAX_CLUSTERS};
 use crate::error::{Malformed, Within, malformed};
 use crate::point::{are_collinear, check_point};
-use sightlines_cells::{Point3, Portal3};
+use sightlines_cells::{CellGraph, CellId, Convex, Point3, Portal3};
+use std::collections::HashSet;
 use std::fmt::Display;
 use std::ops::RangeInclusive;
 
@@ -73,7 +71,6 @@ struct Record {
     end: usize,
 }
 
-/// The error of a number that is not in its range.
 fn beyond<T: Display>(found: impl Display, range: RangeInclusive<T>) -> Malformed {
     malformed!("{found} is not from {} to {}", range.start(), range.end())
 }
@@ -210,4 +207,37 @@ impl Prt {
         let identity = || LeafClusters::identity(self.n_clusters).expect("a Prt has 1 to MAX_CLUSTERS clusters");
         self.listed_leafs().cloned().unwrap_or_else(identity)
     }
+
+    /// For each portal whether one before it joins the same clusters and has the same corners, whichever of them is the first and from whichever side they
+    /// are seen. Once is enough: a line that passes the one passes the other, and a search would follow both. O(points).
+    pub fn repeats(&self) -> Vec<bool> {
+        let mut seen = HashSet::new();
+        self.portals().map(|portal| !seen.insert(key(&portal))).collect()
+    }
+
+    /// Number of [repeats](Self::repeats).
+    pub fn n_repeats(&self) -> usize {
+        self.repeats().into_iter().filter(|&is_repeat| is_repeat).count()
+    }
+}
+
+/// The same for equal portals: seen from the cluster with the larger number, beginning with the least corner.
+fn key(portal: &PrtPortal<'_>) -> ([u32; 2], Vec<[u64; 3]>) {
+    let [a, b] = portal.clusters;
+    let mut corners: Vec<[u64; 3]> = portal.points.iter().map(|p| p.map(|x| (x + 0.0).to_bits())).collect();
+    if a > b {
+        corners.reverse();
+    }
+    let least = (0..corners.len()).min_by_key(|&k| corners[k]).unwrap_or(0);
+    corners.rotate_left(least);
+    ([a.min(b), a.max(b)], corners)
+}
+
+/// The graph of clusters: cell `k` is cluster `k`. Portals without area are left out, as nothing is seen through
+/// them, and so are [repeats](Prt::repeats); corners that convex polygons do not have are left out too, which only widens a portal. O(n log n).
+pub fn graph_of_prt(prt: &Prt) -> CellGraph<Convex> {
+    let shape = |points: &[_]| Portal3::around(points);
+    let once = prt.portals().zip(prt.repeats()).filter(|(_, is_repeat)| !is_repeat).map(|(portal, _)| portal);
+    let portals = once.filter_map(|p| Some((p.clusters.map(CellId), shape(p.points)?)));
+    CellGraph::of_portals(prt.n_clusters() as usize, portals.collect())
 }

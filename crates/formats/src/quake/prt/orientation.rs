@@ -72,7 +72,6 @@ impl Prt {
     }
 }
 
-/// The plane of a portal, rounded.
 struct Plane {
     normal: Point3,
     middle: Point3,

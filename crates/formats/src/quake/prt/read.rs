@@ -251,7 +251,6 @@ fn point_range() -> RangeInclusive<u64> {
     *PORTAL_POINTS.start() as u64..=*PORTAL_POINTS.end() as u64
 }
 
-/// A whole number in a range whose end fits 32 bits.
 fn whole(token: &Token<'_>, item: Arguments<'_>, range: RangeInclusive<u64>) -> Result<u32, Malformed> {
     let text = token.bytes.and_then(|bytes| std::str::from_utf8(bytes).ok()).unwrap_or_default();
     let digits = text.strip_prefix(['+', '-']).unwrap_or(text);

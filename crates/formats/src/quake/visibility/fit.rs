@@ -3,6 +3,7 @@
 use super::orientation::inside_out;
 use super::{Bsp, LeafClusters, VisibilityError};
 use crate::quake::Prt;
+use sightlines_geometry::Aabb;
 
 /// Whether portals of Quake II have more clusters than the map, and list those that are the map's as leafs: the others are what can be seen through, as
 /// portals that are made from a map may have it.
@@ -19,11 +20,8 @@ pub(super) fn has_more_clusters(bsp: &Bsp, leafs: &LeafClusters) -> bool {
 pub fn check_match(bsp: &Bsp, leafs: &LeafClusters) -> Result<(), VisibilityError> {
     if bsp.format().has_clusters() {
         let (portals, map) = (leafs.n_clusters(), bsp.n_clusters());
-        return if portals == map || has_more_clusters(bsp, leafs) {
-            Ok(())
-        } else {
-            Err(VisibilityError::Clusters { portals, map })
-        };
+        let fits = portals == map || has_more_clusters(bsp, leafs);
+        return if fits { Ok(()) } else { Err(VisibilityError::Clusters { portals, map }) };
     }
     let (portals, map) = (leafs.n_leafs(), bsp.n_visible_leafs());
     if portals == map { Ok(()) } else { Err(VisibilityError::Leafs { portals, map }) }
@@ -43,38 +41,36 @@ pub fn check_match(bsp: &Bsp, leafs: &LeafClusters) -> Result<(), VisibilityErro
 pub fn check_portals(bsp: &Bsp, prt: &Prt) -> Result<(), VisibilityError> {
     let leafs = prt.leaf_clusters();
     check_match(bsp, &leafs)?;
-    let boxes = cluster_boxes(bsp, &leafs);
+    let clusters = clusters_of_leafs(bsp, &leafs);
+    // Around the leafs of each cluster.
+    let mut boxes = vec![Aabb::around([]); leafs.n_clusters()];
+    for (leaf, cluster) in bsp.visible_leafs().iter().zip(clusters.iter().skip(1)) {
+        if let Some(bounds) = cluster.and_then(|cluster| boxes.get_mut(cluster as usize)) {
+            *bounds = around_both(bounds, &Aabb { min: leaf.mins.map(f64::from), max: leaf.maxs.map(f64::from) });
+        }
+    }
     // Where nothing closes a leaf, as in a leaking map, its portals may go on beyond all of them.
-    let all = boxes.iter().fold(([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]), |(low, high), (l, h)| {
-        (std::array::from_fn(|k| low[k].min(l[k])), std::array::from_fn(|k| high[k].max(h[k])))
-    });
+    let all = boxes.iter().fold(Aabb::around([]), |all, bounds| around_both(&all, bounds));
     let (mut n_outside, mut n_sides) = (0, 0);
     for portal in prt.portals() {
         for cluster in portal.clusters {
-            let (low, high) = boxes[cluster as usize];
+            let leafs = &boxes[cluster as usize];
             // Of a cluster without leafs nothing is known.
-            if low[0] > high[0] {
+            if leafs.min[0] > leafs.max[0] {
                 continue;
             }
+            let Aabb { min, max } = Aabb::around(portal.points.iter().copied());
             // Bounds are whole numbers in most formats, and may have been rounded.
-            let is_between = |p: &[f64; 3], low: &[f64; 3], high: &[f64; 3]| {
-                (0..3).all(|k| low[k] - 1.0 <= p[k] && p[k] <= high[k] + 1.0)
-            };
-            let is_inside = |p: &[f64; 3]| is_between(p, &low, &high);
-            let meets = (0..3).all(|k| {
-                let x = portal.points.iter().map(|p| p[k]);
-                x.clone().fold(f64::INFINITY, f64::min) <= high[k] + 1.0
-                    && x.fold(f64::NEG_INFINITY, f64::max) >= low[k] - 1.0
-            });
-            let goes_on = portal.points.iter().any(|p| !is_between(p, &all.0, &all.1));
+            let is_in = |b: &Aabb<3>| (0..3).all(|k| b.min[k] - 1.0 <= min[k] && max[k] <= b.max[k] + 1.0);
+            let meets = |b: &Aabb<3>| (0..3).all(|k| min[k] <= b.max[k] + 1.0 && max[k] >= b.min[k] - 1.0);
             n_sides += 1;
-            n_outside += usize::from(!(portal.points.iter().all(is_inside) || goes_on && meets));
+            n_outside += usize::from(!(is_in(leafs) || !is_in(&all) && meets(leafs)));
         }
     }
     if 2 * n_outside > n_sides {
         return Err(VisibilityError::OtherMap { n_outside, n_sides });
     }
-    match inside_out(bsp, prt, &clusters_of_leafs(bsp, &leafs)) {
+    match inside_out(bsp, prt, &clusters) {
         Some((portal, clusters)) => Err(VisibilityError::InsideOut { portal, clusters }),
         None => Ok(()),
     }
@@ -90,20 +86,8 @@ pub fn clusters_of_leafs(bsp: &Bsp, leafs: &LeafClusters) -> Vec<Option<u32>> {
     all.take(bsp.leafs().len()).collect()
 }
 
-/// Low and high corner of the leafs of each cluster; of one without leafs nothing is inside.
-fn cluster_boxes(bsp: &Bsp, leafs: &LeafClusters) -> Vec<([f64; 3], [f64; 3])> {
-    let mut boxes = vec![([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]); leafs.n_clusters()];
-    for (k, leaf) in bsp.visible_leafs().iter().enumerate() {
-        let cluster = if bsp.format().has_clusters() {
-            leaf.cluster().map(usize::from)
-        } else {
-            leafs.cluster_of_leaf().get(k).map(|&c| c as usize)
-        };
-        let Some((low, high)) = cluster.and_then(|c| boxes.get_mut(c)) else { continue };
-        for axis in 0..3 {
-            low[axis] = low[axis].min(f64::from(leaf.mins[axis]));
-            high[axis] = high[axis].max(f64::from(leaf.maxs[axis]));
-        }
-    }
-    boxes
+/// Along each axis by itself, whatever files have for bounds.
+fn around_both(a: &Aabb<3>, b: &Aabb<3>) -> Aabb<3> {
+    let least = |k: usize| a.min[k].min(b.min[k]);
+    Aabb { min: [0, 1, 2].map(least), max: [0, 1, 2].map(|k| a.max[k].max(b.max[k])) }
 }

@@ -124,7 +124,6 @@ fn of_map<'s>(bsp: &Bsp, leafs: &LeafClusters, seen: &'s BitMatrix) -> Result<Co
     Ok(Cow::Owned(rows))
 }
 
-/// Rows of leafs, and where the row of each leaf begins.
 fn quake_lump(leafs: &LeafClusters, seen: &BitMatrix) -> Result<(Vec<u8>, Vec<u32>), VisibilityError> {
     check_square(seen, leafs.n_clusters())?;
     let mut bytes = Vec::new();
@@ -190,7 +189,6 @@ fn put_row(bytes: &mut [u8], n: usize, row: &mut [u64]) {
     }
 }
 
-/// The error of a lump for another number of clusters than the map has.
 fn other_clusters(lump: u32, map: usize) -> Malformed {
     malformed!("the visibility lump is for {lump} clusters, the leafs have {map}")
 }

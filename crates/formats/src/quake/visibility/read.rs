@@ -71,7 +71,6 @@ fn decode(lump: &[u8], offset: u32, row: &mut [u8]) -> Result<(), Malformed> {
     read.map(drop).within(format_args!("its row at byte {offset} of the visibility lump"))
 }
 
-/// The rows of one kind of a lump of Quake II: 0 seen, 1 heard.
 pub(super) fn quake2_rows(bsp: &Bsp, kind: usize) -> Result<BitMatrix, Malformed> {
     let (lump, n) = (bsp.visibility(), bsp.n_clusters());
     let no_room = |n_clusters: u32| {

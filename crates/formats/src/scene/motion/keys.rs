@@ -12,7 +12,6 @@ use sightlines_geometry::range::{Range, RangeBox, united};
 pub(super) struct Keyed {
     pub(super) translation: Option<RangeBox>,
     pub(super) scale: Option<RangeBox>,
-    /// Quaternions, a box around each piece.
     pub(super) rotation: Vec<[Range; 4]>,
     /// How many channels turn it.
     pub(super) n_turning: usize,
@@ -58,7 +57,6 @@ impl Keyed {
 }
 
 impl Motions<'_, '_> {
-    /// Notes what a channel of an animation does.
     pub(super) fn add(&mut self, channel: &Channel, samplers: &[Sampler]) {
         let (nodes, path) = match (&*channel.target.path, channel.target.node) {
             ("pointer", _) => match pointed(channel.target.extensions.as_ref()) {
@@ -189,7 +187,6 @@ enum Curve {
     Weights(Vec<Range>),
 }
 
-/// What a pointer of `KHR_animation_pointer` points at.
 enum Pointed {
     Node(usize, &'static str),
     Mesh(usize),

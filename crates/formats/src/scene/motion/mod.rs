@@ -57,9 +57,7 @@ pub(super) struct Moved {
 /// What a node has of itself or of those above it.
 #[derive(Debug, Clone, Copy, Default)]
 struct Inherited {
-    /// The node that programs may move anywhere.
     loose: Option<usize>,
-    /// Whether an animation moves it.
     is_keyed: bool,
     appears: bool,
 }
@@ -73,7 +71,6 @@ pub(super) struct Motions<'a, 'b> {
     parents: Vec<Option<usize>>,
     /// Whether a node outside of the scene has several parents.
     is_torn: Vec<bool>,
-    /// What each node has of itself or of those above it.
     inherited: Vec<Inherited>,
     keyed: BTreeMap<usize, Keyed>,
     /// Why anything may be anywhere, if it may: an extension, or an animation of something that is not understood.
@@ -103,7 +100,6 @@ impl<'a, 'b> Motions<'a, 'b> {
         motions
     }
 
-    /// What accessors are in.
     pub(super) fn buffers(&self) -> &'a Buffers<'b> {
         self.buffers
     }
@@ -143,7 +139,6 @@ impl<'a, 'b> Motions<'a, 'b> {
         self.n_steps.get() <= MOST_STEPS
     }
 
-    /// Why a primitive of a node moves, if it does.
     pub(super) fn why(&self, node: usize, mesh: &Mesh, primitive: &Primitive) -> Option<Moves> {
         let n = &self.document.nodes[node];
         let says = |reason: &str, deforms: bool| Some(Moves { reason: reason.to_owned(), deforms });
@@ -177,7 +172,6 @@ impl<'a, 'b> Motions<'a, 'b> {
         self.inherited[node].appears
     }
 
-    /// Where a primitive that moves may be.
     pub(super) fn moved(&self, node: usize, mesh: &Mesh, primitive: &Primitive, vertices: Vertices<'_>) -> Moved {
         let n = &self.document.nodes[node];
         let Some(Morphed { ranges, at_rest }) = self.morphed(node, n, mesh, primitive, vertices) else {
@@ -203,7 +197,6 @@ impl<'a, 'b> Motions<'a, 'b> {
         Elements::new(self.document, self.buffers, accessor, AccessorRole::Attribute).ok()
     }
 
-    /// Where a node is at rest.
     fn world(&self, node: usize) -> Option<Transform> {
         self.chain(node).try_fold(Transform::IDENTITY, |world, above| {
             let is_certain = !self.is_torn[above] && self.step(1);

@@ -24,7 +24,6 @@ struct Joint {
 }
 
 impl<'a> Motions<'a, '_> {
-    /// What morph targets do to vertices; `None` if there is no telling.
     pub(super) fn morphed(
         &self,
         node: usize,
@@ -65,7 +64,6 @@ impl<'a> Motions<'a, '_> {
         Some(Morphed { ranges, at_rest: Some(at_rest) })
     }
 
-    /// Where joints bring vertices.
     pub(super) fn skinned(
         &self,
         node: usize,

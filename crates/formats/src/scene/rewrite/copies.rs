@@ -1,12 +1,10 @@
 //! Data of vertices, copied without those that are not used.
 
+use super::RewriteError;
 use super::document::{Object, as_index, as_object, attributes};
-use super::error::RewriteError;
 use super::extensions;
 use crate::error::{Within, malformed};
-use crate::scene::accessor::{AccessorRole, Elements};
-use crate::scene::buffers::Buffers;
-use crate::scene::json::Document;
+use crate::scene::accessor::{AccessorRole, Elements, Views};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 
@@ -15,11 +13,7 @@ const VERTICES: u32 = 34962;
 const INDICES: u32 = 34963;
 
 /// A document and its bytes, as they were.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Original<'a> {
-    pub(super) document: &'a Document,
-    pub(super) buffers: &'a Buffers<'a>,
-}
+pub(super) type Original<'a> = Views<'a, 'a, 'a>;
 
 #[derive(Debug)]
 pub(super) struct NewAccessor {
@@ -35,7 +29,6 @@ pub(super) struct NewAccessor {
 pub(super) enum Layout {
     /// Every element begins at a multiple of four bytes.
     Vertices,
-    /// One behind the other.
     Packed,
 }
 
@@ -43,7 +36,6 @@ pub(super) enum Layout {
 #[derive(Debug)]
 pub(super) struct Copies<'a> {
     original: Original<'a>,
-    /// The accessors of the document.
     old: &'a [Value],
     pub(super) new: Vec<NewAccessor>,
     /// Sets of corners by their elements.
@@ -144,9 +136,6 @@ impl<'a> Copies<'a> {
 }
 
 /// Elements of an accessor, one behind the other.
-///
-/// # Errors
-/// [`RewriteError`] if the accessor has no members by name.
 pub(super) fn dense(
     old: &[Value],
     accessor: usize,

@@ -2,16 +2,14 @@
 //!
 //! The document was read before, but readers are more lenient than writers may be: what was skipped may have any form.
 
-use super::error::RewriteError;
+use super::RewriteError;
 use crate::error::malformed;
 use crate::scene::json;
 use serde_json::{Map, Value};
 use std::fmt::Display;
 
-/// What has members.
 pub(super) type Object = Map<String, Value>;
 
-/// What is done with each index of a kind.
 pub(super) type Visit<'a> = &'a mut dyn FnMut(&mut Value) -> Result<(), RewriteError>;
 
 pub(super) fn form(place: impl Display, expected: &str) -> RewriteError {
@@ -22,12 +20,10 @@ pub(super) fn as_object(value: &mut Value, place: impl Display) -> Result<&mut O
     value.as_object_mut().ok_or_else(|| form(place, "an object"))
 }
 
-/// An index into a list of the document.
 pub(super) fn as_index(value: &Value, place: impl Display) -> Result<usize, RewriteError> {
     json::as_index(value).ok_or_else(|| form(place, "an index"))
 }
 
-/// A member that is a list; empty if there is none.
 pub(super) fn list<'v>(object: &'v mut Object, key: &str) -> Result<&'v mut [Value], RewriteError> {
     match object.get_mut(key) {
         None | Some(Value::Null) => Ok(&mut []),
@@ -63,7 +59,6 @@ pub(super) fn attributes(primitive: &mut Value) -> Result<Vec<(&str, &mut Value)
     Ok(found)
 }
 
-/// Visits each index of an accessor that the format itself has.
 pub(super) fn for_each_accessor(document: &mut Object, visit: Visit<'_>) -> Result<(), RewriteError> {
     for (k, animation) in list(document, "animations")?.iter_mut().enumerate() {
         for sampler in list(as_object(animation, format_args!("animations[{k}]"))?, "samplers")? {

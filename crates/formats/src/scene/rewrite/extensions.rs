@@ -1,7 +1,7 @@
 //! What extensions may refer to.
 
+use super::RewriteError;
 use super::document::{Object, as_object, form, list};
-use super::error::RewriteError;
 use serde_json::Value;
 use std::fmt::Display;
 

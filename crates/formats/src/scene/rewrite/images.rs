@@ -1,7 +1,7 @@
 //! Images in files beside a document.
 
+use super::RewriteError;
 use super::document::{Object, as_object, list};
-use super::error::RewriteError;
 use crate::beside::Neighbours;
 use crate::scene::buffers::load_file;
 use serde_json::{Value, json};
@@ -36,7 +36,6 @@ pub(super) fn outside(
     Ok(by_uri.into_iter().filter_map(load).collect())
 }
 
-/// Lets the images of a file be found in a buffer view.
 pub(super) fn put(document: &mut Object, outside: &OutsideImage, view: usize) {
     let Some(Value::Array(images)) = document.get_mut("images") else { return };
     for &k in &outside.images {
@@ -48,7 +47,6 @@ pub(super) fn put(document: &mut Object, outside: &OutsideImage, view: usize) {
     }
 }
 
-/// What kind of image the bytes are, by how they begin.
 fn mime_of(bytes: &[u8]) -> Option<&'static str> {
     match bytes {
         [0x89, b'P', b'N', b'G', ..] => Some("image/png"),

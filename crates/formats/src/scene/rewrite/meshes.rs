@@ -1,8 +1,8 @@
 //! Other triangles for meshes, and other meshes for nodes.
 
+use super::RewriteError;
 use super::copies::{Copies, Original};
 use super::document::{Object, as_index, as_object, attributes, form, list, put_list};
-use super::error::RewriteError;
 use super::variants::{Plan, Variant, Variants};
 use crate::scene::accessor::{AccessorRole, Elements};
 use crate::scene::build::Compact;

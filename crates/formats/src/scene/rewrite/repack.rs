@@ -1,13 +1,13 @@
 //! Accessors, buffer views and one buffer, without what nothing refers to.
 
+use super::RewriteError;
 use super::copies::{Layout, NewAccessor, Original, dense};
 use super::document::{
     Object, Visit, as_index, as_object, attributes, for_each_accessor, for_each_view, list, put_list,
 };
-use super::error::RewriteError;
 use super::images::{OutsideImage, put};
 use crate::error::Within;
-use crate::scene::accessor::{AccessorRole, Elements, no_view, view_bytes};
+use crate::scene::accessor::{AccessorRole, Elements, no_view};
 use crate::scene::buffers::missing;
 use serde_json::{Value, json};
 
@@ -46,8 +46,7 @@ pub(super) fn repack(
     let mut view_map = vec![None; n_views];
     let views = list(root, "bufferViews")?;
     for view in (0..n_views).filter(|&v| kept[v]) {
-        let bytes = view_bytes(original.document, original.buffers, view);
-        let bytes = bytes.within(format_args!("buffer view {view}"))?;
+        let bytes = original.bytes(view).within(format_args!("buffer view {view}"))?;
         let json = as_object(&mut views[view], format_args!("bufferViews[{view}]"))?;
         // Whatever is aligned in it stays so.
         let offset = original.document.buffer_views[view].byte_offset;
@@ -174,7 +173,6 @@ fn vertex_accessors(root: &mut Object, n_accessors: usize) -> Result<Vec<bool>, 
     Ok(is_vertices)
 }
 
-/// Visits the buffer views that anything but accessors refers to.
 fn outside_of_accessors(root: &mut Object, visit: Visit<'_>) -> Result<(), RewriteError> {
     for (key, value) in root {
         if !matches!(key.as_str(), "accessors" | "bufferViews" | "buffers" | "extras") {

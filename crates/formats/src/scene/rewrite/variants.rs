@@ -77,13 +77,11 @@ impl<'a> Variants<'a> {
         Self { by_mesh }
     }
 
-    /// Whether the primitive of a mesh stays somewhere as it was.
     pub(super) fn keep(&self, mesh: usize, primitive: usize) -> bool {
         let variants = self.by_mesh.get(&mesh);
         variants.is_none_or(|variants| variants.iter().any(|variant| variant.plans[primitive] == Plan::Keep))
     }
 
-    /// Whether nothing changes.
     pub(super) fn are_all_as_before(&self) -> bool {
         self.by_mesh.values().flatten().all(Variant::is_as_before)
     }
