@@ -15,7 +15,7 @@ const SCRIPTS: [&str; 14] = [
     include_str!("../web/colours.js"),
     include_str!("../web/change.js"),
     include_str!("../web/links.js"),
-    include_str!("../web/model.js"),
+    concat!(include_str!("../web/soon.js"), "\n", include_str!("../web/model.js")),
     include_str!("../web/map.js"),
     include_str!("../web/camera.js"),
     include_str!("../web/why.js"),

@@ -16,7 +16,8 @@ function readLink(text) {
     cell: cell && Number.isInteger(cell[0]) ? cell[0] : null,
     view: ["map", "space"].includes(fields.get("view")) ? fields.get("view") : null,
     why: whyOf(fields.get("why")),
-    heat: ["cells", "polygons"].includes(fields.get("heat")) ? fields.get("heat") : null,
+    heat: ["cells", "polygons", "soon"].includes(fields.get("heat")) ? fields.get("heat") : null,
+    reach: numbers("reach", 1)?.[0] ?? null,
   };
 }
 
@@ -36,5 +37,6 @@ function writeLink(model, view, camera) {
   if (d === 3) fields.push(`view=${view}`);
   if (model.why) fields.push(`why=${model.why.from}-${model.why.to}`);
   if (model.heat) fields.push(`heat=${model.heat}`);
+  if (model.heat === "soon") fields.push(`reach=${model.reach}`);
   return `#${fields.join("&")}`;
 }

@@ -398,6 +398,7 @@ class App {
     const { model } = this;
     if (link.heat) {
       model.heat = link.heat;
+      if (link.reach > 0) model.reach = link.reach;
       document.getElementById("heat").value = link.heat;
     }
     if (link.view) this.setView(model.table.dimension === 3 ? link.view : "map");

@@ -24,6 +24,9 @@ class Model {
     this.heading = 0;
     this.walk = null;
     this.heat = null;
+    /** How far both move, where cells are coloured by how soon they may be seen; and the ways of the cells at the eye. */
+    this.reach = null;
+    this.soon = null;
     this.change = null;
     this.shows = { ghosts: false, cells: false, portals: false, isovist: false };
     /** The point of the map under the pointer, while isovists are shown. */
@@ -34,6 +37,7 @@ class Model {
     this.ceiling = Infinity;
     /** Whether the map or the scene is shown. */
     this.view = "map";
+    this.reach = this.size / 20;
     this.shares = null;
     this.listeners = [];
   }
@@ -97,8 +101,12 @@ class Model {
     if (this.why && this.why.to === cell && this.why.from !== cell) return colours.target;
     if (this.why && this.why.from === cell) return colours.from;
     if (this.cells.includes(cell)) return colours.from;
-    if (this.heat) return heatColour(this.share(this.heat, cell));
+    if (this.heat && this.heat !== "soon") return heatColour(this.share(this.heat, cell));
     if (this.isOutside) return colours.paper;
+    if (this.heat) {
+      const way = this.ways()[cell];
+      return way > this.reach ? colours.hidden : heatColour(1 - (0.8 * way) / this.reach);
+    }
     if (this.narrow && !this.narrow.cells.has(cell) && this.visible.has(cell)) return colours.pale;
     return this.visible.has(cell) ? colours.seen : colours.hidden;
   }
@@ -113,6 +121,13 @@ class Model {
     states.fill(STATE.seen, this.table.objects.length);
     if (this.chosen !== null && states[this.chosen] === STATE.seen) states[this.chosen] = STATE.chosen;
     return states;
+  }
+
+  /** How far a body in each cell, and one at the eye, have to move before there may be sight. */
+  ways() {
+    const key = this.cells.join(",");
+    if (this.soon?.key !== key) this.soon = { key, ways: waysToSight(this.table, this.cells) };
+    return this.soon.ways;
   }
 
   /** For each cell what share of the other cells it sees, and of all polygons; computed when it is first asked for. */

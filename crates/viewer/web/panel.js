@@ -39,6 +39,11 @@ class Panel {
       model.heat = input.value === "none" ? null : input.value;
       model.changed();
     });
+    // Short ways have most of the slider.
+    this.bind("reach", "input", (input) => {
+      model.reach = Math.max(Number(input.value) ** 3, 1e-6) * model.size;
+      model.changed();
+    });
     this.bind("find", "input", (input) => this.listFound(input.value));
     this.bind("ceiling", "input", (input) => this.setCeiling(Number(input.value)));
     this.bind("png", "click", () => actions.savePng());
@@ -90,7 +95,14 @@ class Panel {
     for (const legend of document.querySelectorAll(".keys")) {
       legend.hidden = legend.id === "marks" ? model.why === null : (model.heat !== null) !== (legend.id === "scale");
     }
-    document.getElementById("scale").textContent = darkPage.matches ? "dark: few, light: many" : "light: few, dark: many";
+    const [low, high] = darkPage.matches ? ["dark", "light"] : ["light", "dark"];
+    const isSoon = model.heat === "soon";
+    document.getElementById("scale").textContent = isSoon
+      ? this.soonText(low, high)
+      : `${low}: few, ${high}: many`;
+    document.getElementById("reach-row").hidden = !isSoon;
+    document.getElementById("reach-text").textContent = `${Number(model.reach.toPrecision(3))}${this.unit()}`;
+    document.getElementById("reach").value = Math.cbrt(model.reach / model.size);
     document.getElementById("here").textContent = this.hereText();
     this.showMethods();
     const list = document.getElementById("seen");
@@ -98,6 +110,19 @@ class Panel {
     list.replaceChildren(...shown.map((o) => this.objectButton(o)));
     const rest = model.objects.size - shown.length;
     if (rest > 0) list.append(element("li", {}, `and ${counted(rest, "object")} more`));
+  }
+
+  /** What the colours of ways to sight say, and how many cells stay out of sight. */
+  soonText(low, high) {
+    const { model } = this;
+    if (model.isOutside) return "Outside of all cells nothing is known: anybody may see this place.";
+    const hidden = model.ways().reduce((n, way) => n + Number(way > model.reach), 0);
+    const share = percent(hidden / model.table.cells.length);
+    return `${high}: at once, ${low}: after that way, grey: not within it (${counted(hidden, "cell")}, ${share})`;
+  }
+
+  unit() {
+    return this.model.table.info.find(([key]) => key === "unit")?.[1] === "metre" ? " m" : "";
   }
 
   /** Names the chosen object, and says whether it is seen. */
@@ -127,7 +152,7 @@ class Panel {
     const [low, high] = [model.bounds.min[model.up], model.bounds.max[model.up]];
     const onMap = model.view === "map";
     const height = onMap ? model.height : Math.min(model.ceiling, high);
-    const unit = model.table.info.find(([key]) => key === "unit")?.[1] === "metre" ? " m" : "";
+    const unit = this.unit();
     document.getElementById("ceiling").value = (height - low) / (high - low || 1);
     document.getElementById("ceiling-text").textContent = `${onMap ? "map" : "cut"} at a height of ${height.toFixed(2)}${unit}`;
     document.getElementById("heading-text").textContent = `${Math.round((model.heading * 180) / Math.PI)}°`;
