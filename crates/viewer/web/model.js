@@ -24,7 +24,7 @@ class Model {
     this.heading = 0;
     this.walk = null;
     this.heat = null;
-    /** How far both move, where cells are coloured by how soon they may be seen; and the ways of the cells at the eye. */
+    /** How far both move, where cells are coloured by how soon they may be seen; and the ways from the eye. */
     this.reach = null;
     this.soon = null;
     this.change = null;
@@ -123,10 +123,11 @@ class Model {
     return states;
   }
 
-  /** How far a body in each cell, and one at the eye, have to move before there may be sight. */
+  /** How far a body in the middle of each cell, and one at the eye, have to move before there may be sight. */
   ways() {
-    const key = this.cells.join(",");
-    if (this.soon?.key !== key) this.soon = { key, ways: waysToSight(this.table, this.cells) };
+    const eye = this.table.toTable(this.lock ?? this.eye);
+    const key = eye.join(",");
+    if (this.soon?.key !== key) this.soon = { key, ways: waysToSight(this.table, eye) };
     return this.soon.ways;
   }
 

@@ -20,6 +20,6 @@ mod scenes;
 mod simplify;
 mod viewer;
 mod viewer_isovist;
-mod viewer_soon;
 mod viewer_methods;
+mod viewer_soon;
 mod visible_surface;

@@ -1,75 +1,80 @@
-//! How soon cells may see a place, as pages colour them, against the reaches of the crate. Without Chromium these tests do not run, and say so.
+//! How soon bodies in cells may see one at the eye, as pages colour it, against the crate. Without Chromium these tests do not run, and say so.
 
-use serde_json::{Value, json};
+use serde_json::json;
 use sightlines::bake::{BakeRequest, bake};
-use sightlines::pvs::{CellId, Table};
-use sightlines::relevance::{ReachOptions, Reaches};
+use sightlines::geometry::{Aabb, Random};
+use sightlines::pvs::Table;
+use sightlines::relevance::{Body, ReachOptions, Reaches, Relevance, RelevanceOptions};
 use sightlines::scenes::{OfficeOptions, TowerOptions, office, tower};
 use sightlines::viewer::Page;
 use sightlines_testkit::browser::{Opened, chromium};
 
-/// Ways from some cells to all, what is shown of them, and colours.
+/// Ways from some eyes to all cells, and what is said of them.
 const SCRIPT: &str = r#"
 ready.then(({ model }) => {
-const heat = document.getElementById("heat");
-heat.value = "soon";
-heat.dispatchEvent(new Event("change"));
-const ways = given.map((cell) => {
-  model.see([cell]);
-  model.changed();
-  return [...model.ways()].map((way) => (Number.isFinite(way) ? way : 1e300));
-});
-const slider = document.getElementById("reach");
-slider.value = 0;
-slider.dispatchEvent(new Event("input"));
-const few = document.getElementById("scale").textContent;
-slider.value = 1;
-slider.dispatchEvent(new Event("input"));
-const all = document.getElementById("scale").textContent;
-tell({ ways, few, all, isShown: !document.getElementById("reach-row").hidden, reach: model.reach, size: model.size });
+  const heat = document.getElementById("heat");
+  heat.value = "soon";
+  heat.dispatchEvent(new Event("change"));
+  const ways = given.map((eye) => {
+    model.look(eye);
+    return [...model.ways()].map((way) => (Number.isFinite(way) ? way : 1e300));
+  });
+  const slider = document.getElementById("reach");
+  const textAt = (value) => {
+    slider.value = value;
+    slider.dispatchEvent(new Event("input"));
+    return document.getElementById("scale").textContent;
+  };
+  tell({ ways, few: textAt(0), all: textAt(1), isShown: !document.getElementById("reach-row").hidden });
 });
 "#;
 
-fn check(table: &Table, options: &ReachOptions) {
+fn check(table: &Table) {
     let Some(browser) = chromium() else { return };
-    let reaches = Reaches::of(table, options).expect("a table with places");
-    let n = table.n_cells() as u32;
-    let from: Vec<u32> = (0..n).step_by((n as usize / 12).max(1)).collect();
-    let page = Page::new("t", "t.pvs", table).html().expect("a page");
-    let open = |html: &str| -> Value {
-        Opened { html, script: SCRIPT, given: &json!(from), size: [1000, 700], link: "" }.result(&browser)
+    let reaches = Reaches::of(table, &ReachOptions::default()).expect("a table with places");
+    let mut relevance = Relevance::new(table.clone(), reaches, RelevanceOptions::of(table));
+    let mut random = Random::new(7);
+    let mut inside = || {
+        let cell = &table.cells()[random.below(table.n_cells())];
+        std::array::from_fn(|k| cell.min[k] + random.unit() * (cell.max[k] - cell.min[k]))
     };
-    let found = open(&page.html);
-    // Of all pairs those that the page has at another rung than the crate; the page may be a step of rounding below.
-    let wrong = |found: &Value, ladder: &[f64]| {
-        let mut n_wrong = [0, 0];
-        for (row, &a) in found["ways"].as_array().expect("rows").iter().zip(&from) {
-            for (way, b) in row.as_array().expect("a row").iter().zip(0..n) {
-                let way = way.as_f64().expect("a number");
-                let rung = ladder.partition_point(|reach| *reach < way);
-                let own = reaches.rung(CellId(a), CellId(b));
-                // Cells that touch the one that a body is in are reached by no move at all.
-                n_wrong[0] += usize::from(rung > own);
-                n_wrong[1] += usize::from(rung < own && !(rung == 0 && own == 1));
+    let eyes: Vec<[f64; 3]> = (0..12).map(|_| inside()).filter(|&p| table.place_at(p).inside().is_some()).collect();
+    let page = Page::new("t", "t.pvs", table).html().expect("a page");
+    let given = json!(eyes);
+    let found =
+        Opened { html: &page.html, script: SCRIPT, given: &given, size: [1000, 700], link: "" }.result(&browser);
+    // Of all eyes and cells those that the page shows later than the crate, at all, and earlier: by more than rounding.
+    let mut wrong = |scale: f64| {
+        let (mut n, mut n_late, mut n_early) = (0, 0, 0);
+        for (row, &eye) in found["ways"].as_array().expect("rows").iter().zip(&eyes) {
+            for (way, cell) in row.as_array().expect("a row").iter().zip(table.cells()) {
+                let way = way.as_f64().expect("a number") * scale;
+                let middle = std::array::from_fn(|k| (cell.min[k] + cell.max[k]) / 2.0);
+                let [at, there] = [eye, middle].map(|p| Aabb { min: p, max: p });
+                let mut may = |reach: f64| {
+                    let body = |b| Body { reach, ..Body::new(b, b) };
+                    relevance.may_see_within(&body(at), &body(there))
+                };
+                let (below, above) = (way * (1.0 - 1e-9) - 1e-9, way * (1.0 + 1e-9) + 1e-9);
+                n += 1;
+                n_late += usize::from(below > 0.0 && may(below.min(1e6)));
+                n_early += usize::from(above < 1e6 && !may(above));
             }
         }
-        n_wrong
+        [n, n_late, n_early]
     };
-    let ladder = reaches.ladder().to_vec();
-    assert_eq!(wrong(&found, &ladder), [0, 0]);
-    let halves: Vec<f64> = ladder.iter().map(|reach| reach / 2.0).collect();
-    assert!(wrong(&found, &halves)[0] > 20, "a ladder of half the reaches goes unnoticed");
-    assert_eq!(found["isShown"], true);
+    let [n, n_late, n_early] = wrong(1.0);
+    assert!(n > 500 && [n_late, n_early] == [0, 0], "{n_late} late, {n_early} early of {n}");
+    assert!(wrong(1.5)[1] > 20 && wrong(0.5)[2] > 20, "ways of another length go unnoticed");
     let [few, all] = ["few", "all"].map(|key| found[key].as_str().expect("a text").to_owned());
-    assert!(few.contains("not within it (") && few != all && all.contains("(0 cells"), "{few}; {all}");
+    assert!(few.contains("not within it (") && all.contains("(0 cells") && few != all, "{few}; {all}");
+    assert_eq!(found["isShown"], true);
 }
 
 #[test]
-fn ways_to_sight_on_pages_are_reaches() {
+fn ways_to_sight_on_pages_are_those_of_the_crate() {
     let plan = office(OfficeOptions { seed: 5, ..OfficeOptions::default() }).expect("an office");
-    let options = ReachOptions { ladder: vec![0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0], ..ReachOptions::default() };
-    check(&bake(&plan, &BakeRequest::default()).expect("a table").table, &options);
+    check(&bake(&plan, &BakeRequest::default()).expect("a table").table);
     let small = TowerOptions { floors: 2, rooms_x: 3, rooms_y: 2, furniture: 1, ..TowerOptions::default() };
-    let scene = tower(small).expect("a tower");
-    check(&bake(&scene, &BakeRequest::default()).expect("a table").table, &options);
+    check(&bake(&tower(small).expect("a tower"), &BakeRequest::default()).expect("a table").table);
 }
