@@ -3,7 +3,7 @@
 //! # Scope
 //!
 //! - **Owns**: tables as assets, the tie between meshes of a glTF scene and objects of a table, culling per camera, doors,
-//!   movers, pictures of the cells for whoever develops a level.
+//!   movers, who is told of whom on a server, pictures of the cells for whoever develops a level.
 //! - **Out of scope**: making tables (the program `sightlines`), what is seen in mirrors.
 //! - **Invariants**: where anything is not known, everything is drawn; only lists of cameras with [`PvsCamera`] get shorter,
 //!   and their order stays.
@@ -24,6 +24,10 @@ mod movers;
 #[cfg(feature = "overlay")]
 mod overlay;
 mod parts;
+#[cfg(feature = "replicon")]
+mod replicon;
+#[cfg(feature = "server")]
+mod server;
 mod space;
 mod tie;
 
@@ -40,7 +44,13 @@ pub use movers::PvsMover;
 #[cfg(feature = "overlay")]
 pub use overlay::{PvsOverlay, PvsOverlayPlugin};
 pub use parts::PvsParts;
+#[cfg(feature = "replicon")]
+pub use replicon::{PvsClient, PvsRepliconPlugin};
+#[cfg(feature = "server")]
+pub use server::{PvsBody, PvsServer, PvsServerError, PvsServerPlugin, PvsServerSystems, PvsTold};
 pub use sightlines_pvs as pvs;
+#[cfg(feature = "server")]
+pub use sightlines_relevance as relevance;
 pub use tie::PvsMisfit;
 
 use bevy::asset::AssetEventSystems;

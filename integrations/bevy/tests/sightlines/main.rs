@@ -9,4 +9,6 @@ mod misfits;
 mod one_sided;
 mod parts;
 mod pictures;
+#[cfg(feature = "replicon")]
+mod server;
 mod shots;
