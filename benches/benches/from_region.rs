@@ -17,8 +17,10 @@ use sightlines::multifocal::{
 use sightlines::multifocal_cpu::Fast;
 use sightlines::scenes::{CityOptions, TowerOptions};
 use sightlines_benches::program::{Common, exit};
+use sightlines_benches::targets::Targets;
 use sightlines_benches::viewed::{ViewedScene, evenly, welded};
-use sightlines_testkit::RayScene;
+use sightlines_benches::witness::met;
+use sightlines_testkit::{Random, RayScene};
 use std::collections::BTreeMap;
 use std::error::Error;
 use std::path::Path;
@@ -207,6 +209,22 @@ fn ask(case: &Case, seen: &[Vec<bool>], contender: &Contender) -> Found {
     found
 }
 
+/// How many objects are seen from a cell, from their fronts, past backs or of backs: those that are known, and what rays meet that aim at the others.
+fn reached(case: &Case, rays: &RayScene, targets: &Targets<'_>, cell: &Aabb<3>, seen: &[bool], n_rays: u64) -> usize {
+    let mut seen = seen.to_vec();
+    let unseen: Vec<u32> = (0u32..).zip(&seen).filter(|(_, seen)| !**seen).map(|(object, _)| object).collect();
+    let is_any = !case.scene.front_occluders().is_empty() && !unseen.is_empty();
+    for ray in 0..if is_any { n_rays } else { 0 } {
+        let mut random = Random::new(11, ray);
+        let eye = random.point(cell);
+        let Some(at) = targets.on(unseen[(ray % unseen.len() as u64) as usize], &mut random) else { continue };
+        met(rays, &case.scene, eye, std::array::from_fn(|k| at[k] - eye[k]))
+            .into_iter()
+            .for_each(|o| seen[o as usize] = true);
+    }
+    seen.into_iter().filter(|s| *s).count()
+}
+
 /// Prints the table; how many objects were wrongly called hidden.
 fn table(args: &Args, cases: &[Case]) -> usize {
     println!(
@@ -225,7 +243,13 @@ fn table(args: &Args, cases: &[Case]) -> usize {
         for (seen, dense) in seen.iter_mut().zip(&case.dense) {
             dense.iter().for_each(|&o| seen[o as usize] = true);
         }
-        let n_seen = seen.iter().flatten().filter(|s| **s).count();
+        let targets = Targets::new(&case.scene);
+        let n_seen: usize = case
+            .cells
+            .iter()
+            .zip(&seen)
+            .map(|(cell, seen)| reached(case, &rays, &targets, cell, seen, args.rays))
+            .sum();
         let n_pairs = case.cells.len() * case.scene.objects().len();
         for contender in contenders(args) {
             let found = ask(case, &seen, &contender);

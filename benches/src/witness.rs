@@ -123,6 +123,24 @@ pub fn judge(scene: &Scene, tables: &[Table], options: &RayOptions) -> Verdicts 
     Verdicts { n_clear, tables: judge.verdicts(scene, tables) }
 }
 
+/// The objects that engines show along a ray from the open air, of which some draw the backs of what hides from its front only and some
+/// do not: all whose backs the ray meets, up to what stops it, and that. Not robust: fit for a lower bound of what is seen, and not to find fault.
+pub fn met(rays: &RayScene, scene: &Scene, origin: Point3, direction: Point3) -> Vec<u32> {
+    let (mut met, mut at) = (Vec::new(), origin);
+    let length = direction.iter().map(|x| x * x).sum::<f64>().sqrt();
+    while let Some(hit) = rays.first_hit(at, direction) {
+        if hit.front_facing || scene.hides_from_front(hit.object) {
+            met.push(hit.object);
+        }
+        if hit.front_facing || !scene.hides_from_front(hit.object) {
+            break;
+        }
+        let past = hit.t + rays.shift() / length / 1024.0;
+        at = std::array::from_fn(|k| at[k] + direction[k] * past);
+    }
+    met
+}
+
 /// Where lines go.
 enum Aim {
     /// Anywhere, from anywhere.
@@ -146,6 +164,7 @@ struct Partition {
 }
 
 struct Judge<'a> {
+    scene: &'a Scene,
     rays: &'a RayScene,
     targets: Targets<'a>,
     partitions: Vec<Partition>,
@@ -217,7 +236,7 @@ impl<'a> Judge<'a> {
                 None => partitions.push(Partition::new(rays, id, table)),
             }
         }
-        Self { rays, targets: Targets::new(scene), partitions, options, missing: Mutex::default() }
+        Self { scene, rays, targets: Targets::new(scene), partitions, options, missing: Mutex::default() }
     }
 
     /// What the tightest tables report and no line has shown: all of it, or evenly spread `limit` or fewer.
@@ -282,7 +301,14 @@ impl<'a> Judge<'a> {
                 let (partition, cell, object) = pairs[(nth % pairs.len() as u64) as usize];
                 let origin = random.point(&self.partitions[partition].boxes[cell as usize]);
                 let target = self.targets.on(object, &mut random);
-                (origin, target.map_or_else(|| random.direction(), |t| sub(t, origin)))
+                let direction = target.map_or_else(|| random.direction(), |t| sub(t, origin));
+                // What is seen past backs, or of backs, which clear lines do not show.
+                if !self.scene.front_occluders().is_empty()
+                    && met(self.rays, self.scene, origin, direction).contains(&object)
+                {
+                    self.partitions[partition].witnessed[0].set(cell, object);
+                }
+                (origin, direction)
             }
         };
         let Some(line) = self.rays.clear_line(origin, direction) else { return false };
