@@ -1,5 +1,6 @@
 //! The arguments common to all commands.
 
+use crate::command::commands;
 use crate::commands::*;
 use clap::Parser;
 
@@ -24,26 +25,6 @@ pub(crate) struct Arguments {
     #[arg(short = 'V', long, help_heading = "General", action = clap::ArgAction::Version)]
     version: Option<bool>,
 }
-
-/// Makes the enum of some commands, and what runs one.
-macro_rules! commands {
-    (enum $enum:ident: $($(#[$about:meta])* $name:ident($args:ty) => $run:path,)*) => {
-        /// What to do.
-        #[derive(Debug, clap::Subcommand)]
-        pub(crate) enum $enum {
-            $($(#[$about])* $name($args),)*
-        }
-
-        impl $enum {
-            pub(crate) fn run(&self, verbosity: crate::command::Verbosity) -> crate::error::Result<crate::command::Done> {
-                match self {
-                    $(Self::$name(args) => $run(args, verbosity),)*
-                }
-            }
-        }
-    };
-}
-pub(crate) use commands;
 
 commands! {
     enum Command:

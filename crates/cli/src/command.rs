@@ -95,3 +95,23 @@ impl Done {
         Ok(self.answer)
     }
 }
+
+/// Makes the enum of some commands, and what runs one.
+macro_rules! commands {
+    (enum $enum:ident: $($(#[$about:meta])* $name:ident($args:ty) => $run:path,)*) => {
+        /// What to do.
+        #[derive(Debug, clap::Subcommand)]
+        pub(crate) enum $enum {
+            $($(#[$about])* $name($args),)*
+        }
+
+        impl $enum {
+            pub(crate) fn run(&self, verbosity: crate::command::Verbosity) -> crate::error::Result<crate::command::Done> {
+                match self {
+                    $(Self::$name(args) => $run(args, verbosity),)*
+                }
+            }
+        }
+    };
+}
+pub(crate) use commands;

@@ -138,3 +138,8 @@ impl<'de, S: Shape<'de>> Visitor<'de> for Seed<S> {
         self.0.object(object)
     }
 }
+
+/// An index into a list of a document, wherever serde does not read it.
+pub(crate) fn as_index(value: &serde_json::Value) -> Option<usize> {
+    value.as_u64().and_then(|index| usize::try_from(index).ok())
+}

@@ -1,7 +1,6 @@
 //! `generate`: scenes to try things on.
 
-use crate::args::commands;
-use crate::command::{Done, JsonArg, Verbosity};
+use crate::command::{Done, JsonArg, Verbosity, commands};
 use crate::error::Result;
 use crate::glb::save_glb;
 use crate::output::{self, JsonSchema, Serialize, bytes, cannot_be_made, count};

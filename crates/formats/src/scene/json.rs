@@ -6,6 +6,7 @@
 use super::Simplification;
 use super::extras::Stated;
 use super::movers::{NodeExtensions, moves_everything};
+use crate::json::as_index;
 use serde::de::{Deserializer, IgnoredAny};
 use serde::{Deserialize, de::DeserializeOwned};
 use serde_json::Value;
@@ -202,11 +203,6 @@ pub(super) struct Sampler {
     pub(super) input: usize,
     pub(super) output: usize,
     pub(super) interpolation: Option<Box<str>>,
-}
-
-/// An index into a list of the document, wherever serde does not read it.
-pub(super) fn as_index(value: &Value) -> Option<usize> {
-    value.as_u64().and_then(|index| usize::try_from(index).ok())
 }
 
 /// A list of what can be read of it; nothing where it is no list.

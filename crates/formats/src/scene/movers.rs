@@ -3,8 +3,8 @@
 //! Something that is wrongly taken for still hides what can be seen, and is not seen where it goes; something that is wrongly
 //! taken for moving only shows more. So an extension of a node that is not known counts as one that moves it.
 
-use super::json::as_index;
 use crate::error::counted;
+use crate::json::as_index;
 use serde::Deserialize;
 use serde::de::{Deserializer, IgnoredAny, MapAccess, Visitor};
 use serde_json::Value;

@@ -8,8 +8,7 @@ pub(crate) mod submit;
 mod task;
 mod work;
 
-use crate::args::commands;
-use crate::command::{Done, Verbosity};
+use crate::command::{Done, Verbosity, commands};
 use crate::error::{ErrorAbout, Result, anyhow};
 use crate::interrupt;
 use sightlines::checkpoint::Job;

@@ -7,8 +7,7 @@ pub(crate) mod query;
 
 pub(crate) use build::{TilesBuildArgs, make};
 
-use crate::args::commands;
-use crate::command::{Done, Verbosity};
+use crate::command::{Done, Verbosity, commands};
 use crate::error::Result;
 
 #[derive(Debug, clap::Args)]

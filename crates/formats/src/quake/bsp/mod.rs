@@ -25,6 +25,7 @@ mod rewrite;
 mod surfaces;
 mod tree;
 mod triangles;
+mod world;
 
 pub use covers::FaceCover;
 pub use faces::{AmbientKind, AmbientTexture, AmbientTextures};
@@ -32,8 +33,9 @@ pub(in crate::quake) use layout::RowForm;
 pub use leaf::{BspLeaf, LeafKind, LeafRow};
 pub use places::ClusterPlaces;
 pub use rewrite::VisibilityLump;
-pub use surfaces::{LeafFaces, WorldFaces};
+pub use surfaces::LeafFaces;
 pub use tree::{BspChild, BspNode, BspTree};
+pub use world::WorldFaces;
 
 use crate::bytes::{i32_at, u32_at};
 use crate::error::{Malformed, malformed};

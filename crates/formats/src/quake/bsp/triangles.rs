@@ -1,7 +1,7 @@
 //! Faces of Quake III: runs of vertices, as triangles or as the grid of a curved face.
 
 use super::records::Records;
-use super::surfaces::{Vertices, WorldFaces};
+use super::world::{Vertices, WorldFaces};
 use super::{Bsp, layout};
 use crate::bytes::i32_at;
 use crate::error::{Malformed, malformed};

@@ -2,8 +2,9 @@
 
 use super::keys::merge;
 use super::{Motions, Moved, ROUNDING, Vertices};
+use crate::json::as_index;
 use crate::scene::accessor::{AccessorRole, Elements};
-use crate::scene::json::{Mesh, Node, Primitive, as_index};
+use crate::scene::json::{Mesh, Node, Primitive};
 use crate::scene::transform::Transform;
 use sightlines_cells::Point3;
 use sightlines_geometry::range::{Range, RangeBox, bounded, box_of, mapped, united};

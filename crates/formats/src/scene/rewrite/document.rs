@@ -4,7 +4,6 @@
 
 use super::RewriteError;
 use crate::error::malformed;
-use crate::scene::json;
 use serde_json::{Map, Value};
 use std::fmt::Display;
 
@@ -21,7 +20,7 @@ pub(super) fn as_object(value: &mut Value, place: impl Display) -> Result<&mut O
 }
 
 pub(super) fn as_index(value: &Value, place: impl Display) -> Result<usize, RewriteError> {
-    json::as_index(value).ok_or_else(|| form(place, "an index"))
+    crate::json::as_index(value).ok_or_else(|| form(place, "an index"))
 }
 
 pub(super) fn list<'v>(object: &'v mut Object, key: &str) -> Result<&'v mut [Value], RewriteError> {
