@@ -46,21 +46,26 @@ impl Plugin for PvsRepliconPlugin {
     }
 }
 
-/// Bodies that are none any more are shown to all, and so are all to clients without a body.
+/// Bodies that are none any more are shown to all, and so are all to clients whose body is gone: nothing is known of what these see.
 fn release(
     bit: Option<Res<Bit>>,
     mut bodies: RemovedComponents<PvsBody>,
     mut freed: RemovedComponents<PvsClient>,
     alive: Query<Entity, With<PvsBody>>,
-    mut clients: Query<(Has<PvsClient>, &mut ClientVisibility)>,
+    mut clients: Query<(Option<&PvsClient>, &mut ClientVisibility)>,
 ) {
     let Some(bit) = bit else { return };
     for entity in bodies.read().filter(|&entity| !alive.contains(entity)) {
-        clients.iter_mut().for_each(|(_, mut visibility)| visibility.set(entity, bit.0, true));
+        for (body, mut visibility) in &mut clients {
+            visibility.set(entity, bit.0, true);
+            if body.is_some_and(|body| body.0 == entity) {
+                alive.iter().for_each(|of| visibility.set(of, bit.0, true));
+            }
+        }
     }
     for client in freed.read() {
-        if let Ok((false, mut visibility)) = clients.get_mut(client) {
-            alive.iter().for_each(|entity| visibility.set(entity, bit.0, true));
+        if let Ok((None, mut visibility)) = clients.get_mut(client) {
+            alive.iter().for_each(|of| visibility.set(of, bit.0, true));
         }
     }
 }

@@ -105,6 +105,20 @@ fn what_cannot_be_seen_in_time_is_not_sent() {
     server.world_mut().entity_mut(connection).remove::<PvsClient>();
     exchange(&mut server, &mut client);
     assert_eq!(known(&mut client), 5);
+
+    // With the body again; and when it dies, nothing is known of what the client sees.
+    server.world_mut().entity_mut(connection).insert(PvsClient(own));
+    exchange(&mut server, &mut client);
+    assert_eq!(known(&mut client), 4);
+    server.world_mut().entity_mut(own).despawn();
+    exchange(&mut server, &mut client);
+    assert_eq!(known(&mut client), 4);
+    let next = spawn(&mut server, a);
+    exchange(&mut server, &mut client);
+    assert_eq!(known(&mut client), 5);
+    server.world_mut().entity_mut(connection).insert(PvsClient(next));
+    exchange(&mut server, &mut client);
+    assert_eq!(known(&mut client), 4);
 }
 
 #[test]
