@@ -12,6 +12,7 @@ __all__ = [
     "Explanation",
     "Isovists",
     "Plan",
+    "Reaches",
     "Table",
     "__version__",
     "bake_bytes",

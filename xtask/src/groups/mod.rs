@@ -235,6 +235,7 @@ pub(crate) const GROUPS: [Group; 12] = [
             "packed",
             "progress",
             "pvs",
+            "relevance",
             "scenes",
             "visibility-graph",
         ],
@@ -247,7 +248,7 @@ pub(crate) const GROUPS: [Group; 12] = [
     Group {
         name: "bevy",
         what: "the plugin for Bevy: lints, tests, pictures",
-        crates: &["eye-to-cell", "geometry", "packed", "pvs", "walkthrough"],
+        crates: &["eye-to-cell", "geometry", "packed", "pvs", "relevance", "walkthrough"],
         paths: &["integrations/bevy/", "xtask/src/bevy.rs"],
         turn: 5,
         seconds: 480,
