@@ -5,6 +5,8 @@ use crate::groups::{self, Group, Step, Why, Work};
 use crate::step::{self, Failure, cargo};
 use crate::tally::{self, Tally};
 use crate::{bevy, deny, lab, metadata, package, python, tidy};
+use std::fs;
+use std::io::ErrorKind;
 use std::time::{Duration, Instant};
 
 /// Builds the documentation of every crate; a warning is an error.
@@ -76,8 +78,9 @@ pub(crate) fn ci(gpu: Wish, mut plan: Vec<(Group, Why)>) -> Result<(), Failure> 
     let mut tally = Tally::default();
     timed("test", &mut times, || tally::core(gpu, &mut tally))?;
     let core = start.elapsed();
-    // Those that must run are first, so that what is left out on a busy machine is left out at the end.
-    plan.sort_by_key(|(_, why)| !why.must());
+    // Those that must run are first, so that what is left out on a busy machine is left out at the end. What needs the most room comes after all that
+    // needs what the core has built.
+    plan.sort_by_key(|(group, why)| (is_bevy(group.work), !why.must()));
     for (group, why) in &mut plan {
         if !why.runs() || tally.has_failed() {
             continue;
@@ -87,6 +90,9 @@ pub(crate) fn ci(gpu: Wish, mut plan: Vec<(Group, Why)>) -> Result<(), Failure> 
             *why = Why::Late;
             continue;
         }
+        if is_bevy(group.work) && std::env::var_os("CI").is_some() {
+            make_room()?;
+        }
         timed(group.name, &mut times, || run(group, gpu, &mut tally))?;
     }
     print(&plan);
@@ -95,6 +101,20 @@ pub(crate) fn ci(gpu: Wish, mut plan: Vec<(Group, Why)>) -> Result<(), Failure> 
     }
     println!("{:>10} {:6.1} s", "all", start.elapsed().as_secs_f64());
     tally.conclude()
+}
+
+fn is_bevy(work: Work) -> bool {
+    matches!(work, Work::Step(Step::Bevy))
+}
+
+/// Removes the tests that have run: nobody comes back to them, and Bevy's need as much room again.
+fn make_room() -> Result<(), Failure> {
+    let folder = package::target().join("debug");
+    eprintln!("\nremoves {}", folder.display());
+    match fs::remove_dir_all(&folder) {
+        Err(error) if error.kind() != ErrorKind::NotFound => Err(Failure::File { path: folder, error }),
+        _ => Ok(()),
+    }
 }
 
 /// Whether a group that takes `seconds` on a quiet machine would end too late on this one.
