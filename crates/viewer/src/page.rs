@@ -7,10 +7,17 @@ use serde::Serialize;
 use sightlines_pvs::Table;
 use std::fmt::Write as _;
 
-/// The scripts, in the order in which they are read. Together they are one script.
-const SCRIPTS: [&str; 14] = [
+/// The scripts, in the order in which they are read. Together they are one script. Those of `reader` are modules, which the package for
+/// browsers has as well.
+const SCRIPTS: [&str; 20] = [
+    include_str!("../web/reader/bytes.js"),
+    include_str!("../web/reader/geometry.js"),
+    include_str!("../web/reader/rows.js"),
+    include_str!("../web/reader/table.js"),
+    include_str!("../web/reader/plain.js"),
+    include_str!("../web/reader/soon.js"),
+    include_str!("../web/reader/methods.js"),
     include_str!("../web/bytes.js"),
-    include_str!("../web/table.js"),
     include_str!("../web/figure.js"),
     include_str!("../web/colours.js"),
     include_str!("../web/change.js"),
@@ -18,10 +25,10 @@ const SCRIPTS: [&str; 14] = [
     concat!(include_str!("../web/soon.js"), "\n", include_str!("../web/model.js")),
     include_str!("../web/map.js"),
     include_str!("../web/camera.js"),
-    include_str!("../web/why.js"),
-    concat!(include_str!("../web/methods.js"), "\n", include_str!("../web/isovist.js")),
+    concat!(include_str!("../web/why.js"), "\n", include_str!("../web/isovist.js")),
     include_str!("../web/space.js"),
-    concat!(include_str!("../web/panel.js"), "\n", include_str!("../web/walk.js")),
+    include_str!("../web/panel.js"),
+    include_str!("../web/walk.js"),
     include_str!("../web/main.js"),
 ];
 const SHELL: &str = include_str!("../web/shell.html");
@@ -258,7 +265,7 @@ impl<'a> Page<'a> {
         };
         let head = harmless_json(&head).map_err(|e| failed(&e))?;
         let figure = figure.map(|figure| packed(&figure.to_bytes())).transpose().map_err(|e| failed(&e))?;
-        let script = format!("\"use strict\";\n(() => {{\n{}\n}})();\n", SCRIPTS.join("\n"));
+        let script = format!("\"use strict\";\n(() => {{\n{}\n}})();\n", SCRIPTS.map(without_modules).join("\n"));
         let policy = format!(
             "default-src 'none'; script-src {}; style-src {}; img-src blob: data:; base-uri 'none'; form-action 'none'",
             hash_source(&script),
@@ -292,4 +299,26 @@ fn lookup_bytes(table: &Table) -> Vec<u8> {
     (less.mirrors, less.doors, less.object_sources) = (Vec::new(), Vec::new(), Vec::new());
     // A table stays one without these parts.
     Table::new(less).map_or_else(|_| table.to_bytes(), |less| less.to_bytes())
+}
+
+/// A module as a part of a larger script: lines that import are left out, and nothing is exported.
+fn without_modules(module: &str) -> String {
+    let lines = module.lines().filter(|line| !line.starts_with("import "));
+    lines.map(|line| line.strip_prefix("export ").unwrap_or(line)).collect::<Vec<_>>().join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn modules_become_parts_of_a_script() {
+        let module = "// A module.\nimport { a } from \"./a.js\";\nexport function b() {\n  return a;\n}\n";
+        assert_eq!(without_modules(module), "// A module.\nfunction b() {\n  return a;\n}");
+        let rest = SCRIPTS.map(without_modules).join("\n");
+        let is_left =
+            |line: &str| line.starts_with("import") || line.starts_with("export") || line.starts_with("} from");
+        assert!(!rest.lines().any(is_left), "statements that import are on one line");
+        assert!(SCRIPTS.iter().any(|script| script.lines().any(is_left)), "there are modules");
+    }
 }

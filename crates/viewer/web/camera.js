@@ -82,7 +82,3 @@ class Camera {
     return matrix;
   }
 }
-
-function dot3(a, b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}

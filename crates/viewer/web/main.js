@@ -111,12 +111,12 @@ class App {
       const { clientWidth, clientHeight } = this.spaceCanvas;
       const aspect = Math.max(clientWidth, 1) / Math.max(clientHeight, 1);
       const fov = 2 * Math.atan(Math.tan(VERTICAL_ANGLE / 2) * aspect);
-      return new View(table, vertical, table.toTable(model.eye), table.toTable(this.space.camera.direction()), fov, aspect);
+      return View.picture(table, vertical, table.toTable(model.eye), table.toTable(this.space.camera.direction()), fov, aspect);
     }
     const at = this.map.flat(table.toTable(model.eye));
     const ahead = this.map.unflat([at[0] + Math.cos(model.heading), at[1] + Math.sin(model.heading)]);
     const from = this.map.unflat(at);
-    return new View(table, vertical, table.toTable(model.eye), ahead.map((x, k) => x - from[k]), MAP_ANGLE, 4 / 3);
+    return View.picture(table, vertical, table.toTable(model.eye), ahead.map((x, k) => x - from[k]), MAP_ANGLE, 4 / 3);
   }
 
   /** Narrows the set of the cell to that of the viewer. A kept set stays as it is. */
@@ -127,7 +127,7 @@ class App {
     model.narrow = null;
     if (!model.method || !model.eye || model.isOutside) return;
     const view = this.currentView();
-    model.narrow = { method: model.method, view, ...lookBy(model, model.method, view) };
+    model.narrow = { method: model.method, view, ...lookBy(model.table, model.cells, model.method, view) };
   }
 
   /** What each method keeps, now. */
@@ -138,7 +138,7 @@ class App {
   }
 
   keptBy(view) {
-    return METHODS.map((method) => ({ method, ...lookBy(this.model, method, view) }));
+    return METHODS.map((method) => ({ method, ...lookBy(this.model.table, this.model.cells, method, view) }));
   }
 
   /** The isovist of a point of a plan: its pieces and their area; for scripts that look at the page. */
@@ -152,7 +152,7 @@ class App {
     const { table } = model;
     model.look(eye);
     const up = table.toTable(axisVector(model.up));
-    return this.keptBy(new View(table, up, table.toTable(eye), table.toTable(direction), fov, aspect));
+    return this.keptBy(View.picture(table, up, table.toTable(eye), table.toTable(direction), fov, aspect));
   }
 
   drawNow() {
@@ -429,13 +429,13 @@ function largestCell(table) {
 
 async function start() {
   const head = JSON.parse(document.getElementById("head").textContent);
-  const table = new Table(await carriedBytes("table"));
+  const table = new Table(readPlain(await carriedBytes("table")));
   const shapes = await carriedBytes("figure");
   const model = new Model(table, shapes ? new Figure(head.figure, shapes) : null, head);
   const older = await carriedBytes("against");
   const reasons = await carriedBytes("reasons");
   if (reasons) model.reasons = new Reasons(table, reasons);
-  if (older) model.change = new Change(table, new Table(older));
+  if (older) model.change = new Change(table, new Table(readPlain(older)));
   if (head.walk) model.walk = new Walk(table, head.walk);
   document.title = `${head.title} – sightlines`;
   document.getElementById("title").textContent = head.title;

@@ -66,7 +66,7 @@ class Model {
     this.isOutside = at.length === 0;
     const visible = this.table.visibleCells(at);
     this.visible = new Set(visible);
-    this.objects = new Set(this.table.visibleObjects(at, visible));
+    this.objects = new Set(this.table.visibleObjects(at));
   }
 
   /** Puts the eye into the middle of a cell; where cells are not their boxes, shows its set all the same. */
@@ -141,7 +141,7 @@ class Model {
     for (let a = 0; a < n; a++) {
       const visible = table.visibleCells([a]);
       cells[a] = n > 1 ? (visible.length - 1) / (n - 1) : 0;
-      const objects = all > 0 ? table.visibleObjects([a], visible) : [];
+      const objects = all > 0 ? table.visibleObjects([a]) : [];
       polygons[a] = objects.reduce((sum, o) => sum + table.objects[o].polygons, 0) / (all || 1);
     }
     this.shares = { cells, polygons, hasPolygons: all > 0 };
@@ -182,16 +182,4 @@ class Model {
     });
     return found;
   }
-}
-
-/** The box around all cells and objects, along the axes of the table. */
-function boundsOf(table) {
-  const [min, max] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
-  for (const box of [...table.cells, ...table.objects]) {
-    for (let k = 0; k < 3; k++) {
-      min[k] = Math.min(min[k], box.min[k]);
-      max[k] = Math.max(max[k], box.max[k]);
-    }
-  }
-  return min[0] <= max[0] ? { min, max } : { min: [0, 0, 0], max: [1, 1, 1] };
 }

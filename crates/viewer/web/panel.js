@@ -1,5 +1,14 @@
 // The panel beside the picture. Every text of the scene goes in as text, never as markup.
 
+/** What each method keeps. */
+const METHOD_HELP = {
+  "cell-to-cell": "all that the table lists for the cell",
+  "disjoint-cell": "cells whose box the view meets",
+  "connected-component": "those reached through such cells",
+  "incident-portals": "those reached through portals in view",
+  exact: "those that a line from the eye leads to",
+};
+
 function element(name, properties = {}, ...children) {
   const made = document.createElement(name);
   for (const [key, value] of Object.entries(properties)) {

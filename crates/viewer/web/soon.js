@@ -1,16 +1,6 @@
 // How soon bodies in other cells could see one at the eye: how far both have to move, straight, before there is sight. As `may_see_within` of
 // `sightlines-relevance`, for bodies in the middles of cells.
 
-/** The distance between two boxes, rounded down. */
-function apart(d, p, q) {
-  let sum = 0;
-  for (let k = 0; k < d; k++) {
-    const gap = Math.max(p.min[k] - q.max[k], q.min[k] - p.max[k], 0);
-    sum += gap * gap;
-  }
-  return Math.sqrt(sum) * (1 - 8 * EPSILON);
-}
-
 /**
  * For each cell the shortest way at which a body in its middle may come to see one at a point (along the axes of the table), if both move that far; infinite
  * if never. O(n²) at worst for n cells.

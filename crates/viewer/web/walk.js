@@ -12,7 +12,7 @@ class Walk {
     const at = this.table.locate(frame.eye);
     if (at.length === 0) return null;
     const visible = this.table.visibleCells(at);
-    return { cells: visible.length, objects: this.table.visibleObjects(at, visible).length };
+    return { cells: visible.length, objects: this.table.visibleObjects(at).length };
   }
 }
 

@@ -75,19 +75,6 @@ class Reasons {
   }
 }
 
-/** A vector across a polygon in space, by Newell's sums. */
-function normalOf(points) {
-  const normal = [0, 0, 0];
-  points.forEach((p, i) => {
-    const q = points[(i + 1) % points.length];
-    for (let k = 0; k < 3; k++) {
-      const [u, v] = [(k + 1) % 3, (k + 2) % 3];
-      normal[k] += (p[u] - q[u]) * (p[v] + q[v]);
-    }
-  });
-  return normal;
-}
-
 /** What is known about two cells: whether the table lists them, and the line or the obstacle where the page has it. */
 function explainCells(model, from, to) {
   const { table, reasons } = model;
@@ -101,7 +88,7 @@ function explainCells(model, from, to) {
 function explainObject(model, from, object) {
   const { table } = model;
   const around = table.cells.flatMap((_, cell) => (table.cellObjects[cell].includes(object) ? [cell] : []));
-  const isSeen = table.visibleObjects([from], table.visibleCells([from])).includes(object);
+  const isSeen = table.visibleObjects([from]).includes(object);
   const all = around.map((cell) => explainCells(model, from, cell));
   const fits = all.filter((why) => why.isSeen === isSeen);
   const best = fits.find((why) => why.to === from || why.line || why.obstacle) ?? fits[0] ?? all[0];

@@ -1,44 +1,42 @@
-// What the viewer sees of what their cell may see: the eye-to-cell methods of Teller and Séquin, each within the one before. Doors stand
-// open, and mirrors are not followed. All but the plain table look through the view only.
+// What the viewer sees of what their cell may see: the eye-to-cell methods of Teller and Séquin, each within the one before. Mirrors are not
+// followed. All but the plain table look through the view only.
 
-const METHODS = ["cell-to-cell", "disjoint-cell", "connected-component", "incident-portals", "exact"];
-const METHOD_HELP = {
-  "cell-to-cell": "all that the table lists for the cell",
-  "disjoint-cell": "cells whose box the view meets",
-  "connected-component": "those reached through such cells",
-  "incident-portals": "those reached through portals in view",
-  exact: "those that a line from the eye leads to",
-};
-/** Portals that the exact method looks at before it takes the answer of the incident portals. */
+import { boundsOf, cross3, dot3, EPSILON, normalOf, unit3 } from "./geometry.js";
+
+export const METHODS = ["cell-to-cell", "disjoint-cell", "connected-component", "incident-portals", "exact"];
+/** Portals that the exact method looks at, in all and one behind the other, before it takes the answer of the incident portals. */
 const MOST_STEPS = 100000;
+const MOST_DEPTH = 1000;
 
 /** A view as half-spaces through the eye: kept is what none of the normals points away from. */
-class View {
-  /** `fov` is the horizontal angle in radians, below a half turn; all along the axes of the table. */
-  constructor(table, up, eye, direction, fov, aspect) {
+export class View {
+  /** All along the axes of the table: the eye, and normals that point inwards; without any, all directions are in view. */
+  constructor(table, eye, sides = []) {
     this.eye = eye;
-    const length = Math.hypot(...direction) || 1;
-    const f = direction.map((x) => x / length);
+    /** What rounding may move a border by, for vectors of some length. */
+    this.share = 2 ** -40;
+    /** The eye is known to within the gap of a frame and its rounding; what that may move a side by grows with what is looked at. */
+    table.bounds ??= boundsOf(table);
+    const { min, max } = table.bounds;
+    const reach = [0, 1, 2].reduce((sum, k) => sum + Math.max(Math.abs(min[k] - eye[k]), Math.abs(max[k] - eye[k])), 0);
+    const gap = table.frame ? table.frame.gap + 16 * EPSILON * (Math.abs(eye[0]) + Math.abs(eye[1]) + Math.abs(eye[2])) : 0;
+    this.slack = 4 * gap * reach;
+    this.sides = sides;
+    for (const side of sides) side.slack = gap * (Math.abs(side[0]) + Math.abs(side[1]) + Math.abs(side[2]));
+  }
+
+  /** `fov` is the horizontal angle in radians, below a half turn. */
+  static picture(table, up, eye, direction, fov, aspect) {
+    const f = unit3(direction);
     const w = Math.tan(fov / 2);
     const plane = (by, axis, sign) => f.map((x, k) => x * by + sign * axis[k]);
     if (table.dimension === 2) {
       const right = [f[1], -f[0], 0];
-      this.sides = [plane(w, right, 1), plane(w, right, -1)];
-      this.rays = [-1, 1].map((sign) => plane(1, right, sign * w));
-    } else {
-      const right = unit3(cross3(f, up));
-      const above = cross3(right, f);
-      this.sides = [plane(w, right, 1), plane(w, right, -1), plane(w / aspect, above, 1), plane(w / aspect, above, -1)];
-      const corner = (x, y) => f.map((z, k) => z + x * w * right[k] + (y * w * above[k]) / aspect);
-      this.rays = [corner(-1, -1), corner(1, -1), corner(1, 1), corner(-1, 1)];
+      return new View(table, eye, [plane(w, right, 1), plane(w, right, -1)]);
     }
-    /** Along the edges of the view; and what rounding may move a border by, for vectors of some length. */
-    this.share = 2 ** -40;
-    /** The eye is known to within the gap of a frame; what that may move a side by grows with what is looked at. */
-    const { min, max } = boundsOf(table);
-    const reach = [0, 1, 2].reduce((sum, k) => sum + Math.max(Math.abs(min[k] - eye[k]), Math.abs(max[k] - eye[k])), 0);
-    this.slack = 4 * (table.frame?.gap ?? 0) * reach;
-    for (const side of this.sides) side.slack = ((table.frame?.gap ?? 0) * (Math.abs(side[0]) + Math.abs(side[1]) + Math.abs(side[2]))) || 0;
+    const right = unit3(cross3(f, up));
+    const above = cross3(right, f);
+    return new View(table, eye, [plane(w, right, 1), plane(w, right, -1), plane(w / aspect, above, 1), plane(w / aspect, above, -1)]);
   }
 
   vector(p) {
@@ -55,40 +53,45 @@ class View {
     const vectors = points.map((p) => this.vector(p));
     return !this.sides.some((side) => this.excludes(side, vectors));
   }
+
+  /** Whether no side certainly has all of a box outside: its farthest corner, by the tolerance of its farthest point. */
+  meetsBox({ min, max }) {
+    const low = this.vector(min);
+    const high = this.vector(max);
+    const far = Math.hypot(...low.map((x, k) => Math.max(Math.abs(x), Math.abs(high[k]))));
+    return this.sides.every((side) => {
+      const corner = side.map((x, k) => (x >= 0 ? high[k] : low[k]));
+      return !(dot3(side, corner) < -this.share * Math.hypot(...side) * far - side.slack);
+    });
+  }
 }
 
-function cross3(a, b) {
-  return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-}
-
-function unit3(v) {
-  const length = Math.hypot(...v) || 1;
-  return v.map((x) => x / length);
-}
-
-/** A query from one cell: which portals there are between the cells that it may see. */
+/** A query from one cell: which portals there are between the cells that it may see. Portals are passed unless `isClosed` holds for them. */
 class Query {
-  constructor(table, view, root) {
+  constructor(table, view, root, isClosed) {
+    this.isClosed = isClosed;
     this.table = table;
     this.view = view;
     this.root = root;
     this.row = new Set(table.visibleCells([root]));
     this.inView = new Map();
+    this.byCell = portalsByCell(table);
+    /** Cells without portals are boxes from elsewhere: only whether they are in view can be tested. */
+    this.apart = [...this.row].filter((cell) => cell !== root && this.byCell[cell].length === 0);
   }
 
   cellInView(cell) {
     if (cell === this.root) return true;
-    if (!this.inView.has(cell)) this.inView.set(cell, this.view.meets(cornersOf(this.table.cells[cell])));
+    if (!this.inView.has(cell)) this.inView.set(cell, this.view.meetsBox(this.table.cells[cell]));
     return this.inView.get(cell);
   }
 
   /** The ways out of a cell that stay within what the root may see: where to, and the corners of the portal. */
   *ways(cell) {
-    this.byCell ??= portalsByCell(this.table);
     for (const portal of this.byCell[cell]) {
       const { cells, points } = this.table.portals[portal];
       const to = cells[0] === cell ? cells[1] : cells[0];
-      if (this.row.has(to)) yield { to, points, portal, forward: cells[0] === cell };
+      if (this.row.has(to) && !this.isClosed(portal)) yield { to, points, portal, forward: cells[0] === cell };
     }
   }
 
@@ -125,9 +128,23 @@ class Query {
   cells(method) {
     if (method === "cell-to-cell") return this.row;
     if (method === "disjoint-cell") return new Set([...this.row].filter((cell) => this.cellInView(cell)));
+    const reached = this.reach(method);
+    for (const cell of reached === null ? [] : this.apart) if (this.cellInView(cell)) reached.add(cell);
+    return reached;
+  }
+
+  reach(method) {
     if (method === "connected-component") return this.flood((way) => this.cellInView(way.to));
     if (method === "incident-portals") return this.flood((way) => this.wayInView(way));
     return this.exact();
+  }
+
+  /** What may be seen although no cell that is seen has it: what touches no cell, and between boxes that leave gaps anything. */
+  looseObjects(listed) {
+    if (this.apart.length > 0) return listed;
+    const touched = new Set();
+    for (const cell of this.row) for (const object of this.table.cellObjects[cell]) touched.add(object);
+    return [...listed].filter((object) => !touched.has(object));
   }
 
   /** Follows cones of sight: each portal is clipped by the cone that reaches it, and what is left is the next cone. */
@@ -136,27 +153,28 @@ class Query {
     const reached = new Set([this.root]);
     const onWay = new Set([this.root]);
     let steps = 0;
-    const follow = (cell, sides) => {
+    const follow = (cell, sides, depth) => {
       for (const way of this.ways(cell)) {
         if (onWay.has(way.to) || !this.wayInView(way)) continue;
         steps += 1;
-        if (steps > MOST_STEPS) return false;
+        if (steps > MOST_STEPS || depth > MOST_DEPTH) return false;
         const left = clip(view, way.points, sides);
         if (left.length === 0) continue;
         reached.add(way.to);
         onWay.add(way.to);
         const inner = coneOf(view, left, this.table.dimension) ?? sides;
-        const isDone = follow(way.to, inner);
+        const isDone = follow(way.to, inner, depth + 1);
         onWay.delete(way.to);
         if (!isDone) return false;
       }
       return true;
     };
-    return follow(this.root, view.sides) ? reached : null;
+    return follow(this.root, view.sides, 0) ? reached : null;
   }
 }
 
-function portalsByCell(table) {
+/** For each cell the portals out of it. */
+export function portalsByCell(table) {
   if (!table.portalsByCell) {
     table.portalsByCell = table.cells.map(() => []);
     table.portals.forEach(({ cells }, portal) => cells.forEach((cell) => table.portalsByCell[cell].push(portal)));
@@ -212,29 +230,29 @@ function coneOf(view, polygon, dimension) {
   return sides.length >= 3 ? sides : null;
 }
 
-/** What a viewer sees by a method, from all cells at the eye: cells, objects, and the method that answered. */
-function lookBy(model, method, view) {
-  const { table } = model;
+/** What is seen in a view from cells at the eye, by a method: cells, objects, and the method that answered. */
+export function lookBy(table, roots, method, view, isClosed = () => false) {
   const cells = new Set();
   const objects = new Set();
   let answered = method;
-  for (const root of model.cells) {
-    const query = new Query(table, view, root);
+  for (const root of roots) {
+    const query = new Query(table, view, root, isClosed);
     let kept = query.cells(method);
     if (kept === null) {
       answered = "incident-portals";
       kept = query.cells(answered);
     }
-    const listed = new Set(table.visibleObjects([root], [...query.row]));
-    for (const cell of kept) {
-      cells.add(cell);
-      for (const object of table.cellObjects[cell]) {
-        const isIn = method === "cell-to-cell" || view.meets(cornersOf(table.objects[object]));
-        if (listed.has(object) && isIn) objects.add(object);
-      }
+    const listed = new Set(table.visibleObjects([root]));
+    kept.forEach((cell) => cells.add(cell));
+    if (method === "cell-to-cell") {
+      listed.forEach((object) => objects.add(object));
+      continue;
     }
-    // What touches no cell is listed for whole rows only.
-    if (method === "cell-to-cell") listed.forEach((object) => objects.add(object));
+    const add = (object) => {
+      if (!objects.has(object) && view.meetsBox(table.objects[object])) objects.add(object);
+    };
+    for (const cell of kept) for (const object of table.cellObjects[cell]) if (listed.has(object)) add(object);
+    for (const object of query.looseObjects(listed)) add(object);
   }
   return { cells, objects, answered };
 }
