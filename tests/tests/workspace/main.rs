@@ -23,3 +23,4 @@ mod viewer_isovist;
 mod viewer_methods;
 mod viewer_soon;
 mod visible_surface;
+mod web_package;

@@ -11,6 +11,10 @@ export function cross3(a, b) {
   return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 }
 
+export function length3(v) {
+  return Math.sqrt(dot3(v, v));
+}
+
 export function unit3(v) {
   const length = Math.hypot(...v) || 1;
   return v.map((x) => x / length);

@@ -1,7 +1,7 @@
 // What the viewer sees of what their cell may see: the eye-to-cell methods of Teller and Séquin, each within the one before. Mirrors are not
 // followed. All but the plain table look through the view only.
 
-import { boundsOf, cross3, dot3, EPSILON, normalOf, unit3 } from "./geometry.js";
+import { boundsOf, cross3, dot3, EPSILON, length3, normalOf, unit3 } from "./geometry.js";
 
 export const METHODS = ["cell-to-cell", "disjoint-cell", "connected-component", "incident-portals", "exact"];
 /** Portals that the exact method looks at, in all and one behind the other, before it takes the answer of the incident portals. */
@@ -22,7 +22,7 @@ export class View {
     const gap = table.frame ? table.frame.gap + 16 * EPSILON * (Math.abs(eye[0]) + Math.abs(eye[1]) + Math.abs(eye[2])) : 0;
     this.slack = 4 * gap * reach;
     this.sides = sides;
-    for (const side of sides) side.slack = gap * (Math.abs(side[0]) + Math.abs(side[1]) + Math.abs(side[2]));
+    for (const side of sides) side.slack = 4 * gap * (Math.abs(side[0]) + Math.abs(side[1]) + Math.abs(side[2]));
   }
 
   /** `fov` is the horizontal angle in radians, below a half turn. */
@@ -45,12 +45,12 @@ export class View {
 
   /** Whether a side certainly keeps none of these vectors. */
   excludes(side, vectors) {
-    const size = Math.hypot(...side);
-    return vectors.every((v) => dot3(side, v) < -this.share * size * Math.hypot(...v) - side.slack);
+    const size = length3(side);
+    return vectors.every((v) => dot3(side, v) < -this.share * size * length3(v) - side.slack);
   }
 
-  meets(points) {
-    const vectors = points.map((p) => this.vector(p));
+  /** Whether no side certainly has all of these outside, from the eye. */
+  meets(vectors) {
     return !this.sides.some((side) => this.excludes(side, vectors));
   }
 
@@ -58,10 +58,10 @@ export class View {
   meetsBox({ min, max }) {
     const low = this.vector(min);
     const high = this.vector(max);
-    const far = Math.hypot(...low.map((x, k) => Math.max(Math.abs(x), Math.abs(high[k]))));
+    const far = length3(low.map((x, k) => Math.max(Math.abs(x), Math.abs(high[k]))));
     return this.sides.every((side) => {
       const corner = side.map((x, k) => (x >= 0 ? high[k] : low[k]));
-      return !(dot3(side, corner) < -this.share * Math.hypot(...side) * far - side.slack);
+      return !(dot3(side, corner) < -this.share * length3(side) * far - side.slack);
     });
   }
 }
@@ -75,6 +75,7 @@ class Query {
     this.root = root;
     this.row = new Set(table.visibleCells([root]));
     this.inView = new Map();
+    this.known = new Map();
     this.byCell = portalsByCell(table);
     /** Cells without portals are boxes from elsewhere: only whether they are in view can be tested. */
     this.apart = [...this.row].filter((cell) => cell !== root && this.byCell[cell].length === 0);
@@ -86,28 +87,34 @@ class Query {
     return this.inView.get(cell);
   }
 
-  /** The ways out of a cell that stay within what the root may see: where to, and the corners of the portal. */
-  *ways(cell) {
-    for (const portal of this.byCell[cell]) {
-      const { cells, points } = this.table.portals[portal];
-      const to = cells[0] === cell ? cells[1] : cells[0];
-      if (this.row.has(to) && !this.isClosed(portal)) yield { to, points, portal, forward: cells[0] === cell };
+  /** The ways out of a cell that stay within what the root may see: where to, and the corners of the portal, from the eye as well. */
+  ways(cell) {
+    if (!this.known.has(cell)) {
+      const ways = [];
+      for (const portal of this.byCell[cell]) {
+        const { cells, points } = this.table.portals[portal];
+        const to = cells[0] === cell ? cells[1] : cells[0];
+        if (!this.row.has(to) || this.isClosed(portal)) continue;
+        ways.push({ to, points, vectors: points.map((p) => this.view.vector(p)), forward: cells[0] === cell, inView: null });
+      }
+      this.known.set(cell, ways);
     }
+    return this.known.get(cell);
   }
 
   /** Whether the eye is certainly behind a portal that is to be crossed. */
-  isBehind({ points, forward }) {
+  isBehind({ points, vectors: [v], forward }) {
     const { table, view } = this;
-    const v = view.vector(points[0]);
     const normal = table.dimension === 2 ? [points[0][1] - points[1][1], points[1][0] - points[0][0], 0] : normalOf(points);
     // Corners are counter-clockwise, or from left to right, as seen on the way from the first cell to the second.
     const ahead = dot3(normal, v) * (table.dimension === 2 ? 1 : -1) * (forward ? 1 : -1);
-    const size = Math.hypot(...normal);
-    return ahead < -size * (view.share * Math.hypot(...v) + 2 * (table.frame?.gap ?? 0));
+    const size = length3(normal);
+    return ahead < -size * (view.share * length3(v) + 2 * (table.frame?.gap ?? 0));
   }
 
   wayInView(way) {
-    return this.cellInView(way.to) && !this.isBehind(way) && this.view.meets(way.points);
+    way.inView ??= this.cellInView(way.to) && !this.isBehind(way) && this.view.meets(way.vectors);
+    return way.inView;
   }
 
   /** The cells that are reached from the root through ways that pass. */
@@ -150,15 +157,18 @@ class Query {
   /** Follows cones of sight: each portal is clipped by the cone that reaches it, and what is left is the next cone. */
   exact() {
     const { view } = this;
+    // Beyond these there is nothing to find.
+    const most = this.reach("incident-portals").size;
     const reached = new Set([this.root]);
     const onWay = new Set([this.root]);
     let steps = 0;
     const follow = (cell, sides, depth) => {
       for (const way of this.ways(cell)) {
+        if (reached.size === most) return true;
         if (onWay.has(way.to) || !this.wayInView(way)) continue;
         steps += 1;
         if (steps > MOST_STEPS || depth > MOST_DEPTH) return false;
-        const left = clip(view, way.points, sides);
+        const left = clip(view, way.vectors, sides);
         if (left.length === 0) continue;
         reached.add(way.to);
         onWay.add(way.to);
@@ -182,12 +192,12 @@ export function portalsByCell(table) {
   return table.portalsByCell;
 }
 
-/** The corners of what half-spaces through the eye keep of a polygon or a segment; what lies on a border is kept. */
-function clip(view, points, sides) {
-  let polygon = points.map((p) => view.vector(p));
+/** The corners of what half-spaces through the eye keep of a polygon or a segment, from the eye; what lies on a border is kept. */
+function clip(view, vectors, sides) {
+  let polygon = vectors;
   for (const side of sides) {
-    const size = Math.hypot(...side);
-    const at = polygon.map((v) => dot3(side, v) + view.share * size * Math.hypot(...v) + side.slack);
+    const size = length3(side);
+    const at = polygon.map((v) => dot3(side, v) + view.share * size * length3(v) + side.slack);
     const next = [];
     polygon.forEach((v, i) => {
       const j = (i + 1) % polygon.length;
@@ -205,7 +215,7 @@ function clip(view, points, sides) {
 
 /** The cone from the eye through a polygon; null if the eye is so near its plane that there is none to speak of. */
 function coneOf(view, polygon, dimension) {
-  const longest = Math.max(...polygon.map((v) => Math.hypot(...v)));
+  const longest = Math.max(...polygon.map((v) => length3(v)));
   const middle = [0, 1, 2].map((k) => polygon.reduce((sum, v) => sum + v[k], 0) / polygon.length);
   if (dimension === 2) {
     // The two ends that are farthest to the sides.
@@ -220,10 +230,10 @@ function coneOf(view, polygon, dimension) {
   polygon.forEach((v, i) => {
     const next = polygon[(i + 1) % polygon.length];
     const normal = cross3(v, next);
-    const size = Math.hypot(...normal);
+    const size = length3(normal);
     if (size <= view.share * longest * longest) return;
     const at = dot3(normal, middle);
-    if (Math.abs(at) <= view.share * size * Math.hypot(...middle)) return;
+    if (Math.abs(at) <= view.share * size * length3(middle)) return;
     const edge = Math.abs(next[0] - v[0]) + Math.abs(next[1] - v[1]) + Math.abs(next[2] - v[2]);
     sides.push(Object.assign(at > 0 ? normal : normal.map((x) => -x), { slack: view.slack * edge }));
   });

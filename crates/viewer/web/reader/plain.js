@@ -42,9 +42,16 @@ export function readHead(bytes, size, most, isWhole = true) {
 export function readSections(bytes, { at, n, size, known, begin }) {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   const sections = new Map();
+  const isWide = size === 32;
+  // Sections of plain files begin at multiples of eight; what is between is zero.
+  const pass = (end) => {
+    const next = isWide ? 8 * Math.ceil(end / 8) : end;
+    if (bytes.subarray(end, next).some((byte) => byte !== 0) || next > bytes.length) throw new TableError("what is between sections is damaged");
+    return next;
+  };
+  begin = pass(begin);
   for (let i = 0; i < n; i++, at += size) {
     const id = String.fromCharCode(...bytes.subarray(at, at + 4));
-    const isWide = size === 32;
     const offset = Number(view.getBigUint64(at + 8, true));
     const length = isWide ? Number(view.getBigUint64(at + 16, true)) : view.getUint32(at + 16, true);
     if (offset !== begin || !(length <= bytes.length - offset)) throw new TableError(`the section ${id} is not in its place`);
@@ -55,8 +62,7 @@ export function readSections(bytes, { at, n, size, known, begin }) {
     if (crc32(section) !== view.getUint32(at + (isWide ? 24 : 20), true)) throw new TableError(`the section ${id} is damaged`);
     if (sections.has(id)) throw new TableError(`the section ${id} is there twice`);
     sections.set(id, section);
-    begin = offset + length;
-    if (isWide) begin = 8 * Math.ceil(begin / 8);
+    begin = pass(offset + length);
   }
   return { sections, end: begin };
 }
@@ -73,7 +79,7 @@ export function readPlain(bytes) {
   if (!startsWith(bytes, PLAIN_MAGIC)) throw new TableError("this is no table of visibility");
   const { major, n, begin } = readHead(bytes, 32, PLAIN_MAJOR);
   if (major !== PLAIN_MAJOR) throw new TableError("version 0 of the format is unknown");
-  const { sections } = readSections(bytes, { at: 24, n, size: 32, known: PLAIN_KNOWN, begin: begin + 4 });
+  const { sections } = readSections(bytes, { at: 24, n, size: 32, known: PLAIN_KNOWN, begin });
   const open = (id) => openSection(sections, id);
   const parts = readCells(openSection(sections, "CELL", true), open("POLY"), open("CNAM"));
   const { dimension: d, cells } = parts;

@@ -3,12 +3,12 @@
 import { EPSILON } from "./geometry.js";
 import { hasBit } from "./rows.js";
 
-/** The distance between two boxes, rounded down. */
-export function apart(d, p, q) {
+/** The distance between two boxes, rounded down; along each axis one of them may be off by `gap`. */
+export function apart(d, p, q, gap = 0) {
   let sum = 0;
   for (let k = 0; k < d; k++) {
-    const gap = Math.max(p.min[k] - q.max[k], q.min[k] - p.max[k], 0);
-    sum += gap * gap;
+    const between = Math.max(p.min[k] - q.max[k] - gap, q.min[k] - p.max[k] - gap, 0);
+    sum += between * between;
   }
   return Math.sqrt(sum) * (1 - 8 * EPSILON);
 }
@@ -22,7 +22,9 @@ export function wayToSight(table, points, shares = [1, 1]) {
   const boxes = points.map((p) => table.boxOf(d === 2 ? [p[0], p[1], 0] : p));
   const time = (far, share) => (far > 0 ? (far / share) * (1 - 2 ** -40) : 0);
   // Cells come in by the time at which one of the two may be there; the first that sees one of the other's ends it.
-  const arrivals = boxes.flatMap((box, side) => cells.map((cell, i) => ({ at: time(apart(d, box, cell), shares[side]), side, i })));
+  // Maps of Quake state the boxes of their leafs in whole units.
+  const gap = table.frame?.gap ?? (table.isQuake ? 1 : 0);
+  const arrivals = boxes.flatMap((box, side) => cells.map((cell, i) => ({ at: time(apart(d, box, cell, gap), shares[side]), side, i })));
   arrivals.sort((a, b) => a.at - b.at);
   const visible = [0, 1].map(() => new Uint32Array(rows.nWords));
   for (const { at, side, i } of arrivals) {

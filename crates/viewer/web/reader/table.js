@@ -22,7 +22,8 @@ export class Table {
     this.boxes = new Float64Array(6 * n);
     this.cells.forEach(({ min, max }, i) => this.boxes.set([...min, ...max], 6 * i));
     // Clusters of Quake maps are not their boxes: only planes locate points in them.
-    this.hasPlaces = (this.kind !== QUAKE_PORTAL_FILE && this.kind !== QUAKE_MAP) || this.planes !== null;
+    this.isQuake = this.kind === QUAKE_PORTAL_FILE || this.kind === QUAKE_MAP;
+    this.hasPlaces = !this.isQuake || this.planes !== null;
     // Without rows of their own, objects are seen with the cells that they touch.
     this.seen ??= new Rows(this.objects.length, (cell) => {
       const row = new Uint32Array(this.seen.nWords);
