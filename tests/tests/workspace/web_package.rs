@@ -1,5 +1,5 @@
 //! The package for browsers against the crates: it is packed, and Node runs its tests on tables that are made here, with the sets that the
-//! crates find. Without Node these tests do not run, and say so.
+//! crates find. Without Node these tests do not run, and say so; the page with three.js needs three.js and Chromium as well.
 
 use serde_json::{Value, json};
 use sightlines::bake::{BakeRequest, Bakeable, CellsFrom, Gap, Subdivide, bake};
@@ -7,12 +7,14 @@ use sightlines::cells::{Plan, Scene, SceneObject};
 use sightlines::eye_to_cell::{Doors, Method, Scratch, TableCells, View, VisibleSet, VisibleSubgraph};
 use sightlines::formats::Source;
 use sightlines::formats::quake::{Bsp, BspFormat};
+use sightlines::formats::scene::write_glb;
 use sightlines::geometry::Aabb;
-use sightlines::pvs::{CellId, DoorBox, DoorId, ObjectId, Place, Table};
+use sightlines::pvs::{BitMatrix, CellId, DoorBox, DoorId, ObjectId, Place, Table};
 use sightlines::relevance::{Body, ReachOptions, Reaches, Relevance, RelevanceOptions};
 use sightlines::scenes::world::{QuakeLikeOptions, quake_like};
 use sightlines::scenes::{OfficeOptions, TowerOptions, office, tower};
 use sightlines_packed::{PackOptions, SizeClass, pack};
+use sightlines_testkit::browser::{Opened, chromium};
 use sightlines_testkit::mutate::SplitMix;
 use sightlines_tests::data_folder;
 use sightlines_tests::world_files::{bsp_bytes, prt_of_world};
@@ -318,4 +320,53 @@ fn real_scenes_are_as_in_the_crates() {
         let read = Bakeable::read(&Source::File(&data.join(name)), None).expect("real input is read");
         check(name, &bake(&read, &BakeRequest::default()).expect("a table").table);
     }
+}
+
+/// What the check tells of the example page with a scene and a table.
+fn example_page(browser: &Path, three: &Path, folder: &Path, table: &Table) -> Value {
+    let file = |name: &str| folder.join(name);
+    fs::write(file("table.pvs"), table.to_bytes()).expect("a file");
+    let package = package().expect("there is Node");
+    let mut make = Command::new("node");
+    make.arg(package.join("examples/make.mjs")).arg(three).args(["scene.glb", "table.pvs", "page.html"].map(file));
+    run(&mut make).unwrap_or_else(|error| panic!("{error}"));
+    // Without smoothing, which shows what is behind hairline gaps between triangles.
+    let html = fs::read_to_string(file("page.html")).expect("a page").replace("antialias: true", "antialias: false");
+    let html = html.replace("<head>", "<head><!-- script-src 'sha256-'; -->");
+    let given = json!({ "frames": 40 });
+    let script = include_str!("../../../integrations/web/test/three_check.js");
+    Opened { html: &html, script, given: &given, size: [320, 240], link: "" }.result(browser)
+}
+
+/// Pictures of the example page with and without culling are the same, shadows and other cameras included; with one pair hidden they are not.
+#[test]
+fn the_example_page_looks_the_same_with_and_without_culling() {
+    let Some(three) = data_folder("SIGHTLINES_THREE") else { return };
+    let (Some(_), Some(browser)) = (package(), chromium()) else { return };
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = folder.path().join("scene.glb");
+    fs::write(&scene, write_glb(&small_tower()).expect("a scene is written")).expect("a file");
+    let read = Bakeable::read(&Source::File(&scene), None).expect("a scene is read");
+    let table = baked(&read, &BakeRequest::default());
+    assert!(table.has_sources());
+    let told = example_page(&browser, &three, folder.path(), &table);
+    println!("{told}");
+    assert_eq!([&told["frames"], &told["wrong"], &told["wrongElsewhere"]], [40, 0, 0], "{told}");
+    let n = |key: &str| told[key].as_u64().unwrap_or_else(|| panic!("{told}"));
+    assert!(n("flat") * 3 < n("frames") * 2, "many frames show more than a wall: {told}");
+    assert!(n("calls") * 10 < n("callsAll") * 9, "{told}");
+
+    // The impostor: a table without one object that the picture needs.
+    let pair = &told["needed"][0];
+    let [cell, object] = [0, 1].map(|k| pair[k].as_u64().unwrap_or_else(|| panic!("{told}")) as usize);
+    let mut parts = table.clone().into_parts();
+    let mut seen = BitMatrix::new(table.n_cells(), table.objects().len());
+    for k in 0..table.n_cells() {
+        table.visible_objects(CellId(k as u32)).iter().for_each(|object| seen.set(k, object.idx(), true));
+    }
+    seen.set(cell, object, false);
+    parts.objects_seen = Some(seen);
+    let less = Table::new(parts).expect("a table");
+    let told = example_page(&browser, &three, folder.path(), &less);
+    assert!(told["wrong"].as_u64() > Some(0), "{told}");
 }
