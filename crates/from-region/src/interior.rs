@@ -11,21 +11,21 @@ use std::collections::BTreeMap;
 
 /// A row of voxels along the last axis that no triangle meets.
 #[derive(Debug, Clone, Copy)]
-struct Run {
-    x: usize,
-    y: usize,
-    from: usize,
-    to: usize,
+pub(crate) struct Run {
+    pub(crate) x: usize,
+    pub(crate) y: usize,
+    pub(crate) from: usize,
+    pub(crate) to: usize,
 }
 
 /// Voxels that hang together by faces and that no triangle meets, so that each chain has one parity in all of them.
 #[derive(Debug, Clone)]
-struct Region {
+pub(crate) struct Region {
     /// The chains around it, ascending.
     odd: Vec<u32>,
-    runs: Vec<Run>,
+    pub(crate) runs: Vec<Run>,
     /// Whether it reaches the border of the grid.
-    is_outside: bool,
+    pub(crate) is_outside: bool,
 }
 
 /// A scene as voxels.
@@ -126,7 +126,8 @@ impl Insides {
 }
 
 impl Region {
-    fn reaches(&self, block: Option<&Block>) -> bool {
+    /// Whether it has a voxel of a block.
+    pub(crate) fn reaches(&self, block: Option<&Block>) -> bool {
         block.is_some_and(|b| {
             self.runs.iter().any(|r| {
                 (b.low[0]..b.high[0]).contains(&r.x)
@@ -149,7 +150,7 @@ fn near(grid: &Grid, volume: &Aabb<3>) -> Option<Block> {
 }
 
 /// Adds all voxels that a triangle may meet.
-fn mark_all(met: &mut Bits, grid: &Grid, triangle: &[Point3; 3]) {
+pub(crate) fn mark_all(met: &mut Bits, grid: &Grid, triangle: &[Point3; 3]) {
     if let Some(block) = grid.meeting(&Aabb::around(*triangle)) {
         mark(met, grid, triangle, block);
     }
@@ -174,7 +175,7 @@ fn mark(met: &mut Bits, grid: &Grid, triangle: &[Point3; 3], block: Block) {
 }
 
 /// The regions of what is not met, in the order of their first runs; with nothing said yet about what is around them.
-fn regions(met: &Bits, n: [usize; 3]) -> Vec<Region> {
+pub(crate) fn regions(met: &Bits, n: [usize; 3]) -> Vec<Region> {
     let mut runs: Vec<Run> = Vec::new();
     // Of each row, its first run; and one more.
     let mut starts = Vec::with_capacity(n[0] * n[1] + 1);

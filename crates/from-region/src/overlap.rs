@@ -19,7 +19,7 @@ const SLACK: f64 = 32.0 * f64::EPSILON;
 /// Whether a triangle, with or without area, may meet a closed box.
 ///
 /// False only if the two have no point in common; where rounding leaves that open, true.
-pub(crate) fn may_meet(triangle: &[Point3; 3], b: &Aabb<3>) -> bool {
+pub fn may_meet(triangle: &[Point3; 3], b: &Aabb<3>) -> bool {
     // Sides across the axes: comparisons, so without rounding.
     for k in 0..3 {
         let [p, q, r] = triangle.map(|p| p[k]);

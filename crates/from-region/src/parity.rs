@@ -41,11 +41,21 @@ impl Parity {
 
     /// The chains that may meet a box, ascending. None that does is left out.
     pub(crate) fn meeting(&self, b: &Aabb<3>) -> Vec<u32> {
+        self.meeting_if(b, |triangle| may_meet(triangle, b))
+    }
+
+    /// The same of a triangle.
+    pub(crate) fn meeting_triangle(&self, t: &[Point3; 3]) -> Vec<u32> {
+        let b = Aabb::around(*t);
+        self.meeting_if(&b, |other| may_meet(other, &b) && may_meet(t, &Aabb::around(*other)))
+    }
+
+    fn meeting_if(&self, b: &Aabb<3>, may_meet: impl Fn(&[Point3; 3]) -> bool) -> Vec<u32> {
         let mut met = Vec::new();
         let touches = |c: &Aabb<3>| (0..3).all(|k| c.min[k] <= b.max[k] && b.min[k] <= c.max[k]);
         self.tree.visit(touches, |i| {
             let (triangle, chain) = &self.triangles[i as usize];
-            if may_meet(triangle, b) {
+            if may_meet(triangle) {
                 met.push(*chain);
             }
         });

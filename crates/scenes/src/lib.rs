@@ -13,6 +13,7 @@ mod check;
 pub mod city;
 pub mod degenerate;
 pub mod doom_like;
+pub mod enclosed;
 pub mod error;
 pub mod hall;
 mod layout;
@@ -28,6 +29,7 @@ pub mod world;
 
 pub use city::{CityOptions, CityTile, city, city_crossings, city_tiles};
 pub use doom_like::{DoomLike, DoomLikeLine, doom_like};
+pub use enclosed::{Enclosed, GearboxOptions, Pipe, cupboard, gearbox, nested_voids};
 pub use error::GenerateError;
 pub use hall::{pillared_hall, turned_pillared_hall};
 pub use maze::maze;

@@ -70,6 +70,8 @@ pub use sightlines_sightline as sightline;
 pub use sightlines_simplify as simplify;
 #[cfg(feature = "stabtree")]
 pub use sightlines_stabtree as stabtree;
+#[cfg(feature = "strip")]
+pub use sightlines_strip as strip;
 #[cfg(feature = "tiles")]
 pub use sightlines_tiles as tiles;
 #[cfg(feature = "triangulation")]

@@ -43,7 +43,7 @@ pub(crate) use gltf::MAGIC as GLB_MAGIC;
 pub use gltf::{parse_glb, parse_gltf_with};
 pub use obj::{parse_obj, parse_obj_with};
 pub use pattern::{EmptyPattern, NamePattern};
-pub use rewrite::RewriteError;
+pub use rewrite::{Removal, RemovedObjects, RewriteError};
 pub use role::Role;
 pub use source::{GltfSource, ObjectOrigin, parse_glb_with_source};
 pub use surface::{BackFaces, Classified, ParseBackFacesError, SceneReadOptions};

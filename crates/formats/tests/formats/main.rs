@@ -23,6 +23,7 @@ mod quake_world;
 mod real;
 mod registry;
 mod reject;
+mod remove;
 mod rewrite;
 mod rmb;
 mod roles;

@@ -5,8 +5,11 @@ mod document;
 mod extensions;
 mod images;
 mod meshes;
+mod remove;
 mod repack;
 mod variants;
+
+pub use remove::{Removal, RemovedObjects};
 
 use super::Simplification;
 use super::buffers::Buffers;

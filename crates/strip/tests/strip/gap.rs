@@ -1,0 +1,1 @@
+//! Cracks, by a stated width.

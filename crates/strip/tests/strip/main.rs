@@ -1,0 +1,5 @@
+//! What is stripped: against the truth of generated scenes, and against rays that are decided by other code.
+
+mod gap;
+mod sides;
+mod truth;

@@ -1,0 +1,1 @@
+//! Sides, glass, motion and mirrors.
