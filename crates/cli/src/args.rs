@@ -71,6 +71,8 @@ commands! {
     /// Write a scene with fewer triangles for eyes in a volume, without hidden triangles and, within a budget, without
     /// barely visible ones
     Simplify(simplify::SimplifyArgs) => simplify::run,
+    /// Write a scene without the objects or triangles that nobody can see, from outside or from given places; all else stays as it is
+    Strip(strip::StripArgs) => strip::run,
     /// Analyse what the points of a floor plan see of each other: tables and pictures of the measures of space syntax
     Vga(vga::VgaArgs) => vga::run,
     /// Draw the umbra, the lit parts and the parts in doubt under an area light

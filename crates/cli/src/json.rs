@@ -2,7 +2,7 @@
 
 use crate::commands::{
     build, demo, explain, generate, info, isovist, job, levels, light, multifocal, pack, plan, portals, query, reject,
-    relevance, render, simplify, tiles, vga, view, vis,
+    relevance, render, simplify, strip, tiles, vga, view, vis,
 };
 use schemars::JsonSchema;
 use schemars::generate::SchemaSettings;
@@ -49,6 +49,7 @@ pub(crate) fn schemas() -> Vec<(&'static [&'static str], Value)> {
         of::<light::outcome::Outcome>(&["`light`"]),
         of::<vga::outcome::Outcome>(&["`vga`"]),
         of::<simplify::outcome::Outcome>(&["`simplify`"]),
+        of::<strip::outcome::Outcome>(&["`strip`"]),
         of::<levels::outcome::Outcome>(&["`levels`"]),
         of::<info::TableInfo>(&["`info` of a table"]),
         of::<info::packed::PackedInfo>(&["`info` of a packed table"]),
@@ -58,6 +59,7 @@ pub(crate) fn schemas() -> Vec<(&'static [&'static str], Value)> {
         of::<info::quake::PrtInfo>(&["`info` of a portal file"]),
         of::<info::quake::BspInfo>(&["`info` of a Quake map"]),
         of::<generate::Outcome>(&["`generate tower`"]),
+        of::<generate::GearboxOutcome>(&["`generate gearbox`"]),
         of::<generate::WorldOutcome>(&["`generate world`"]),
         of::<tiles::outcome::Outcome>(&["`tiles build`"]),
         of::<tiles::query::Found>(&["`tiles query`"]),

@@ -75,14 +75,16 @@ impl BallReach {
         walls.into_iter().for_each(|t| mark_all(&mut met, &grid, &t));
         let all = regions(&met, grid.n());
         drop(met);
-        let starts: Option<Vec<Start>> = eyes.map(|eyes| eyes.iter().map(|eye| Start::new(&grid, eye, radius)).collect());
+        let starts: Option<Vec<Start>> =
+            eyes.map(|eyes| eyes.iter().map(|eye| Start::new(&grid, eye, radius)).collect());
         let is_reached = |start: &Start, region: &crate::interior::Region| {
             start.is_outside && region.is_outside || region.reaches(start.near.as_ref())
         };
         let mut near = Bits::new(grid.n());
         let mut n_reached = 0;
         for region in &all {
-            let is_reached = starts.as_ref().map_or(region.is_outside, |starts| starts.iter().any(|s| is_reached(s, region)));
+            let is_reached =
+                starts.as_ref().map_or(region.is_outside, |starts| starts.iter().any(|s| is_reached(s, region)));
             for run in region.runs.iter().filter(|_| is_reached) {
                 n_reached += run.to - run.from;
                 let middle = Block { low: [run.x, run.y, run.from], high: [run.x + 1, run.y + 1, run.to] };

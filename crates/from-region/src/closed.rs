@@ -89,9 +89,9 @@ impl ClosedSurfaces {
         let met = self.parity.meeting_triangle(triangle);
         let has = |list: &[u32], c: u32| list.binary_search(&c).is_ok();
         eyes.iter().all(|eyes| {
-            odd.iter().chain(&eyes.odd).any(|&c| {
-                has(&odd, c) != has(&eyes.odd, c) && !has(&met, c) && !has(&eyes.unknown, c)
-            })
+            odd.iter()
+                .chain(&eyes.odd)
+                .any(|&c| has(&odd, c) != has(&eyes.odd, c) && !has(&met, c) && !has(&eyes.unknown, c))
         })
     }
 

@@ -43,9 +43,11 @@ pub fn gearbox(options: GearboxOptions) -> Result<Enclosed, GenerateError> {
     let (wall, pitch, width) = (16, 64, 512);
     let length = pitch * n + 2 * wall;
     let shell = |at: i32, from: i32, to: i32| at >= from + wall && at < to - wall;
-    of.seen("Housing", [&[0, wall, length - wall, length], &[0, wall, width - wall, width], &[0, wall, width - wall, width]], |[x, y, z]| {
-        !(shell(x, 0, length) && shell(y, 0, width) && shell(z, 0, width))
-    });
+    of.seen(
+        "Housing",
+        [&[0, wall, length - wall, length], &[0, wall, width - wall, width], &[0, wall, width - wall, width]],
+        |[x, y, z]| !(shell(x, 0, length) && shell(y, 0, width) && shell(z, 0, width)),
+    );
     let middle = width / 2;
     of.seen("Shaft", [&[-64, length - 2 * wall], &[middle - 8, middle + 8], &[middle - 8, middle + 8]], |_| true);
     for k in 0..n {

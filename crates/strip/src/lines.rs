@@ -13,7 +13,7 @@ use std::sync::Arc;
 const LONGEST_CHAIN: usize = 300;
 
 /// Most triangles of a group that is asked about as one.
-const MOST_OF_GROUP: usize = 64;
+const MOST_OF_GROUP: usize = 16;
 
 /// How much is done for one question at most. More finds more hidden; nothing is ever hidden wrongly.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,12 +53,7 @@ pub(crate) struct Lines {
 
 impl Lines {
     /// O(n log² n).
-    pub(crate) fn new(
-        both_sides: &[[Point3; 3]],
-        fronts: &[[Point3; 3]],
-        exits: Vec<FaceExit>,
-        sides: u32,
-    ) -> Self {
+    pub(crate) fn new(both_sides: &[[Point3; 3]], fronts: &[[Point3; 3]], exits: Vec<FaceExit>, sides: u32) -> Self {
         Self { surface: Arc::new(Surface::with_fronts(both_sides, fronts)), exits, sides: sides as usize }
     }
 
@@ -104,6 +99,7 @@ impl Lines {
     /// Which of some triangles are hidden; calls `open` for those that are not, with a line that may be free.
     ///
     /// * `asked`: places among the triangles of `aim`
+    /// * `cells`: for an object; a group of triangles gets a quarter of it
     pub(crate) fn hide_each(
         &self,
         search: &mut FaceSearch,
@@ -132,7 +128,7 @@ impl Lines {
             }
             if left.len() <= MOST_OF_GROUP {
                 let triangles: Vec<[Point3; 3]> = left.iter().map(|&t| corners(t)).collect();
-                match self.hide(search, &triangles, from_fronts, cells) {
+                match self.hide(search, &triangles, from_fronts, cells.div_ceil(4)) {
                     Ok(()) => {
                         hidden.extend(left);
                         continue;

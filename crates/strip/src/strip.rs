@@ -229,7 +229,9 @@ impl<'a> Stripper<'a> {
             self.by_more_rays(object as u32, fate);
             Ok(counter.step()?)
         };
-        open.into_par_iter().map_init(|| self.lines.search(), |search, of| again(search, of)).collect::<Result<(), _>>()?;
+        open.into_par_iter()
+            .map_init(|| self.lines.search(), |search, of| again(search, of))
+            .collect::<Result<(), _>>()?;
         self.spread(&mut objects);
         Ok(Stripped { objects, n_closed_surfaces: self.closed.len() })
     }
@@ -294,10 +296,12 @@ impl<'a> Stripper<'a> {
             return;
         }
         let mut fates = std::mem::take(&mut fate.triangles);
-        let asked: Vec<u32> = (0u32..).zip(&fates).filter(|(_, fate)| **fate == Fate::Undecided).map(|(t, _)| t).collect();
+        let asked: Vec<u32> =
+            (0u32..).zip(&fates).filter(|(_, fate)| **fate == Fate::Undecided).map(|(t, _)| t).collect();
         let mut lines = Vec::new();
-        let hidden =
-            self.lines.hide_each(search, &aim, &asked, (from_fronts, cells), |t, line| lines.extend(line.map(|l| (t, l))));
+        let hidden = self
+            .lines
+            .hide_each(search, &aim, &asked, (from_fronts, cells), |t, line| lines.extend(line.map(|l| (t, l))));
         hidden.into_iter().for_each(|t| fates[t as usize] = Fate::Hidden(HiddenReason::LineSpace));
         for (t, line) in lines {
             if let Some(free) = self.along(&aim.one(t as usize), t, line) {
@@ -334,7 +338,9 @@ impl<'a> Stripper<'a> {
             let mut known: Vec<[Point3; 2]> = Vec::new();
             for of in objects.iter() {
                 let each = if of.triangles.is_empty() { std::slice::from_ref(&of.fate) } else { &of.triangles[..] };
-                known.extend(each.iter().filter_map(|fate| if let Fate::Seen(free) = fate { Some(*free) } else { None }));
+                known.extend(
+                    each.iter().filter_map(|fate| if let Fate::Seen(free) = fate { Some(*free) } else { None }),
+                );
             }
             let step = known.len().div_ceil(MOST_SPREAD).max(1);
             if objects.iter().all(|of| of.n_undecided() == 0) {
@@ -346,7 +352,10 @@ impl<'a> Stripper<'a> {
             };
             let near = |k: usize| -> Vec<(u32, u32, [Point3; 2])> {
                 let mut random = self.random(k as u32, 2 + round);
-                let near = |_| self.walls.near(self.eyes, known[k * step], &mut random, &is_open, |object| self.counts_triangles(object));
+                let near = |_| {
+                    self.walls
+                        .near(self.eyes, known[k * step], &mut random, &is_open, |object| self.counts_triangles(object))
+                };
                 (0..SPREAD_RAYS).filter_map(near).collect()
             };
             let found: Vec<Vec<_>> = (0..known.len().div_ceil(step)).into_par_iter().map(near).collect();

@@ -3,8 +3,8 @@
 use crate::eyes::Eyes;
 use sightlines_cells::Scene;
 use sightlines_from_region::may_meet;
-use sightlines_geometry::{Aabb, BoxTree, Point3, Random, check_coordinate, orient3d, ray_triangle};
 use sightlines_geometry::vector::{length, sub};
+use sightlines_geometry::{Aabb, BoxTree, Point3, Random, check_coordinate, orient3d, ray_triangle};
 use sightlines_multifocal::RaySampler;
 use std::cell::Cell;
 use std::ops::Range;
@@ -113,9 +113,8 @@ impl<'s> Walls<'s> {
             let object = self.rays.object_of(t);
             object == aim.object && aim.only.is_none_or(|only| self.first[object as usize] + only == t)
         };
-        let ends = BEYOND.map(|beyond| -> Point3 {
-            std::array::from_fn(|k| eye[k] + way[k] * (end + beyond * end.max(1.0)))
-        });
+        let ends =
+            BEYOND.map(|beyond| -> Point3 { std::array::from_fn(|k| eye[k] + way[k] * (end + beyond * end.max(1.0))) });
         let proves = |end: &Point3| {
             if end.iter().any(|&x| check_coordinate(x).is_err()) {
                 return false;
@@ -162,9 +161,8 @@ impl<'s> Walls<'s> {
         let [eye, end] = segment;
         let line = [eye, end, end];
         let around = Aabb::around(segment);
-        let near = |b: &Aabb<3>| {
-            (0..3).all(|k| b.min[k] <= around.max[k] && around.min[k] <= b.max[k]) && may_meet(&line, b)
-        };
+        let near =
+            |b: &Aabb<3>| (0..3).all(|k| b.min[k] <= around.max[k] && around.min[k] <= b.max[k]) && may_meet(&line, b);
         let is_free = Cell::new(true);
         self.tree.visit(
             |b| is_free.get() && near(b),

@@ -5,7 +5,9 @@ use crate::error::Result;
 use crate::glb::save_glb;
 use crate::output::{self, JsonSchema, Serialize, bytes, cannot_be_made, count};
 use sightlines::geometry::Aabb;
-use sightlines::scenes::{CityOptions, CityTile, TowerOptions, city_tiles, tower, tower_rooms};
+use sightlines::scenes::{
+    CityOptions, CityTile, GearboxOptions, TowerOptions, city_tiles, gearbox, tower, tower_rooms,
+};
 use sightlines::tiles::{TilePlan, WorldPlan};
 use std::fmt;
 use std::fs;
@@ -23,6 +25,8 @@ commands! {
     Tower(TowerArgs) => write_tower,
     /// A city in metres, y up, in tiles: a folder with the plan world.json, and for each tile a GLB and a file of view cells
     World(WorldArgs) => write_world,
+    /// A closed gearbox: most of it can be seen from nowhere outside. As GLB
+    Gearbox(GearboxArgs) => write_gearbox,
 }
 
 #[derive(Debug, clap::Args)]
@@ -80,6 +84,21 @@ pub(crate) struct TowerArgs {
     json: JsonArg,
 }
 
+#[derive(Debug, clap::Args)]
+pub(crate) struct GearboxArgs {
+    /// Seed of the generator
+    #[arg(long, help_heading = "Gearbox", value_name = "N", default_value_t = GearboxOptions::default().seed)]
+    seed: u64,
+    /// Gears, 1 to 20000, with a bolt and a nut for each
+    #[arg(long, help_heading = "Gearbox", value_name = "N", default_value_t = GearboxOptions::default().gears)]
+    gears: u32,
+    /// The scene to write
+    #[arg(short, long, help_heading = "Output", value_name = "OUT.glb")]
+    output: PathBuf,
+    #[command(flatten)]
+    json: JsonArg,
+}
+
 pub(crate) fn run(args: &GenerateArgs, verbosity: Verbosity) -> Result<Done> {
     args.what.run(verbosity)
 }
@@ -129,6 +148,51 @@ impl fmt::Display for WorldOutcome {
         writeln!(f, "wrote {}: a city of {} (seed {})", self.out, count(self.n_tiles as u64, "tile"), self.seed)?;
         let Self { n_cells, n_objects, n_triangles, .. } = self;
         writeln!(f, "view cells     {n_cells}\nobjects        {n_objects}\ntriangles      {n_triangles}")
+    }
+}
+
+fn write_gearbox(args: &GearboxArgs, _: Verbosity) -> Result<Done> {
+    output::check_ending(&args.output, "scene", "glb")?;
+    output::check(&[], &[&args.output])?;
+    let made = gearbox(GearboxOptions { seed: args.seed, gears: args.gears })?;
+    let n_bytes = save_glb(&args.output, &made.scene)?;
+    let outcome = GearboxOutcome {
+        out: args.output.display().to_string(),
+        seed: args.seed,
+        n_objects: made.scene.objects().len(),
+        n_hidden_objects: made.hidden.len(),
+        n_triangles: made.scene.n_triangles(),
+        n_bytes,
+    };
+    Ok(Done::new(args.json, outcome))
+}
+
+/// What was written of a gearbox.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct GearboxOutcome {
+    /// The scene that was written.
+    out: String,
+    /// Seed of the generator.
+    seed: u64,
+    /// Objects.
+    n_objects: usize,
+    /// Those of them that nobody outside can see.
+    n_hidden_objects: usize,
+    /// Triangles.
+    n_triangles: usize,
+    /// Bytes of the file.
+    n_bytes: usize,
+}
+
+impl fmt::Display for GearboxOutcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "wrote {}, {}", self.out, bytes(self.n_bytes as u64))?;
+        let Self { n_objects, n_hidden_objects, n_triangles, seed, .. } = self;
+        writeln!(f, "a gearbox (seed {seed})")?;
+        writeln!(
+            f,
+            "objects        {n_objects}, {n_hidden_objects} of them hidden from outside\ntriangles      {n_triangles}"
+        )
     }
 }
 

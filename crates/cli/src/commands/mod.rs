@@ -20,6 +20,7 @@ pub(crate) mod reject;
 pub(crate) mod relevance;
 pub(crate) mod render;
 pub(crate) mod simplify;
+pub(crate) mod strip;
 pub(crate) mod tiles;
 pub(crate) mod verify;
 pub(crate) mod vga;

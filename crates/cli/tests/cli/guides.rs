@@ -141,6 +141,20 @@ fn the_guide_for_blender_works() {
     }
 }
 
+/// What it removes is what is hidden by construction, and nothing else of the file changes.
+#[test]
+fn the_guide_to_stripping_works() {
+    let folder = Folder::new();
+    let outputs = outputs_of(&folder, "strip.md");
+    assert_eq!(outputs.len(), 11);
+    for line in ["objects        38: 14 seen, 24 hidden (63.2 %)", "hidden         24 enclosed of the objects"] {
+        assert!(outputs[1].1.contains(line) && guide("strip.md").contains(line), "{}", outputs[1].1);
+    }
+    let size = |name: &str| folder.read(name).len();
+    assert!(size("least.glb") < size("small.glb") && size("small.glb") < size("light.glb"));
+    assert!(size("light.glb") < size("gearbox.glb") && size("flagged.glb") > size("gearbox.glb"));
+}
+
 #[test]
 fn the_guide_for_bim_works() {
     let folder = Folder::new();

@@ -31,11 +31,13 @@ const COMMANDS: [&str; 34] = [
     "multifocal",
     "render",
     "simplify",
+    "strip",
     "vga",
     "light",
     "levels",
     "info",
     "generate tower",
+    "generate gearbox",
     "generate world",
     "demo",
 ];

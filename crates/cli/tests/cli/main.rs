@@ -45,6 +45,7 @@ mod slurm;
 mod space;
 mod space_errors;
 mod stab_trees;
+mod strip;
 mod tables;
 mod tiles;
 mod udmf;

@@ -39,13 +39,14 @@ fn outputs_are_checked_first() {
         &["render", "none.glb", "--eye", "0,0,0", "--look-at", "1,1,1", "--compare", "-o"],
         &["light", "none.glb", "--eye", "0,0,0", "--look-at", "1,1,1", "--light", "0,0,0,1,1,1", "-o"],
         &["simplify", "none.glb", "--volume", "0,0,0,1,1,1", "-o"],
+        &["strip", "none.glb", "-o"],
         &["levels", "none.glb", "--table", "none.pvs", "-o"],
         &["generate", "tower", "-o"],
         &["vga", "none.geojson", "--spacing", "1", "-o"],
     ];
     for args in commands {
         let ending = match args[0] {
-            "simplify" | "generate" => "glb",
+            "simplify" | "strip" | "generate" => "glb",
             "levels" => "lod",
             "verify" | "explain" | "draw" => DRAWN,
             _ => "png",

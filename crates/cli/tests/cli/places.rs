@@ -71,6 +71,7 @@ const COMMANDS: [&[&str]; 16] = [
         "out.png",
     ],
     &["simplify", "tower.glb", "--volume", "9,1,5,9.5,1.5,5.5", "-o", "out.glb"],
+    &["strip", "tower.glb", "--from", "tower.pvs", "--effort", "0", "-o", "out.glb"],
     &["generate", "tower", "--floors", "1", "-o", "out.glb"],
 ];
 

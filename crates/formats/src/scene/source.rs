@@ -1,7 +1,7 @@
 //! Where the objects of a glTF scene come from, so that their document can be written again with fewer triangles.
 
 use super::SceneFile;
-use super::gltf::{Loaded, parse};
+use super::gltf::{Loaded, MAGIC, parse};
 use super::surface::SceneReadOptions;
 use crate::beside::{Folder, Neighbours};
 use crate::error::Malformed;
@@ -85,6 +85,11 @@ impl GltfSource {
     /// Number of objects of the scene.
     pub fn n_objects(&self) -> usize {
         self.objects.len()
+    }
+
+    /// Whether the file is a GLB; else it is a text.
+    pub fn is_glb(&self) -> bool {
+        self.bytes.starts_with(MAGIC)
     }
 
     /// What object `k` comes from; `None` if there is no such object.

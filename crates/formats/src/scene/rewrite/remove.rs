@@ -169,7 +169,8 @@ impl<'a> Members<'a> {
 
     /// The object with these members, some of which have other values, or none.
     fn written(&self, change: impl Fn(&str, &'a str) -> Option<String>) -> String {
-        let member = |(name, value): &(String, &'a RawValue)| change(name, value.get()).map(|value| named(name, &value));
+        let member =
+            |(name, value): &(String, &'a RawValue)| change(name, value.get()).map(|value| named(name, &value));
         format!("{{{}}}", self.0.iter().filter_map(member).collect::<Vec<_>>().join(","))
     }
 }
@@ -205,7 +206,11 @@ impl<'a> Text<'a> {
     }
 
     /// An edit of a node.
-    fn node(&self, node: usize, change: impl Fn(&Members<'a>) -> Result<String, RewriteError>) -> Result<Edit, RewriteError> {
+    fn node(
+        &self,
+        node: usize,
+        change: impl Fn(&Members<'a>) -> Result<String, RewriteError>,
+    ) -> Result<Edit, RewriteError> {
         let value = *self.nodes.get(node).ok_or_else(|| malformed!("there is no node {node}"))?;
         Ok((self.place(value), change(&Members::of(value.get(), &format!("nodes[{node}]"))?)?))
     }
@@ -220,8 +225,10 @@ impl<'a> Text<'a> {
         let mut shows = Vec::with_capacity(self.nodes.len());
         for (k, (node, text)) in document.nodes.iter().zip(&self.nodes).enumerate() {
             let members = Members::of(text.get(), &format!("nodes[{k}]"))?;
-            let extensions = members.get("extensions").map(|value| Members::of(value.get(), "extensions")).transpose()?;
-            let has_light = extensions.is_some_and(|of| of.0.iter().any(|(name, _)| LIGHTS.iter().any(|l| name.starts_with(l))));
+            let extensions =
+                members.get("extensions").map(|value| Members::of(value.get(), "extensions")).transpose()?;
+            let has_light =
+                extensions.is_some_and(|of| of.0.iter().any(|(name, _)| LIGHTS.iter().any(|l| name.starts_with(l))));
             shows.push(node.mesh.is_some() && !plans.contains_key(&k) || has_light || members.get("camera").is_some());
         }
         plans.retain(|&node, _| {
@@ -278,9 +285,8 @@ impl<'a> Text<'a> {
                 }
             };
             if mesh != plan.mesh {
-                let renamed = |name: &str, value: &str| {
-                    Some(if name == "mesh" { mesh.to_string() } else { value.to_owned() })
-                };
+                let renamed =
+                    |name: &str, value: &str| Some(if name == "mesh" { mesh.to_string() } else { value.to_owned() });
                 edits.push(self.node(node, |of| Ok(of.written(renamed)))?);
             }
         }
@@ -317,7 +323,9 @@ impl<'a> Text<'a> {
                 let mut list: Vec<String> = others.map(|(name, value)| named(name, value.get())).collect();
                 list.push(invisible.clone());
                 let extensions = format!("{{{}}}", list.join(","));
-                Ok(of.written(|name, value| Some(if name == "extensions" { extensions.clone() } else { value.to_owned() })))
+                Ok(of.written(|name, value| {
+                    Some(if name == "extensions" { extensions.clone() } else { value.to_owned() })
+                }))
             };
             edits.push(self.node(node, flag)?);
         }
