@@ -3,7 +3,7 @@
 use crate::common::Folder;
 
 /// All commands, with those that have others below them.
-const COMMANDS: [&str; 34] = [
+const COMMANDS: [&str; 36] = [
     "build",
     "reject",
     "vis",

@@ -29,7 +29,7 @@ fn inputs() -> Folder {
 }
 
 /// Commands with the name of a file that they write last; they write nothing else.
-const COMMANDS: [&[&str]; 16] = [
+const COMMANDS: [&[&str]; 17] = [
     &["build", "office.geojson", "-o", "out.pvs"],
     &["build", "tower.glb", "-o", "out.pvs"],
     &["reject", "maps.wad", "-o", "out.wad"],

@@ -79,6 +79,11 @@ fn nodes_are_made_invisible_where_nothing_of_them_is_seen() {
     let (json, stay, _) = without(&doc, &[true; 6], Removal::Flag);
     assert!(stay.iter().all(|stay| !stay));
     assert_eq!(json["nodes"][0]["extensions"], json!({"KHR_node_visibility": {"visible": false}}));
+    // What is in another scene as well stays.
+    let mut scenes = doc.clone();
+    scenes.json["scenes"] = json!([{"nodes": [0, 2]}, {"nodes": [2]}]);
+    let (json, stay, _) = without(&scenes, &[true; 6], Removal::Delete);
+    assert_eq!((stay, json["nodes"][2]["mesh"].clone()), (vec![false, false, false, false, true, true], json!(0)));
     // A lamp below it is not to go out.
     let mut lamp = doc.clone();
     lamp.json["nodes"][1]["extensions"] = json!({"KHR_lights_punctual": {"light": 0}});

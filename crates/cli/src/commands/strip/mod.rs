@@ -171,7 +171,10 @@ fn check_format(args: &StripArgs, path: &Path, source: Option<&GltfSource>) -> R
 /// The file without what is hidden.
 fn write(args: &StripArgs, scene: &Scene, source: Option<&GltfSource>, stripped: &Stripped) -> Result<MadeFile> {
     let Some(source) = source else {
+        // An OBJ has no objects without triangles.
         let rest = stripped.rest_of(scene).in_file(&args.scene)?;
+        let left = rest.objects().iter().filter(|object| !object.triangles.is_empty()).cloned().collect();
+        let rest = Scene::new(left).in_file(&args.scene)?;
         let bytes = write_simplified_obj(&rest, Simplification { occluder: true }).in_file(&args.scene)?;
         return Ok(MadeFile { bytes, n_stay: 0 });
     };

@@ -263,9 +263,9 @@ f 7 8 9 10\nf 11 14 13 12\nf 7 11 12 8\nf 8 12 13 9\nf 9 13 14 10\nf 10 14 11 7\
             add("explain of cells without portals", &format!("explain boxes.pvs 0 {cell}{scene}"));
         }
     }
-    add("strip", "strip triangles.obj -o stripped.obj --explain *");
     add("strip", "strip triangles.obj -o stripped.obj --triangles");
     add("generate gearbox", "generate gearbox --gears 1 -o g.glb");
+    add("strip", "strip g.glb -o stripped.glb --explain *");
     add("levels", "levels least.glb --table least.pvs -o levels --method none");
     add("walk", "walk least.pvs --path path.json --levels levels");
     let simplify = format!("simplify triangles.obj --volume={VOLUME} -o s.glb --method none");

@@ -31,7 +31,8 @@ pub enum Removal {
 pub struct RemovedObjects {
     /// The file, of the same kind as the source.
     pub bytes: Vec<u8>,
-    /// For each object whether it had to stay although it was to go: it shares a node with what is seen, or the node is animated in a way that needs it.
+    /// For each object whether it had to stay although it was to go: it shares a node with what is seen, the node is in
+    /// several scenes, or it is animated in a way that needs it.
     pub stay: Vec<bool>,
 }
 
@@ -106,7 +107,8 @@ impl GltfSource {
             let plan = plans.entry(origin.node).or_insert_with(|| NodePlan { mesh: origin.mesh, drop: vec![true; n] });
             (0..n).for_each(|k| plan.drop[k] &= objects[origin.first_object + k]);
         }
-        plans.retain(|_, plan| plan.drops_any());
+        let in_scenes = scenes_of_nodes(document);
+        plans.retain(|&node, plan| plan.drops_any() && in_scenes[node] < 2);
         plans
     }
 
@@ -131,6 +133,22 @@ impl GltfSource {
         glb.extend_from_slice(rest);
         Ok(glb)
     }
+}
+
+/// In how many scenes each node is. What is hidden in one may be seen in another.
+fn scenes_of_nodes(document: &Document) -> Vec<u32> {
+    let mut counts = vec![0; document.nodes.len()];
+    for scene in &document.scenes {
+        let mut below = scene.nodes.clone();
+        let mut known = BTreeSet::new();
+        while let Some(node) = below.pop() {
+            // Scenes that were not read may name anything.
+            let Some(of) = document.nodes.get(node).filter(|_| known.insert(node)) else { continue };
+            counts[node] += 1;
+            below.extend(&of.children);
+        }
+    }
+    counts
 }
 
 /// The members of an object, in their order, as they are written.
