@@ -82,3 +82,14 @@ class Camera {
     return matrix;
   }
 }
+
+/** Directions along the edges of a view, around it; in a plan there are two. */
+function edgesOf(view, dimension) {
+  const ahead = unit3([0, 1, 2].map((k) => view.sides.reduce((sum, side) => sum + side[k], 0)));
+  const [left, right, below, above] = view.sides;
+  const edges = dimension === 2
+    ? [left, right].map((side) => [side[1], -side[0], 0])
+    : [[left, below], [right, below], [right, above], [left, above]].map(([a, b]) => cross3(a, b));
+  // One unit ahead.
+  return edges.map((edge) => edge.map((x) => x / dot3(edge, ahead)));
+}

@@ -196,8 +196,8 @@ class FlatMap {
   paintView(pen, colours) {
     const { narrow, size } = this.model;
     if (!narrow) return;
-    const { eye, rays } = narrow.view;
-    for (const ray of rays) {
+    const { eye } = narrow.view;
+    for (const ray of edgesOf(narrow.view, this.model.table.dimension)) {
       const end = eye.map((x, k) => x + (size * ray[k]) / Math.hypot(...ray));
       pen.stroke([this.toScreen(this.flat(eye)), this.toScreen(this.flat(end))], colours.from, 1);
     }

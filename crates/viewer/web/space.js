@@ -201,7 +201,8 @@ class Space {
     this.drawWhy(colours);
     if (model.lock) this.strokeNow(crossAt(model.lock, model.size / 60), colours.target);
     if (model.lock && model.narrow) {
-      const { eye, rays } = model.narrow.view;
+      const { eye } = model.narrow.view;
+      const rays = edgesOf(model.narrow.view, model.table.dimension);
       const far = (ray) => eye.map((x, k) => x + (0.2 * model.size * ray[k]) / Math.hypot(...ray));
       this.strokeNow(rays.flatMap((ray) => [eye, far(ray)]).map((p) => model.table.toScene(p)), colours.from);
     }
