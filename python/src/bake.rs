@@ -6,44 +6,24 @@ use crate::long;
 use crate::table::Table;
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
-use sightlines_bake::eye_level::EyeLevelOptions;
-use sightlines_bake::places::PlaceOptions;
-use sightlines_bake::{
-    BakeError, BakeInput, BakeRequest, Bakeable, BakeableError, Baked, CellsFrom, Gap, Report, Runtime,
-};
+use sightlines_bake::{BakeError, BakeInput, BakeRequest, Bakeable, BakeableError, Baked, Gap, Report, Runtime};
 use sightlines_cells::{Scene, SceneObject};
-use sightlines_formats::view_cells::ViewCell;
-use sightlines_formats::{Source, ViewCells};
-use sightlines_geometry::{Aabb, check_coordinate};
+use sightlines_formats::Source;
 use sightlines_progress::Observer;
-use sightlines_pvs::Axis;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// What a bake did: pairs that see each other, pairs assumed to, and those not decided in time.
 pub(crate) type Said = (u64, u64, u64);
 
-/// How to bake a scene in space; what means nothing for an input is refused, but for a limit of time, which only scenes heed.
+/// How to bake; what means nothing for an input is refused, but for a limit of time, which only scenes heed.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-pub(crate) struct Options<'py> {
-    method: Option<String>,
-    /// "kd-tree", "places", "eye-level", "grid" or "boxes".
-    cells: Option<String>,
-    place_count: Option<u32>,
-    cell_size: Option<f64>,
-    eye_height: Option<[f64; 2]>,
-    up: Option<u8>,
-    grid: Option<[u32; 3]>,
-    boxes: Option<PyReadonlyArray2<'py, f64>>,
-    view_region: Option<[f64; 6]>,
-    gap: Option<f64>,
+pub(crate) struct Options {
+    /// A request as JSON.
+    request: String,
     /// Whether coordinates that Python gives are as precise as single precision is; files say themselves.
     is_single: bool,
-    detail_below: Option<f64>,
-    keep_solid: bool,
-    parts: Option<u32>,
-    max_cells: Option<u32>,
     time_limit: Option<f64>,
     threads: usize,
 }
@@ -55,69 +35,12 @@ struct Checked {
     threads: usize,
 }
 
-fn aabb(b: [f64; 6], what: &str) -> PyResult<Aabb<3>> {
-    let [x0, y0, z0, x1, y1, z1] = b;
-    for x in b {
-        check_coordinate(x).map_err(|failure| value_error(format!("{what}: {failure}")))?;
-    }
-    let (min, max) = ([x0, y0, z0], [x1, y1, z1]);
-    if (0..3).any(|k| min[k] > max[k]) {
-        return Err(value_error(format!("{what}: a lower corner above the upper one")));
-    }
-    Ok(Aabb { min, max })
-}
-
-impl Options<'_> {
+impl Options {
     fn check(&self) -> PyResult<Checked> {
-        let not_from_0 = |x: &f64| !(x.is_finite() && *x >= 0.0);
-        for (name, x) in [("gap", self.gap), ("time_limit", self.time_limit), ("detail_below", self.detail_below)] {
-            if let Some(x) = x.filter(not_from_0) {
-                return Err(value_error(format!("{name} is {x}, where a finite number from 0 on is expected")));
-            }
+        let mut request = BakeRequest::from_json(&self.request).map_err(value_error)?;
+        if self.is_single && request.gap == Gap::OfFile {
+            request.gap = Gap::OfSingle;
         }
-        let Self { cell_size, eye_height, .. } = *self;
-        let mut width = None;
-        let cells = match self.cells.as_deref() {
-            None => {
-                width = cell_size;
-                None
-            }
-            Some("kd-tree") => Some(CellsFrom::KdTree),
-            Some("places") => Some(CellsFrom::Places(PlaceOptions { n_cells: self.place_count, cell_size })),
-            Some("eye-level") => {
-                let up = self.up.and_then(|up| Axis::ALL.get(usize::from(up))).copied();
-                Some(CellsFrom::EyeLevel(EyeLevelOptions { cell_size, eye_height, up, ..EyeLevelOptions::default() }))
-            }
-            Some("grid") => Some(CellsFrom::Grid(self.grid.unwrap_or_default())),
-            Some("boxes") => {
-                let boxes = self.boxes.as_ref().map(|boxes| rows::<6>(boxes, "cells")).transpose()?.unwrap_or_default();
-                let cell = |(i, b): (usize, &[f64; 6])| {
-                    Ok(ViewCell { id: i.to_string(), bounds: aabb(*b, &format!("cell {i}"))? })
-                };
-                let cells: Vec<ViewCell> = boxes.iter().enumerate().map(cell).collect::<PyResult<_>>()?;
-                if cells.is_empty() {
-                    return Err(value_error("cells: there are none"));
-                }
-                Some(CellsFrom::Boxes(ViewCells { cells, axes: None }))
-            }
-            Some(other) => return Err(value_error(format!("'{other}' is no kind of cells"))),
-        };
-        let request = BakeRequest {
-            method: self.method.as_deref().map(|name| name.parse().map_err(value_error)).transpose()?,
-            cells,
-            cell_size: width,
-            view_region: self.view_region.map(|b| aabb(b, "view_region")).transpose()?,
-            gap: match self.gap {
-                Some(width) => Gap::Width(width),
-                None if self.is_single => Gap::OfSingle,
-                None => Gap::OfFile,
-            },
-            detail_below: self.detail_below,
-            keep_solid: self.keep_solid,
-            parts: self.parts,
-            max_cells: self.max_cells,
-            ..BakeRequest::default()
-        };
         Ok(Checked { request, time_limit: self.time_limit, threads: self.threads })
     }
 }
@@ -168,7 +91,7 @@ fn read_and_bake(
     name: &Path,
     bytes: Option<&[u8]>,
     map: Option<&str>,
-    options: &Options<'_>,
+    options: &Options,
     progress: Option<&Py<PyAny>>,
 ) -> PyResult<(Table, Said)> {
     let options = options.check()?;
@@ -193,7 +116,7 @@ pub(crate) fn bake_file(
     py: Python<'_>,
     path: PathBuf,
     map: Option<&str>,
-    options: Options<'_>,
+    options: Options,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(Table, Said)> {
     read_and_bake(py, &path, None, map, &options, progress.as_ref())
@@ -207,7 +130,7 @@ pub(crate) fn bake_bytes(
     bytes: &[u8],
     name: &str,
     map: Option<&str>,
-    options: Options<'_>,
+    options: Options,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(Table, Said)> {
     read_and_bake(py, Path::new(name), Some(bytes), map, &options, progress.as_ref())
@@ -237,7 +160,7 @@ fn object((name, corners, triangles, _): &Mesh<'_>) -> PyResult<SceneObject> {
 pub(crate) fn bake_meshes(
     py: Python<'_>,
     meshes: Vec<Mesh<'_>>,
-    options: Options<'_>,
+    options: Options,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(Table, Said)> {
     let options = options.check()?;

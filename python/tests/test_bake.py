@@ -185,6 +185,12 @@ def program() -> str:
         ({"method": "sightlines", "detail_below": 0.5}, ["--method", "sightlines", "--detail-below", "0.5"]),
         ({"method": "sightlines", "keep_solid": True}, ["--method", "sightlines", "--keep-solid"]),
         ({"cells": 12, "max_cells": 40}, ["--n-cells", "12", "--max-cells", "40"]),
+        ({"cells": 12, "method": "shafts", "split": 1}, ["--n-cells", "12", "--method", "shafts", "--split", "1"]),
+        (
+            {"cells": 12, "method": "both", "planes": 1, "texels": 16, "sheets": 0, "carry": False, "occluders": 20},
+            ["--n-cells", "12", "--method", "both", "--planes", "1", "--texels", "16"]
+            + ["--sheets", "0", "--no-carry", "--occluders", "20"],
+        ),
     ],
 )
 def test_files_are_baked_as_the_program_does(tmp_path, tower_bytes, options, arguments):
@@ -229,6 +235,9 @@ def test_the_table_does_not_depend_on_threads(tower_bytes, tower):
         {"threads": 0},
         {"threads": 2000},
         {"max_cells": 0},
+        {"texel": 16},
+        {"split": 13},
+        {"cells": "kd-tree", "up": "y"},
     ],
 )
 def test_wrong_options_are_refused(options):

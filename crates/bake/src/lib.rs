@@ -38,6 +38,8 @@ pub mod lines;
 pub mod live;
 pub mod methods;
 mod mirrors;
+#[cfg(feature = "serde")]
+mod named;
 mod needs;
 mod object_parts;
 mod objects;
@@ -76,6 +78,8 @@ pub use graph::{GraphKind, GraphRef, OtherGraph, TableGraph};
 pub use input::BakeInput;
 pub use limit::LimitReport;
 pub use live::{LiveScene, LiveUpdate};
+#[cfg(feature = "serde")]
+pub use named::RequestError;
 pub use needs::portals_need;
 pub use options::{ParseSceneMethodError, Recipe, SceneMethod};
 pub use places::PlaceOptions;

@@ -20,7 +20,22 @@ use std::fmt;
 /// What means nothing for an input, or for a method that was named, is refused by name when the request is
 /// [prepared](BakeRequest::prepare). Everything but the threads and the observer is here, so a request says which table
 /// is made, byte for byte.
+///
+/// With the feature `serde` it is read from JSON, by the names of the program's options with `_` for `-`; `"cells"` takes a name, or what a file of
+/// cells holds:
+///
+/// ```
+/// # #[cfg(feature = "serde")]
+/// # let _ = || {
+/// use sightlines_bake::{BakeRequest, CellsFrom};
+///
+/// let request = BakeRequest::from_json(r#"{"grid": [8, 1, 6], "method": "line-space"}"#)?;
+/// assert_eq!(request.cells, Some(CellsFrom::Grid([8, 1, 6])));
+/// # Ok::<(), sightlines_bake::RequestError>(())
+/// # };
+/// ```
 #[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize), serde(try_from = "crate::named::Named"))]
 pub struct BakeRequest {
     /// Scenes: the cells. None: those of a k-d tree where nearly all walls are perpendicular to an axis, where there are mirrors, and for
     /// sightlines alone; else cells at the height of [eyes](crate::eye_level), or [`places`](crate::places) where viewers may fly.

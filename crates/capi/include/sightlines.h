@@ -768,6 +768,11 @@ typedef struct sl_bake_options {
      * (`sl_table_visible_ranges`); 0 to split none.
      */
     uint64_t parts;
+    /**
+     * What to bake as JSON, by the names of the options of `sightlines build` with `_` for `-`: `{"method": "multifocal", "planes": 4}`. Null: as the
+     * other fields say. With it, of these only `threads`, `time_limit`, `progress` and `user` may be set.
+     */
+    const char *request;
 } sl_bake_options;
 
 /**
@@ -1796,7 +1801,7 @@ sl_status sl_bake(const struct sl_scene *scene,
 /**
  * Makes the table of a plan: walls in the plane, which hide from both sides. Objects and doors belong to scenes.
  *
- * Of the options only `threads`, `progress` and `user` change anything; the others have to be valid all the same.
+ * Of the options only `request`, `threads`, `progress` and `user` change anything; the others have to be valid all the same.
  *
  * @param walls       x and y of the two ends of one wall after the other: four numbers each.
  * @param wall_count  Number of walls.

@@ -109,6 +109,9 @@ pub struct SlBakeOptions {
     /// Scenes: objects of more triangles than this are split into parts of at most that many, and the table lists which cells may see each part
     /// (`sl_table_visible_ranges`); 0 to split none.
     pub parts: u64,
+    /// What to bake as JSON, by the names of the options of `sightlines build` with `_` for `-`: `{"method": "multifocal", "planes": 4}`. Null: as the
+    /// other fields say. With it, of these only `threads`, `time_limit`, `progress` and `user` may be set.
+    pub request: *const c_char,
 }
 
 impl Plain for SlBakeOptions {}
@@ -162,6 +165,7 @@ struct Given<'a> {
     method: Option<SceneMethod>,
     boxes: &'a [SlBox],
     view_region: Option<SlBox>,
+    request: Option<BakeRequest>,
     callback: Option<Callback>,
 }
 
@@ -187,8 +191,14 @@ unsafe fn given<'a>(options: *const SlBakeOptions) -> Result<Given<'a>, Failure>
         };
         let boxes = if options.cells == SL_CELLS_BOXES { options.box_count } else { 0 };
         let boxes = border::slice(options.boxes, boxes, "the place of the boxes")?;
+        let request = if options.request.is_null() {
+            None
+        } else {
+            let text = border::text(options.request, "the request")?;
+            Some(BakeRequest::from_json(text).map_err(|error| Failure::argument(format!("the request: {error}")))?)
+        };
         let callback = options.progress.map(|call| Callback { call, user: options.user, cancelled: Mutex::new(false) });
-        Ok(Given { options, method, boxes, view_region, callback })
+        Ok(Given { options, method, boxes, view_region, request, callback })
     }
 }
 
@@ -214,6 +224,7 @@ static DEFAULT: Shareable = Shareable(SlBakeOptions {
     eye_height: [0.0; 2],
     up: 0,
     parts: 0,
+    request: std::ptr::null(),
 });
 
 struct Shareable(SlBakeOptions);
@@ -311,25 +322,30 @@ impl Given<'_> {
             _ => return Err(Failure::argument(format!("{cells} is no kind of cells"))),
         };
         let view_region = self.view_region.as_ref().map(|b| aabb(b, "the view region")).transpose()?;
-        if !is_scene {
-            return Ok(BakeRequest::default());
-        }
-        Ok(BakeRequest {
+        let by_fields = BakeRequest {
             cells,
             cell_size: width,
             method: self.method,
-            gap: match gap {
-                0.0 if is_single => Gap::OfSingle,
-                0.0 => Gap::OfFile,
-                gap => Gap::Width(gap.max(0.0)),
-            },
+            gap: if gap == 0.0 { Gap::OfFile } else { Gap::Width(gap.max(0.0)) },
             view_region,
             detail_below: if detail_below == 0.0 { None } else { Some(detail_below.max(0.0)) },
             max_cells: if max_cells == 0 { None } else { Some(max_cells) },
             keep_solid: keep_solid != 0,
             parts: if parts == 0 { None } else { Some(parts) },
             ..BakeRequest::default()
-        })
+        };
+        let mut request = match &self.request {
+            Some(_) if by_fields != BakeRequest::default() => {
+                return Err(Failure::argument("what to bake is said by the request and by other fields"));
+            }
+            Some(request) => request.clone(),
+            None if is_scene => by_fields,
+            None => BakeRequest::default(),
+        };
+        if is_scene && is_single && request.gap == Gap::OfFile {
+            request.gap = Gap::OfSingle;
+        }
+        Ok(request)
     }
 
     /// Makes a table, and tells what was done.
@@ -396,7 +412,7 @@ pub unsafe extern "C" fn sl_bake(
 
 /// Makes the table of a plan: walls in the plane, which hide from both sides. Objects and doors belong to scenes.
 ///
-/// Of the options only `threads`, `progress` and `user` change anything; the others have to be valid all the same.
+/// Of the options only `request`, `threads`, `progress` and `user` change anything; the others have to be valid all the same.
 ///
 /// @param walls       x and y of the two ends of one wall after the other: four numbers each.
 /// @param wall_count  Number of walls.

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
+import math
 import os
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from typing import Any, SupportsFloat
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -37,6 +39,7 @@ def bake(
     progress: Progress = True,
     name: str = "scene",
     map: str | None = None,
+    **options: Any,
 ) -> Table:
     """Makes the table of a scene: which cells and objects can be seen from which cells.
 
@@ -68,92 +71,89 @@ def bake(
     :param progress: a bar, if tqdm is installed, or a function that gets what is done, the units done, and all of them
     :param name: the name that bytes would have as a file, if it is needed to tell what they are: ``"scene.obj"``
     :param map: which map of a WAD
+    :param options: further options of ``sightlines build``, by their names with ``_`` for ``-``: ``tau``, ``subdivide``, ``split``, ``planes``,
+        ``texels``, ``occluders``, ``carry``, ``sheets``, ``backend``, ``fast``
     :raises ValueError: for arguments that cannot be used
     :raises OSError: for a file that cannot be read
     :raises Error: for a damaged file, or a scene that cannot be baked
     """
-    eyes = (cell_size, eye_height, up)
-    kept = (bool(keep_solid), count(parts, "parts"))
-    options = _options(cells, eyes, method, view_region, gap, detail_below, kept, max_cells, time_limit, threads)
+    request = {**options, **_cells(cells)}
+    for option, value in {
+        "cell_size": _number(cell_size, "cell_size"),
+        "eye_height": None if eye_height is None else _numbers(eye_height, "eye_height", 2),
+        "up": _name(up, "up"),
+        "method": _name(method, "method"),
+        "view_region": None if view_region is None else _numbers(view_region, "view_region", 6),
+        "gap": _number(gap, "gap"),
+        "detail_below": _number(detail_below, "detail_below"),
+        "keep_solid": bool(keep_solid),
+        "parts": count(parts, "parts"),
+        "max_cells": count(max_cells, "max_cells"),
+    }.items():
+        if value is not None:
+            request[option] = value
+    limit = _number(time_limit, "time_limit")
+    if limit is not None and limit < 0:
+        raise ValueError(f"time_limit is {limit}, where a number from 0 on is expected")
+    how = {"request": json.dumps(request), "is_single": False, "time_limit": limit, "threads": threads_of(threads)}
     if map is not None and not isinstance(map, str):
         raise TypeError("map is the name of a map")
     with Reporter(progress) as report:
         if isinstance(source, (str, os.PathLike)):
-            made = _native.bake_file(os.fspath(source), map, options, report)
+            made = _native.bake_file(os.fspath(source), map, how, report)
         elif isinstance(source, (bytes, bytearray, memoryview)):
-            made = _native.bake_bytes(bytes(source), name, map, options, report)
+            made = _native.bake_bytes(bytes(source), name, map, how, report)
         else:
             meshes, is_single = _meshes(source, frozenset(see_through))
-            made = _native.bake_meshes(meshes, {**options, "is_single": is_single}, report)
+            made = _native.bake_meshes(meshes, {**how, "is_single": is_single}, report)
     return Table._of(*made)
 
 
-def _options(
-    cells: Any,
-    eyes: tuple[float | None, tuple[float, float] | None, str | None],
-    method: str | None,
-    view_region: ArrayLike | None,
-    gap: float | None,
-    detail_below: float | None,
-    kept: tuple[bool, int | None],
-    max_cells: int | None,
-    time_limit: float | None,
-    threads: int | None,
-) -> dict[str, Any]:
-    kind: str | None = None
-    place_count: int | None = None
-    grid: tuple[int, ...] | None = None
-    boxes: NDArray[np.float64] | None = None
-    if cells is None or isinstance(cells, str):
-        kind = cells
-        if kind not in (None, "kd-tree", "places", "eye-level"):
-            raise ValueError(f"cells: {kind!r} is none of 'kd-tree', 'places' and 'eye-level', nor numbers or boxes")
-    elif np.ndim(cells) == 0:
-        kind, place_count = "places", count(index(cells, "cells"), "cells")
-    elif np.ndim(cells) == 1:
+def _number(x: float | None, what: str) -> float | None:
+    """A finite number, or none."""
+    if x is None:
+        return None
+    if isinstance(x, (bool, str)) or not isinstance(x, SupportsFloat):
+        raise TypeError(f"{what}: a number is expected, not {type(x).__name__}")
+    if not math.isfinite(x):
+        raise ValueError(f"{what} is {x}, where a finite number is expected")
+    return float(x)
+
+
+def _numbers(x: ArrayLike, what: str, n: int) -> list[float]:
+    """So many finite numbers."""
+    array = floats(x, what)
+    if array.size != n or array.shape not in ((n,), (2, n // 2)):
+        raise ValueError(f"{what}: an array of shape {array.shape}, where {n} numbers are expected")
+    if not np.isfinite(array).all():
+        raise ValueError(f"{what}: a number that is not finite")
+    return [float(y) for y in array.reshape(-1)]
+
+
+def _name(x: str | None, what: str) -> str | None:
+    if x is not None and not isinstance(x, str):
+        raise TypeError(f"{what}: a name is expected, not {type(x).__name__}")
+    return x
+
+
+def _cells(cells: Any) -> dict[str, Any]:
+    """Cells as a request has them."""
+    if cells is None:
+        return {}
+    if isinstance(cells, str):
+        return {"cells": cells}
+    if np.ndim(cells) == 0:
+        return {"n_cells": count(index(cells, "cells"), "cells")}
+    if np.ndim(cells) == 1:
         if len(cells) != 3:
             raise ValueError(f"cells: {len(cells)} numbers, where three are a grid")
-        kind, grid = "grid", tuple(count(index(n, "cells"), "cells") or 0 for n in cells)
-    else:
-        boxes = floats(cells, "cells")
-        if boxes.ndim != 3 or boxes.shape[1:] != (2, 3):
-            raise ValueError(f"cells: an array of shape {boxes.shape}, where boxes (n, 2, 3) are expected")
-        kind, boxes = "boxes", boxes.reshape(-1, 6)
-    cell_size, eye_height, up = eyes
-    if cell_size is not None and kind not in (None, "places", "eye-level"):
-        raise ValueError("cell_size: cells of a k-d tree, of a grid and boxes have their own widths")
-    if kind != "eye-level" and (eye_height is not None or up is not None):
-        raise ValueError("eye_height and up are for cells='eye-level'")
-    if up not in (None, "x", "y", "z"):
-        raise ValueError(f"up: {up!r} is none of 'x', 'y' and 'z'")
-    heights = None if eye_height is None else floats(eye_height, "eye_height").tolist()
-    if heights is not None and len(heights) != 2:
-        raise ValueError(f"eye_height: {len(heights)} numbers, where two are expected")
-    region: list[float] | None = None
-    if view_region is not None:
-        box = floats(view_region, "view_region")
-        if box.size != 6 or box.shape not in ((2, 3), (6,)):
-            raise ValueError(f"view_region: an array of shape {box.shape}, where a box (2, 3) is expected")
-        region = box.reshape(6).tolist()
-    return {
-        "method": method,
-        "cells": kind,
-        "place_count": place_count,
-        "cell_size": None if cell_size is None else float(cell_size),
-        "eye_height": heights,
-        "up": None if up is None else "xyz".index(up),
-        "grid": grid,
-        "boxes": boxes,
-        "view_region": region,
-        "gap": gap,
-        "is_single": False,
-        "detail_below": detail_below,
-        "keep_solid": kept[0],
-        "parts": kept[1],
-        "max_cells": count(max_cells, "max_cells"),
-        "time_limit": time_limit,
-        "threads": threads_of(threads),
-    }
+        return {"grid": [count(index(n, "cells"), "cells") for n in cells]}
+    boxes = floats(cells, "cells")
+    if boxes.ndim != 3 or boxes.shape[1:] != (2, 3):
+        raise ValueError(f"cells: an array of shape {boxes.shape}, where boxes (n, 2, 3) are expected")
+    if not np.isfinite(boxes).all():
+        raise ValueError("cells: a number that is not finite")
+    return {"cells": {"cells": [{"id": str(i), "min": low, "max": high} for i, (low, high) in enumerate(boxes.tolist())]}}
 
 
 def _meshes(source: Any, see_through: frozenset[str]) -> tuple[list[_Mesh], bool]:

@@ -296,6 +296,7 @@ impl Driver<'_> {
                     [0.0; 2]
                 },
                 up: if cells == SL_CELLS_EYE_LEVEL || is_odd { self.bytes.below(5) as u64 } else { 0 },
+                request: if self.bytes.below(8) == 0 { c"{\"n_cells\": 4}".as_ptr() } else { ptr::null() },
             };
         let mut report = SlBakeReport {
             struct_size: size_of::<SlBakeReport>() + self.bytes.below(16) / 15,

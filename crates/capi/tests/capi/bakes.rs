@@ -59,6 +59,19 @@ fn bakes_are_those_of_rust() {
             assert!(!expected.object_parts().is_empty());
             assert_eq!(list(|to, size, n| sl_table_bytes(table, SL_FORM_PLAIN, to, size, n)), expected.to_bytes());
             assert_eq!(compare_content(&expected, &Handle(table))[1], 0);
+            given.request = c"{\"parts\": 6}".as_ptr();
+            let mut twice = ptr::null_mut();
+            assert_eq!(sl_bake(handle, &given, &mut twice, ptr::null_mut()), SL_ERROR_ARGUMENT);
+            (given.parts, given.request) = (0, c"{\"parts\": 6, \"n_cell\": 4}".as_ptr());
+            assert_eq!(sl_bake(handle, &given, &mut twice, ptr::null_mut()), SL_ERROR_ARGUMENT);
+            let text = c"{\"parts\": 6, \"n_cells\": 9, \"method\": \"shafts\", \"split\": 1}";
+            given.request = text.as_ptr();
+            assert_eq!(sl_bake(handle, &given, &mut twice, ptr::null_mut()), SL_OK);
+            let request = BakeRequest::from_json(text.to_str().expect("a text")).expect("a request");
+            let request = BakeRequest { gap: options.gap, ..request };
+            let expected = bake(&scene, &request).expect("a scene").table;
+            assert_eq!(list(|to, size, n| sl_table_bytes(twice, SL_FORM_PLAIN, to, size, n)), expected.to_bytes());
+            sl_table_free(twice);
             sl_scene_free(handle);
         }
     }

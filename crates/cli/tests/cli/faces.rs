@@ -131,6 +131,27 @@ fn method(name: &str) -> Option<SceneMethod> {
     Some(name.parse().expect("a method"))
 }
 
+/// A request as JSON, as Python, C and pages say it, from the arguments of the program.
+fn as_json(args: &[&str]) -> String {
+    let mut request = serde_json::Map::new();
+    let mut args = args.iter().peekable();
+    while let Some(name) = args.next() {
+        let name = name.trim_start_matches('-').replace('-', "_");
+        let value = match args.next_if(|value| !value.starts_with("--")) {
+            None if name == "no_carry" => {
+                request.insert("carry".to_owned(), false.into());
+                continue;
+            }
+            None => true.into(),
+            Some(value) => serde_json::from_str(value)
+                .or_else(|_| serde_json::from_str(&format!("[{value}]")))
+                .unwrap_or_else(|_| (*value).into()),
+        };
+        request.insert(name, value);
+    }
+    serde_json::Value::Object(request).to_string()
+}
+
 /// Options of scenes: what the program and Rust have for them.
 fn options() -> Vec<(&'static str, BakeRequest)> {
     let plain = BakeRequest::default;
@@ -181,6 +202,7 @@ fn with_each_option_every_face_makes_the_same_table() {
         for (args, request) in options() {
             let expected = by_rust(&input, &request).to_bytes();
             let args: Vec<&str> = args.split(' ').collect();
+            assert_eq!(BakeRequest::from_json(&as_json(&args)), Ok(request), "{args:?}");
             assert!(by_program(&folder, name, &args) == expected, "{name}: the program with {args:?}");
         }
     }
@@ -199,6 +221,7 @@ fn with_each_option_every_face_makes_the_same_table() {
     ];
     for (name, args, request) in others {
         let expected = by_rust(&read(&folder, name), &request).to_bytes();
+        assert_eq!(BakeRequest::from_json(&as_json(args)), Ok(request), "{args:?}");
         assert!(by_program(&folder, name, args) == expected, "{name}: the program with {args:?}");
     }
 }
