@@ -2,6 +2,7 @@
 
 use crate::baked::Baked;
 use crate::graph::{GraphRef, OtherGraph, TableGraph};
+use crate::stopwatch::Stopwatch;
 use sightlines_certificates::axial::{AxialNetworkError, AxialProofs};
 use sightlines_certificates::convex::{ConvexNetworkError, ConvexProofs};
 use sightlines_certificates::planar::{NetworkError, PlanarProofs};
@@ -12,7 +13,7 @@ use sightlines_stabtree::{
     CertifyError as SearchError, CertifyOptions, ObjectRows, certify_axial, certify_convex, certify_planar,
 };
 use std::error::Error;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Why a table cannot have proofs.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -100,7 +101,7 @@ pub fn certify_table<'g>(
     graph: impl Into<GraphRef<'g>>,
     options: &CertifyOptions<'_>,
 ) -> Result<Certified, CertifyError> {
-    let start = Instant::now();
+    let start = Stopwatch::start();
     let graph = graph.into();
     graph.check_size(table)?;
     let rows = &table.parts().rows;

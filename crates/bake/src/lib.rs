@@ -58,6 +58,7 @@ pub mod scene;
 mod sectors;
 mod stab;
 mod stated;
+mod stopwatch;
 mod subdivide;
 mod surroundings;
 mod table;

@@ -5,6 +5,7 @@ use crate::error::BakeError;
 use crate::mirrors;
 use crate::reports::PlanReport;
 use crate::stated::GAP;
+use crate::stopwatch::Stopwatch;
 use crate::subdivide::Subdivide;
 use crate::table::{TableOptions, planar_parts};
 use sightlines_cells::{CellGraph, Plan, Planar};
@@ -12,7 +13,6 @@ use sightlines_progress::Observer;
 use sightlines_pvs::{Table, TableKind};
 use sightlines_stabtree::{SearchOptions, Zones, planar_visibility};
 use std::fmt;
-use std::time::Instant;
 
 /// How to bake a plan.
 #[derive(Clone, Copy)]
@@ -60,7 +60,7 @@ impl fmt::Debug for PlanBakeOptions<'_> {
 /// # Errors
 /// [`BakeError`] for plans without lines or without a region, and for a `tau` outside 0 to 1.
 pub fn bake_plan(plan: &Plan, options: &PlanBakeOptions<'_>) -> Result<BakedPlan, BakeError> {
-    let start = Instant::now();
+    let start = Stopwatch::start();
     let (graph, mut report) = cut(plan, options)?;
     report.cut_time = start.elapsed();
     let search = SearchOptions {
@@ -69,7 +69,7 @@ pub fn bake_plan(plan: &Plan, options: &PlanBakeOptions<'_>) -> Result<BakedPlan
         progress: options.progress,
         ..SearchOptions::default()
     };
-    let start = Instant::now();
+    let start = Stopwatch::start();
     let (rows, found) = planar_visibility(&graph, &Zones::cells(&graph), &search)?;
     report.see_time = start.elapsed();
     report.n_cells = graph.n_cells();

@@ -14,6 +14,7 @@ use crate::reports::{RegionReport, Report};
 use crate::request::{BakeRequest, Runtime, refuse_parts};
 use crate::scene::{PortalMode, SceneBakeOptions, bake_scene};
 use crate::stated::TIME_LIMIT;
+use crate::stopwatch::Stopwatch;
 use crate::surroundings::{self, seen_around};
 use sightlines_cells::Scene;
 use sightlines_formats::SceneInfo;
@@ -22,7 +23,6 @@ use sightlines_progress::Allowance;
 use sightlines_pvs::{BitMatrix, Table, TableParts};
 use sightlines_stabtree::ConvexOptions;
 use std::io::Write;
-use std::time::Instant;
 
 /// Bakes an input as a request says: cuts it into cells where it has none, decides what they see, and makes the table.
 ///
@@ -106,7 +106,7 @@ fn cut_into_parts(
     options: &RegionBakeOptions<'_>,
 ) -> Result<Baked, BakeError> {
     let Some(most) = recipe.parts else { return Ok(baked) };
-    let begin = Instant::now();
+    let begin = Stopwatch::start();
     let Baked { graph, table, mut report } = baked;
     let (mut table, n_undecided) = with_parts(table, scene, most, options)?;
     let took = begin.elapsed();

@@ -8,6 +8,7 @@ use crate::mirrors;
 use crate::objects::object_lists;
 use crate::reports::SceneReport;
 use crate::stated::{DETAIL_BELOW, ONE_SIDED};
+use crate::stopwatch::Stopwatch;
 use crate::table::{axial_portal_record, box_record, object_record, state_file};
 use crate::threads;
 use sightlines_cells::{Axial, AxialDoor, CellGraph, Portal, Scene, SceneObject};
@@ -17,7 +18,6 @@ use sightlines_kdtree::{SceneOptions, SceneSummary, subdivide_scene};
 use sightlines_progress::{Allowance, Observer, Units};
 use sightlines_pvs::{CellRecord, Locator, MirrorRecord, SceneMethods, Table, TableKind, TableParts};
 use sightlines_stabtree::{AxialVisibility, PairMask, SearchOptions, axial_visibility};
-use std::time::Instant;
 
 /// Which portals the search goes through.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -95,10 +95,10 @@ pub(crate) fn see_scene(
     scene: &Scene,
     options: &SceneBakeOptions<'_>,
 ) -> Result<(CellGraph<Axial>, TableParts, SceneReport, Option<PairMask>), BakeError> {
-    let start = Instant::now();
+    let start = Stopwatch::start();
     let cut = subdivide_scene(scene, &options.cut)?;
     let cut_time = start.elapsed();
-    let start = Instant::now();
+    let start = Stopwatch::start();
     let boxes = extents(scene);
     let solid = cut.left_out();
     let SceneBakeOptions { threads, progress, budget, units, .. } = *options;

@@ -2,12 +2,13 @@
 
 use crate::baked::Baked;
 use crate::graph::{GraphRef, OtherGraph, TableGraph};
+use crate::stopwatch::Stopwatch;
 use sightlines_progress::{Cancelled, Halt, Observer, Units};
 use sightlines_pvs::{BitMatrix, StabError, StabParts, StabTrees, Table, TableError};
 use sightlines_sightline::StabLimits;
 use sightlines_stabtree::{StabTreesOptions, StabTreesSummary, stab_trees_axial, stab_trees_convex, stab_trees_planar};
 use std::fmt;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// How to add stab trees to a table.
 #[derive(Clone, Copy, Default)]
@@ -129,7 +130,7 @@ pub fn with_stab_trees<'g>(
     graph: impl Into<GraphRef<'g>>,
     options: &StabOptions<'_>,
 ) -> Result<BakedStab, StabBakeError> {
-    let start = Instant::now();
+    let start = Stopwatch::start();
     let graph = graph.into();
     let max_nodes = options.max_nodes.or(graph.most_nodes()).ok_or(StabBakeError::NoGraph)?;
     graph.check_size(&table)?;

@@ -5,6 +5,7 @@ use crate::error::{PackError, StreamError};
 use crate::format::{
     FIXED, LARGE_BLOCK_BYTES, LARGE_ROW_BLOCK_BYTES, MAX_UNPACKED_BLOCK, PARTS_SEEN, PLACES, ROWS, SEEN,
 };
+use crate::zstandard;
 use sightlines_pvs::SectionId;
 use std::io::Write;
 
@@ -26,7 +27,7 @@ struct Pending {
 pub(crate) struct BlockWriter<W: Write> {
     out: W,
     at: u64,
-    zstd: zstd::bulk::Compressor<'static>,
+    zstd: zstandard::Compressor<'static>,
     stores: Vec<Pending>,
     n_blocks: u32,
     index: Writer,
@@ -37,7 +38,7 @@ impl<W: Write> BlockWriter<W> {
     /// Begins the file.
     pub(crate) fn new(mut out: W, fixed: &[u8]) -> Result<Self, StreamError> {
         out.write_all(fixed)?;
-        let zstd = zstd::bulk::Compressor::new(LEVEL).map_err(|_| PackError::Zstd { store: SectionId(*b"BLKS") })?;
+        let zstd = zstandard::Compressor::new(LEVEL).map_err(|_| PackError::Zstd { store: SectionId(*b"BLKS") })?;
         let (index, raw) = (Writer::default(), Writer::default());
         Ok(Self { out, at: FIXED as u64, zstd, stores: Vec::new(), n_blocks: 0, index, raw })
     }

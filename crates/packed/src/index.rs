@@ -5,9 +5,9 @@ use crate::container::{ResidentPart, check_crc};
 use crate::error::{PackedError, PackedErrorKind as Kind};
 use crate::format::{self, FIXED, MAX_UNPACKED_BLOCK, SizeClass};
 use crate::source::ByteSource;
+use crate::zstandard::Decompressor;
 use sightlines_pvs::SectionId;
 use std::sync::{Mutex, PoisonError};
-use zstd::bulk::Decompressor;
 
 /// A block in the file.
 #[derive(Debug, Clone, Copy)]

@@ -49,6 +49,7 @@ mod verify;
 mod whole;
 mod write;
 mod write_pages;
+mod zstandard;
 
 pub use cache::PackedStats;
 pub use classes::Distinct;

@@ -6,6 +6,7 @@ use crate::container::ResidentPart;
 use crate::error::{PackedError, PackedErrorKind as Kind};
 use crate::format::{self, MAX_UNPACKED_BLOCK, SizeClass};
 use crate::index::{Index, StoreIndex};
+use crate::zstandard;
 use sightlines_pvs::SectionId;
 use sightlines_pvs::bits::ones;
 
@@ -133,7 +134,7 @@ fn classes(resident: &ResidentPart, id: SectionId, n: u32, n_classes: u32) -> Re
     if raw > MAX_UNPACKED_BLOCK || raw < n {
         return Err(place.fail(Kind::Value { value: u64::from(raw) }));
     }
-    let bytes = zstd::bulk::decompress(&section.bytes[4..], raw as usize);
+    let bytes = zstandard::decompress(&section.bytes[4..], raw as usize);
     let bytes =
         bytes.ok().filter(|bytes| bytes.len() == raw as usize).ok_or_else(|| place.fail(Kind::Unpack { raw }))?;
     let mut r = Reader::new(&bytes, place);

@@ -64,8 +64,8 @@ impl ByteSource for &'static [u8] {
     }
 }
 
-/// A file that the host has opened. Its own position does not matter; on Windows it is moved.
-#[cfg(any(unix, windows))]
+/// A file that the host has opened. Its own position does not matter; on Windows it is moved. In WebAssembly there are none.
+#[cfg(any(unix, windows, target_family = "wasm"))]
 impl ByteSource for std::fs::File {
     fn len(&self) -> io::Result<u64> {
         Ok(self.metadata()?.len())
@@ -74,6 +74,11 @@ impl ByteSource for std::fs::File {
     #[cfg(unix)]
     fn read_at(&self, offset: u64, buf: &mut [u8]) -> io::Result<()> {
         std::os::unix::fs::FileExt::read_exact_at(self, buf, offset)
+    }
+
+    #[cfg(target_family = "wasm")]
+    fn read_at(&self, _: u64, _: &mut [u8]) -> io::Result<()> {
+        Err(io::ErrorKind::Unsupported.into())
     }
 
     #[cfg(windows)]

@@ -3,6 +3,7 @@
 use crate::bytes::{Writer, bytes_of};
 use crate::error::PackError;
 use crate::format::{BLOCK_BYTES, MAX_UNPACKED_BLOCK, ROW_BLOCK_BYTES};
+use crate::zstandard;
 use sightlines_pvs::{BitMatrix, SectionId};
 
 /// Compression level of zstd. Higher levels save a few per cent and take several times as long.
@@ -25,7 +26,7 @@ impl Store {
         Ok(Self { id, n_records, per_block: per_block as u32, index: Vec::new(), bytes: Vec::new() })
     }
 
-    fn push(&mut self, zstd: &mut zstd::bulk::Compressor<'_>, raw: &[u8]) -> Result<(), PackError> {
+    fn push(&mut self, zstd: &mut zstandard::Compressor<'_>, raw: &[u8]) -> Result<(), PackError> {
         let large = || PackError::Record { store: self.id, bytes: raw.len() as u64 };
         let n_raw = u32::try_from(raw.len()).ok().filter(|n| *n <= MAX_UNPACKED_BLOCK).ok_or_else(large)?;
         let packed = zstd.compress(raw).map_err(|_| PackError::Zstd { store: self.id })?;
@@ -91,6 +92,6 @@ fn rows_per_block(n_cols: usize) -> usize {
     power.clamp(16, MAX_ROWS)
 }
 
-fn compressor(store: SectionId) -> Result<zstd::bulk::Compressor<'static>, PackError> {
-    zstd::bulk::Compressor::new(LEVEL).map_err(|_| PackError::Zstd { store })
+fn compressor(store: SectionId) -> Result<zstandard::Compressor<'static>, PackError> {
+    zstandard::Compressor::new(LEVEL).map_err(|_| PackError::Zstd { store })
 }

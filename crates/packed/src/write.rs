@@ -6,6 +6,7 @@ use crate::error::PackError;
 use crate::format::{HAS_SEEN, MAX_UNPACKED_BLOCK, NONE, POLYGONS_KNOWN, page_size};
 use crate::masks::encode;
 use crate::store::LEVEL;
+use crate::zstandard;
 use sightlines_pvs::{
     BitMatrix, CellRecord, DoorRecord, Locator, LocatorNode, ObjectPart, ObjectParts, ObjectSource, PlaneChild,
     PlaneTree, SectionId, StabTrees, TableParts,
@@ -163,7 +164,7 @@ pub(crate) fn classes(id: SectionId, classes: &Classes) -> Result<Vec<u8>, PackE
     let mut out = Writer::default();
     let n_raw = u32::try_from(raw.0.len()).ok().filter(|n| *n <= MAX_UNPACKED_BLOCK);
     out.u32(n_raw.ok_or(PackError::Record { store: id, bytes: raw.0.len() as u64 })?);
-    out.0.extend(zstd::bulk::compress(&raw.0, LEVEL).map_err(|_| PackError::Zstd { store: id })?);
+    out.0.extend(zstandard::compress(&raw.0, LEVEL).map_err(|_| PackError::Zstd { store: id })?);
     Ok(out.0)
 }
 

@@ -4,6 +4,9 @@
 //! are asked first, and what their lines pass is not asked again: in buildings one pair in six or seven has to be, in plans of small rooms every
 //! second.
 
+#[cfg(feature = "viewer")]
+mod page;
+
 pub use crate::explain::SightLine;
 
 use crate::explain::{Answer, ExplainOptions, Explainer, Reason};

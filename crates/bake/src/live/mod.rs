@@ -16,6 +16,7 @@ use crate::doors;
 use crate::error::BakeError;
 use crate::mirrors;
 use crate::scene::{PortalMode, SceneBakeOptions, extents, info, scene_parts};
+use crate::stopwatch::Stopwatch;
 use crate::table::state_file;
 use cut::Cut;
 use sightlines_cells::{Axial, AxialDoor, CellGraph, PortalId, Scene};
@@ -24,7 +25,7 @@ use sightlines_geometry::Aabb;
 use sightlines_kdtree::{SceneCutter, SceneOptions};
 use sightlines_pvs::Table;
 use sightlines_stabtree::{AxialUpdate, LiveAxial, SearchOptions};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// A scene with its table, and the state that keeps the table up to date.
 ///
@@ -113,7 +114,7 @@ impl LiveScene {
     /// # Errors
     /// As [`bake_scene`](crate::bake_scene); then everything stays as it was.
     pub fn update(&mut self, scene: Scene) -> Result<LiveUpdate, BakeError> {
-        let start = Instant::now();
+        let start = Stopwatch::start();
         let cut = Cut::of(&mut self.cutter, &scene, &self.how.cut, self.how.portals)?;
         let cut_time = start.elapsed();
         (self.boxes, self.scene, self.cut) = (extents(&scene), scene, cut);
@@ -161,7 +162,7 @@ impl LiveScene {
 
     /// Brings the answer and the table up to date with the scene that is cut and the portals that are closed.
     fn see(&mut self) -> Result<LiveUpdate, BakeError> {
-        let start = Instant::now();
+        let start = Stopwatch::start();
         let search = SearchOptions { threads: self.how.threads, ..SearchOptions::default() };
         let graph = if self.closed.is_empty() {
             self.cut.graph.clone()
@@ -171,7 +172,7 @@ impl LiveScene {
         };
         let space = self.space.update(graph, &self.cut.solid, self.boxes.clone(), &search);
         let see_time = start.elapsed();
-        let start = Instant::now();
+        let start = Stopwatch::start();
         self.table = tabulate(&self.scene, &self.boxes, &self.cut, &self.space, &self.how)?;
         Ok(LiveUpdate { space, cut_time: Duration::ZERO, see_time, table_time: start.elapsed() })
     }

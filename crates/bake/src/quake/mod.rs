@@ -21,6 +21,7 @@ pub use world::bake_map;
 
 use crate::baked::{Baked, BakedPrt};
 use crate::reports::ClusterVisibility;
+use crate::stopwatch::Stopwatch;
 use sightlines_cells::{CellGraph, Convex};
 use sightlines_formats::quake::bsp::AmbientTextures;
 use sightlines_formats::quake::visibility::{check_portals, lump_with_sounds};
@@ -29,7 +30,6 @@ use sightlines_progress::{Observer, Units};
 use sightlines_pvs::Table;
 use sightlines_stabtree::{ConvexOptions, ConvexSearch};
 use std::fmt;
-use std::time::Instant;
 use wishes::Granting;
 
 /// How to find out which clusters see which.
@@ -114,7 +114,7 @@ fn graph(prt: &Prt) -> Result<CellGraph<Convex>, PrtBakeError> {
 
 fn see(graph: &CellGraph<Convex>, options: PrtOptions<'_>) -> Result<ClusterVisibility, PrtBakeError> {
     let PrtOptions { search, progress, units, sounds: _, wishes: _ } = options;
-    let start = Instant::now();
+    let start = Stopwatch::start();
     let mut running = ConvexSearch::new(graph, search);
     if units.are_kept() {
         running.run_in_units(progress, units)?;

@@ -28,6 +28,7 @@ use crate::places::{PlaceOptions, PlaceSummary, PlacesError, observed_places};
 use crate::reports::RegionReport;
 use crate::scene::{PortalMode, SceneBakeOptions, extents, merge_portals, n_triangles, see_scene};
 use crate::stated::{DETAIL_BELOW, METHOD};
+use crate::stopwatch::Stopwatch;
 use crate::table::{object_record, state_file};
 use crate::threads;
 use parts::Start;
@@ -44,7 +45,6 @@ use sightlines_pvs::{Axis, BitMatrix, SceneMethods, Table, TableKind, TableParts
 use sightlines_stabtree::{BoxVisibility, PairMask, SearchOptions, box_visibility};
 use std::fmt;
 use std::sync::Arc;
-use std::time::Instant;
 pub(crate) use stream::pack_regions_around;
 pub use stream::{PackRegionsError, pack_regions};
 
@@ -160,7 +160,7 @@ impl fmt::Debug for RegionBakeOptions<'_> {
 pub fn bake_regions(scene: &Scene, options: &RegionBakeOptions<'_>) -> Result<BakedRegions, BakeError> {
     let decided = threads::on(options.threads, || decide(scene, &[], Wanted::All, options))?;
     let Decided { graph, mut parts, objects, mut report } = decided;
-    let start = Instant::now();
+    let start = Stopwatch::start();
     parts.objects_seen = Some(objects);
     let table = Table::new(parts)?;
     report.time += start.elapsed();
@@ -194,7 +194,7 @@ pub(crate) fn decide(
     wanted: Wanted,
     options: &RegionBakeOptions<'_>,
 ) -> Result<Decided, BakeError> {
-    let start = Instant::now();
+    let start = Stopwatch::start();
     // Rays find objects.
     let n_rays = if wanted == Wanted::All { options.split.n_rays } else { 0 };
     let options = &RegionBakeOptions { split: Split { n_rays, ..options.split }, ..*options };

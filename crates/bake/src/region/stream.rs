@@ -7,6 +7,7 @@ use crate::limit::{LeftOfCell, LimitReport, state_limit};
 use crate::reports::RegionReport;
 use crate::scene::extents;
 use crate::stated::METHOD;
+use crate::stopwatch::Stopwatch;
 use crate::table::state_file;
 use crate::threads;
 use sightlines_cells::Scene;
@@ -16,7 +17,6 @@ use sightlines_pvs::bits::ones;
 use sightlines_pvs::{CellId, ObjectId, SceneMethods, TableKind, TableParts};
 use std::io::Write;
 use std::ops::Range;
-use std::time::Instant;
 
 /// Why a table was not written row by row.
 #[derive(Debug, thiserror::Error)]
@@ -72,7 +72,7 @@ fn pack_here<W: Write>(
     state: &(dyn Fn(&mut TableParts) + Sync),
     out: W,
 ) -> Result<(W, RegionReport, PackReport), PackRegionsError> {
-    let start = Instant::now();
+    let start = Stopwatch::start();
     let make = options.method.filter(|_| !options.sightlines);
     let by_row = !options.cells.have_portals() && !matches!(options.cells, CellsFrom::EyeLevel(_));
     let make = make.filter(|_| by_row).ok_or(PackRegionsError::NeedsPairs)?;

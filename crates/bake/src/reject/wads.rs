@@ -2,13 +2,13 @@
 
 use super::{Done, MapOutcome, MapStatus, RejectError, RejectOptions, RejectOutcome, do_map, is_readable, kept};
 use crate::error::BakeError;
+use crate::stopwatch::Stopwatch;
 use sightlines_formats::doom::{MapLumps, list_maps};
 use sightlines_formats::{Wad, WadError};
 use sightlines_progress::{Halt, Observer, Phase, Progress, shares_of};
 use std::borrow::Borrow;
 use std::convert::Infallible;
 use std::ops::ControlFlow;
-use std::time::Instant;
 
 /// The maps of a WAD that are to be done, as its directory has them. It holds nothing of what is in the maps, so many of these are small.
 #[derive(Debug, Clone, PartialEq)]
@@ -223,7 +223,7 @@ impl Pass<'_> {
         let mut lazy = Lazy { file, read, wad: None };
         let mut too_large = None;
         for &(k, _) in &file.chosen {
-            let (start, map) = (Instant::now(), &file.all[k]);
+            let (start, map) = (Stopwatch::start(), &file.all[k]);
             let done = self.unit(options, map, |options| match do_map(lazy.wad()?, map, insist, options) {
                 Ok(done) => Ok(done),
                 Err(error) => match halt_of(&error) {

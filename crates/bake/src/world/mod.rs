@@ -21,6 +21,7 @@ mod scenes;
 pub use error::WorldBakeError;
 
 use crate::request::{BakeRequest, Runtime};
+use crate::stopwatch::Stopwatch;
 use input::TileInput;
 use one::{Files, TileKeys, keys};
 use scenes::Scenes;
@@ -39,7 +40,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};
 use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// The phase of units of work: one for each tile.
 const PHASE: &str = "tiles";
@@ -220,7 +221,7 @@ impl<'a> WorldBake<'a> {
             let result = units.get(PHASE, unit, || -> Result<Vec<u8>, WorldBakeError> {
                 let Some(missing) = missing[tile] else { return Ok(Vec::new()) };
                 is_made = true;
-                let begin = Instant::now();
+                let begin = Stopwatch::start();
                 let of = (&*self.inputs, &self.keys[tile]);
                 let files = one::bake(tile, of, &scenes, (self.request, &runtime), missing == Missing::Far)?;
                 (run.took)(&self.inputs[tile].plan.name, begin.elapsed());
