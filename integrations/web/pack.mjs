@@ -1,4 +1,5 @@
 // Packs the package into a folder: `node integrations/web/pack.mjs [FOLDER]`, by default target/npm. `npm pack FOLDER` or `npm publish FOLDER` do the rest.
+// With the module of WebAssembly that `cargo xtask wasm` builds, if it is there.
 
 import fs from "node:fs";
 import path from "node:path";
@@ -40,7 +41,11 @@ const scripts = {
   "three.js": `${head}${minified(joined([read(path.join(here, "src"), "three.js")]), [...open, ...declared("three.d.ts"), ...words(ofThree)])}\nexport{cull};\n`,
 };
 for (const [name, text] of Object.entries(scripts)) write(name, text);
-for (const name of ["package.json", "README.md", "index.d.ts", "three.d.ts"]) fs.copyFileSync(path.join(here, name), path.join(out, name));
+fs.copyFileSync(path.join(here, "src/bake.js"), path.join(out, "bake.js"));
+const wasm = process.env.SIGHTLINES_WASM ?? path.join(root, "target/wasm/wasm32-unknown-unknown/release/sightlines_wasm.wasm");
+if (fs.existsSync(wasm)) fs.copyFileSync(wasm, path.join(out, "sightlines.wasm"));
+else console.log("sightlines.wasm is left out: `cargo xtask wasm` builds it");
+for (const name of ["package.json", "README.md", "index.d.ts", "three.d.ts", "bake.d.ts"]) fs.copyFileSync(path.join(here, name), path.join(out, name));
 for (const name of ["bench.mjs", "examples"]) fs.cpSync(path.join(here, name), path.join(out, name), { recursive: true });
 for (const name of ["LICENSE-APACHE", "LICENSE-MIT"]) fs.copyFileSync(path.join(root, name), path.join(out, name));
 

@@ -24,6 +24,7 @@ mod step;
 mod tally;
 mod tidy;
 mod unused;
+mod wasm;
 
 use clap::{Parser, Subcommand};
 use std::path::PathBuf;
@@ -146,6 +147,8 @@ enum Task {
     },
     /// Finds or fetches the Freedoom WADs and prints their folder.
     Freedoom,
+    /// Builds the module of WebAssembly, and the playground, into target/wasm; without a compiler for it, fetches Debian's.
+    Wasm,
     /// Formatting, lints and tests of the plugin for Bevy.
     Bevy {
         /// Which GPU the tests that compare pictures run on.
@@ -229,6 +232,7 @@ fn run(task: Task) -> Result<(), Failure> {
             }
             Ok(())
         }
+        Task::Wasm => wasm::playground(),
         Task::Bevy { gpu } => bevy::check(gpu),
         Task::BevyAssets => bevy::assets(),
         Task::BevyTrenchbroom { gpu } => bevy::check_quake(gpu),

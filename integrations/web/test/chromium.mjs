@@ -46,7 +46,9 @@ export async function inChromium(browser, file, run, { link = "", size = [1200, 
     const thrown = heard.filter(({ method }) => method === "Runtime.exceptionThrown").map(({ params }) => params.exceptionDetails.text);
     return { value: result.value, asked: asked.filter((url) => /^(https?|ws)/.test(url)), thrown };
   } finally {
+    const ended = new Promise((done) => child.once("exit", done));
     child.kill("SIGKILL");
-    fs.rmSync(profile, { recursive: true, force: true, maxRetries: 5 });
+    await ended;
+    fs.rmSync(profile, { recursive: true, force: true, maxRetries: 20, retryDelay: 100 });
   }
 }

@@ -23,4 +23,5 @@ mod viewer_isovist;
 mod viewer_methods;
 mod viewer_soon;
 mod visible_surface;
+mod web_module;
 mod web_package;

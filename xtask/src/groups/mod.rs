@@ -74,10 +74,11 @@ pub(crate) enum Step {
     Lab,
     Python,
     Bevy,
+    Wasm,
 }
 
-/// All groups. Each turn has two.
-pub(crate) const GROUPS: [Group; 12] = [
+/// All groups. Each turn has two, and one three.
+pub(crate) const GROUPS: [Group; 13] = [
     Group {
         name: "slurm",
         what: "builds that a cluster shares, by Slurm on the loopback device",
@@ -256,6 +257,23 @@ pub(crate) const GROUPS: [Group; 12] = [
         seconds: 480,
         packages: &[],
         work: Work::Step(Step::Bevy),
+    },
+    Group {
+        name: "wasm",
+        what: "the module of WebAssembly in Node and Chromium, against the program",
+        crates: &["wasm"],
+        paths: &[
+            "integrations/web/playground/",
+            "integrations/web/src/bake.js",
+            "integrations/web/test/chromium.mjs",
+            "integrations/web/test/module.test.mjs",
+            "tests/tests/workspace/web_module.rs",
+            "xtask/src/wasm.rs",
+        ],
+        turn: 0,
+        seconds: 270,
+        packages: &["nodejs"],
+        work: Work::Step(Step::Wasm),
     },
 ];
 
