@@ -4,7 +4,7 @@ use crate::gpu::Wish;
 use crate::groups::{self, Group, Step, Why, Work};
 use crate::step::{self, Failure, cargo};
 use crate::tally::{self, Tally};
-use crate::{bevy, deny, lab, metadata, package, python, tidy};
+use crate::{bevy, deny, lab, metadata, package, proofs, python, tidy};
 use std::fs;
 use std::io::ErrorKind;
 use std::time::{Duration, Instant};
@@ -148,6 +148,7 @@ fn run(group: &Group, gpu: Wish, tally: &mut Tally) -> Result<(), Failure> {
         Work::Step(Step::Lab) => lab::quick_stability().and_then(|()| lab::quick_charts()),
         Work::Step(Step::Python) => python::check(false),
         Work::Step(Step::Bevy) => bevy::check(gpu),
+        Work::Step(Step::Proofs) => proofs::check(),
     }
 }
 
