@@ -329,6 +329,7 @@ fn right_of(forward: Vector, up: Vector) -> Vector {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::front::Facing;
 
     fn contains(view: &View, v: Vector) -> bool {
         let reach = view.reach(10.0);
@@ -513,8 +514,8 @@ mod tests {
         let view = View::planar([5e-324, 0.0], [1.0, 0.0], 1.0).unwrap();
         assert_eq!(door.facing(&[], view.eye, view.slack), Facing::Level);
         // No more than that is in doubt: what is clearly before or behind stays so, and eyes elsewhere are what they were.
-        assert_eq!(door.facing(&[], [1e-30, 0.0, 0.0], view.slack), Facing::Before);
-        assert_eq!(door.facing(&[], [-1e-30, 0.0, 0.0], view.slack), Facing::Behind);
+        assert_eq!(door.facing(&[], [1e-9, 0.0, 0.0], view.slack), Facing::Before);
+        assert_eq!(door.facing(&[], [-1e-9, 0.0, 0.0], view.slack), Facing::Behind);
         let view = View::all_round([1e-30, 0.0, -5.0]).unwrap();
         assert_eq!((view.eye, view.slack), ([1e-30, 0.0, -5.0], 0.0));
     }
