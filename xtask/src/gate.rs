@@ -4,7 +4,7 @@ use crate::gpu::Wish;
 use crate::groups::{self, Group, Step, Why, Work};
 use crate::step::{self, Failure, cargo};
 use crate::tally::{self, Tally};
-use crate::{bevy, deny, lab, metadata, package, python, tidy, wasm};
+use crate::{bevy, deny, lab, metadata, package, proofs, python, tidy, wasm};
 use std::fs;
 use std::io::ErrorKind;
 use std::time::{Duration, Instant};
@@ -149,6 +149,7 @@ fn run(group: &Group, gpu: Wish, tally: &mut Tally) -> Result<(), Failure> {
         Work::Step(Step::Python) => python::check(false),
         Work::Step(Step::Bevy) => bevy::check(gpu),
         Work::Step(Step::Wasm) => wasm::check(),
+        Work::Step(Step::Proofs) => proofs::check(),
     }
 }
 

@@ -17,6 +17,7 @@ mod lab;
 mod metadata;
 mod package;
 mod programs;
+mod proofs;
 mod python;
 mod semver;
 mod spdx;
@@ -94,6 +95,12 @@ enum Task {
     Alone,
     /// Checks the licences and sources of all dependencies, and with cargo-deny, if it is installed, their advisories.
     Deny,
+    /// Compares the table of bounds on rounding with the sources, and lets Gappa prove them.
+    Proofs {
+        /// Prints how many times each constant is as large as the least that Gappa proves, and stops.
+        #[arg(long)]
+        least: bool,
+    },
     /// Packs the published crates, and compiles them from what is in the packages.
     Package,
     /// Compares public items with those of the last tag, by cargo-semver-checks.
@@ -206,6 +213,8 @@ fn run(task: Task) -> Result<(), Failure> {
         Task::Alone => gate::alone(),
         Task::Deny => deny::check(),
         Task::Package => package::check(),
+        Task::Proofs { least: true } => proofs::print_least(),
+        Task::Proofs { least: false } => proofs::check(),
         Task::Semver => semver::check(),
         Task::InstallCheck { dist } => install::check(dist),
         Task::Man { out } => {

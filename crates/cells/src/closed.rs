@@ -294,6 +294,37 @@ mod tests {
         o.triangles.extend(turned.map(|t: [u32; 3]| t.map(|i| i + first)));
     }
 
+    /// Triangles that nearly cancel, against whole numbers: what is said to be above zero is. The impostor without a margin says it wrongly.
+    #[test]
+    fn volumes_are_certain_only_where_whole_numbers_agree() {
+        let mut random = sightlines_geometry::Random::new(1);
+        let (mut n_certain, mut n_wrong) = (0, 0);
+        for case in 0..3000 {
+            let mut whole = || [0; 3].map(|_| (random.bits() >> 23) as i128 - (1 << 40));
+            let mut triangles: Vec<[[i128; 3]; 3]> = Vec::new();
+            for _ in 0..3 {
+                let [a, b, c] = [whole(), whole(), whole()];
+                // The same the other way round, in every second case with a corner that is moved a little.
+                let moved = c.map(|x| x + (case % 2) * (whole()[0].rem_euclid(3) - 1));
+                triangles.extend([[a, b, c], [b, a, moved]]);
+            }
+            let mut volume = Volume { origin: [0.0; 3], sum: 0.0, magnitude: 0.0, n: 0 };
+            triangles.iter().for_each(|t| volume.add(t.map(|p| p.map(|x| x as f64))));
+            let det = |[p, q, r]: &[[i128; 3]; 3]| -> i128 {
+                (0..3).map(|k| p[k] * (q[(k + 1) % 3] * r[(k + 2) % 3] - q[(k + 2) % 3] * r[(k + 1) % 3])).sum()
+            };
+            let exact: i128 = triangles.iter().map(det).sum();
+            assert!(!volume.is_positive() || exact > 0, "{triangles:?}");
+            n_certain += usize::from(volume.is_positive());
+            n_wrong += usize::from(volume.sum > 0.0 && exact <= 0);
+        }
+        assert!(n_wrong > 5, "{n_wrong}");
+        // Not all is in doubt.
+        let mut volume = Volume { origin: [0.0; 3], sum: 0.0, magnitude: 0.0, n: 0 };
+        volume.add([[5.0, 0.0, 0.0], [0.0, 5.0, 0.0], [0.0, 0.0, 5.0]]);
+        assert!(volume.is_positive() && n_certain < 3000);
+    }
+
     /// Blocks that touch along an edge are as closed as blocks apart, wherever the others stand around the edge, and whichever comes first; one of
     /// them inside out is noticed, and so is a sheet beside them. Blocks with a side in common lie on each other there.
     #[test]

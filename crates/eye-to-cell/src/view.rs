@@ -3,6 +3,7 @@
 use crate::front::Front;
 use crate::side::{MOST_SIDES, Reach, Side, Vector, cross, dot, norm, radius, sub};
 use sightlines_geometry::Aabb;
+use sightlines_geometry::coordinate::MIN_MAGNITUDE;
 use sightlines_geometry::vector::unit_of_any_size;
 use sightlines_pvs::Frame;
 use std::f64::consts::{PI, TAU};
@@ -13,7 +14,7 @@ use std::f64::consts::{PI, TAU};
 #[derive(Debug, Clone, PartialEq)]
 pub struct View {
     pub(crate) eye: Vector,
-    /// Bound on the error of each coordinate of the eye; 0 but for eyes seen in mirrors.
+    /// Bound on the error of each coordinate of the eye; 0 but for eyes seen in mirrors and with tiny coordinates.
     pub(crate) slack: f64,
     /// One convex cone, or two.
     parts: [ViewPart; 2],
@@ -61,13 +62,18 @@ pub enum ViewError {
 impl View {
     /// All directions from `eye` (scene units; z is 0 in a plane).
     ///
+    /// Coordinates of a smaller magnitude than those of tables have (2^-140) count as 0 and as known to within that, so that no product underflows.
+    ///
     /// # Errors
     /// [`ViewError::Eye`].
     pub fn all_round(eye: [f64; 3]) -> Result<Self, ViewError> {
-        match eye.iter().all(|x| x.is_finite()) {
-            true => Ok(Self { eye, slack: 0.0, parts: Default::default(), n_parts: 1, framed: false }),
-            false => Err(ViewError::Eye),
+        if !eye.iter().all(|x| x.is_finite()) {
+            return Err(ViewError::Eye);
         }
+        let is_tiny = |x: f64| x != 0.0 && x.abs() < MIN_MAGNITUDE;
+        let slack = if eye.iter().any(|x| is_tiny(*x)) { MIN_MAGNITUDE } else { 0.0 };
+        let eye = eye.map(|x| if is_tiny(x) { 0.0 } else { x });
+        Ok(Self { eye, slack, parts: Default::default(), n_parts: 1, framed: false })
     }
 
     /// In the plane: the directions within `fov / 2` on both sides of `dir`. `fov` in radians, above 0 and at most
@@ -219,7 +225,8 @@ impl View {
         let rounding = frame.rounding(self.eye).iter().fold(0.0f64, |m, x| m.max(*x));
         let mut framed = self.clone();
         framed.eye = frame.to_frame(self.eye);
-        framed.slack = self.slack + frame.gap() * (1.0 + f64::EPSILON) + rounding;
+        // The product and the two sums are rounded.
+        framed.slack = self.slack + frame.gap() * (1.0 + 4.0 * f64::EPSILON) + rounding;
         framed.parts.iter_mut().for_each(|part| part.turn(frame));
         framed.framed = true;
         framed
@@ -322,6 +329,7 @@ fn right_of(forward: Vector, up: Vector) -> Vector {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::front::Facing;
 
     fn contains(view: &View, v: Vector) -> bool {
         let reach = view.reach(10.0);
@@ -495,6 +503,21 @@ mod tests {
         assert!(View::all_round([1.0, 2.0, 0.0]).unwrap().may_meet(&at(-3.0, 2.0)));
         let wide = View::planar([1.0, 2.0], [1.0, 0.0], 6.0).unwrap();
         assert!(wide.may_meet(&at(1.0, 5.0)) && !wide.may_meet(&at(-9.0, 1.5)));
+    }
+
+    /// The product of 5e-324 with 0.4 rounds to 0, so such an eye seemed to be behind a door that it is before.
+    #[test]
+    fn eyes_next_to_a_corner_are_not_behind_it() {
+        let right = [0.3, 0.4, 0.0];
+        let door = Front::of(&[[0.0; 3], right], true);
+        assert_eq!(door.facing(&[], [5e-324, 0.0, 0.0], 0.0), Facing::Behind, "the impostor: as it was");
+        let view = View::planar([5e-324, 0.0], [1.0, 0.0], 1.0).unwrap();
+        assert_eq!(door.facing(&[], view.eye, view.slack), Facing::Level);
+        // No more than that is in doubt: what is clearly before or behind stays so, and eyes elsewhere are what they were.
+        assert_eq!(door.facing(&[], [1e-9, 0.0, 0.0], view.slack), Facing::Before);
+        assert_eq!(door.facing(&[], [-1e-9, 0.0, 0.0], view.slack), Facing::Behind);
+        let view = View::all_round([1e-30, 0.0, -5.0]).unwrap();
+        assert_eq!((view.eye, view.slack), ([1e-30, 0.0, -5.0], 0.0));
     }
 
     #[test]

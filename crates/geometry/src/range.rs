@@ -183,6 +183,39 @@ mod tests {
         assert_eq!(a.within(range(0.0, 9.0)), range(0.0, 3.0));
     }
 
+    /// Against fractions, for numbers of all magnitudes, denormal ones among them: the true result of one operation lies within the next doubles of the
+    /// rounded one, and mostly not on it.
+    #[test]
+    fn one_operation_is_within_the_next_doubles() {
+        use num_rational::BigRational;
+        use num_traits::Zero;
+        let exact = |x: f64| BigRational::from_float(x).unwrap();
+        let mut random = crate::Random::new(7);
+        let mut number = |k: usize| {
+            let exponents =
+                [random.bits() % 2047, 1018 + random.bits() % 10, random.bits() % 3, 480 + random.bits() % 80];
+            f64::from_bits(random.bits() >> 63 << 63 | exponents[k % 4] << 52 | random.bits() >> 12)
+        };
+        let (mut n_held, mut n_rounded) = (0, 0);
+        for k in 0..4000 {
+            let [x, y] = [number(k), number(k / 4)];
+            let ([a, b], [p, q]) = ([x, y].map(Range::of), [exact(x), exact(y)]);
+            let mut results = vec![(a.plus(b), x + y, &p + &q), (a.minus(b), x - y, &p - &q)];
+            results.extend([(a.times(b), x * y, &p * &q), (a.square(), x * x, &p * &p)]);
+            if y > 0.0 {
+                results.push((a.over(b), x / y, &p / &q));
+            }
+            for (range, rounded, truth) in results {
+                let is_below = |x: f64| if x.is_finite() { exact(x) <= truth } else { x < 0.0 };
+                let is_above = |x: f64| if x.is_finite() { exact(x) >= truth } else { x > 0.0 };
+                assert!(is_below(range.low) && is_above(range.high), "{x:e} {y:e} {range:?}");
+                n_held += 1;
+                n_rounded += usize::from(rounded.is_finite() && !(exact(rounded) - &truth).is_zero());
+            }
+        }
+        assert!(n_held > 15_000 && n_rounded > n_held / 4, "{n_rounded} of {n_held}");
+    }
+
     #[test]
     fn rotations_of_a_quaternion_are_tight_and_those_of_many_are_held() {
         let h = std::f64::consts::FRAC_1_SQRT_2;

@@ -86,8 +86,8 @@ pub(crate) fn orient_exact(a: Exact, b: Exact, c: Exact) -> f64 {
     }
 }
 
-/// Shewchuk's bound A: the rounding error of the determinant is below (3 + 16 u) u (|left| + |right|), u = 2^-53.
-const BOUND: f64 = (3.0 + 8.0 * f64::EPSILON) * (0.5 * f64::EPSILON);
+/// Shewchuk's bound A, (3 + 16 u) u (|left| + |right|) with u = 2^-53, and 16 u^2 more: the sum with what corners are moved is rounded, too.
+const BOUND: f64 = (3.0 + 16.0 * f64::EPSILON) * (0.5 * f64::EPSILON);
 
 /// The orientation of three corners if doubles decide it: positive if `c` lies to the left of the line from `a` to `b`.
 #[inline(always)]

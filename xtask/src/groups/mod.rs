@@ -74,11 +74,12 @@ pub(crate) enum Step {
     Lab,
     Python,
     Bevy,
+    Proofs,
     Wasm,
 }
 
-/// All groups. Each turn has two, and one three.
-pub(crate) const GROUPS: [Group; 13] = [
+/// All groups. Each turn has two, and the first four.
+pub(crate) const GROUPS: [Group; 14] = [
     Group {
         name: "slurm",
         what: "builds that a cluster shares, by Slurm on the loopback device",
@@ -257,6 +258,30 @@ pub(crate) const GROUPS: [Group; 13] = [
         seconds: 480,
         packages: &[],
         work: Work::Step(Step::Bevy),
+    },
+    Group {
+        name: "proofs",
+        what: "bounds on rounding, proven by Gappa",
+        crates: &[
+            "area-light",
+            "bake",
+            "bsp",
+            "certificates",
+            "eye-to-cell",
+            "from-region",
+            "frame",
+            "isovist",
+            "line-space",
+            "multifocal-gpu",
+            "relevance",
+            "stabtree",
+            "verify",
+        ],
+        paths: &["xtask/proofs/", "xtask/src/proofs/"],
+        turn: 0,
+        seconds: 40,
+        packages: &["gappa"],
+        work: Work::Step(Step::Proofs),
     },
     Group {
         name: "wasm",
