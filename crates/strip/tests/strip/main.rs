@@ -3,3 +3,4 @@
 mod gap;
 mod sides;
 mod truth;
+mod walk;
