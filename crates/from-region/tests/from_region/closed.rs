@@ -273,6 +273,24 @@ fn what_touches_the_hull_is_not_hidden_by_it() {
     assert!(is_hidden(&twice, 4.0) && twice.len() == 2);
 }
 
+/// Boxes around triangles of a turned hull are larger than the triangles: what is near a side, and does not touch it, is hidden all the same.
+#[test]
+fn a_turned_hull_hides_what_is_near_its_sides() {
+    let turned = |[x, y, z]: Point3| {
+        let [x, y] = [0.6 * x - 0.8 * y, 0.8 * x + 0.6 * y];
+        [x, 0.6 * y - 0.8 * z, 0.8 * y + 0.6 * z]
+    };
+    let mut hull = cuboid(&block([0.0; 3], [4.0; 3]), &[]);
+    hull.vertices.iter_mut().for_each(|p| *p = turned(*p));
+    let closed = ClosedSurfaces::new(&Scene::new(vec![hull]).expect("a scene"));
+    let is_hidden = |z: f64| {
+        let plate = [[0.1, 0.1, z], [3.9, 0.1, z], [0.1, 3.9, z]];
+        closed.hide(&[EyeSides::OUTSIDE], &plate.map(turned))
+    };
+    assert!(is_hidden(0.1) && is_hidden(2.0) && is_hidden(3.9) && is_hidden(1e-6));
+    assert!(!is_hidden(-0.1) && !is_hidden(-1e-6) && !is_hidden(4.1));
+}
+
 /// Corners are equal if their numbers are: negative zeros, which mirrored nodes have, are zeros.
 #[test]
 fn corners_at_negative_zero_hang_together() {
