@@ -20,7 +20,7 @@
 //!
 //! # Eyes that walk
 //! Sight is a way. So what eyes see that walk from some boxes is joined to these by free space: nothing is seen that a closed surface keeps from the boxes, and nothing
-//! that meets no cell of a k-d tree to which portals lead from there ([`Eyes::joined_to`]). That they see something is shown from points that free segments lead to, one after the other.
+//! that meets no cell of a k-d tree to which portals lead from there ([`Eyes::joined_to`]). From outside, too, what is seen is joined to all that is outside. That they see something is shown from points that free segments lead to, one after the other.
 //!
 //! # What a gap means
 //! Surfaces of real files do not close exactly: a lid lies on its housing, and no two corners are equal. Between them is a crack through which a line could

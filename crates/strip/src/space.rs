@@ -27,7 +27,7 @@ pub(crate) struct Space {
 }
 
 impl Space {
-    /// Finds the cells, or none if all of the scene is joined or there are too many cells. O(n log n) for n walls along axes, as a rule.
+    /// Finds the cells for some boxes, or without any for all that is outside; or none if all of the scene is joined or there are too many cells. O(n log n) for n walls along axes, as a rule.
     pub(crate) fn joined_to(scene: &Scene, boxes: &[Aabb<3>]) -> Option<Self> {
         let region = Some(around(&scene.bounds()));
         // First all walls, then without what is small.
@@ -40,7 +40,7 @@ impl Space {
         let is_border = |b: &Aabb<3>| (0..3).any(|k| b.min[k] == all.min[k] || b.max[k] == all.max[k]);
         let meet = |a: &Aabb<3>, b: &Aabb<3>| (0..3).all(|k| a.min[k] <= b.max[k] && b.min[k] <= a.max[k]);
         let leaves = |b: &Aabb<3>| (0..3).any(|k| b.min[k] < all.min[k] || b.max[k] > all.max[k]);
-        let mut is_outside = boxes.iter().any(leaves);
+        let mut is_outside = boxes.is_empty() || boxes.iter().any(leaves);
         let mut is_reached = vec![false; graph.n_cells()];
         let is_start = |b: &Aabb<3>| boxes.iter().any(|eyes| meet(b, eyes)) || is_outside && is_border(b);
         let mut pending: Vec<_> = graph.cell_ids().filter(|&id| is_start(&graph.cell(id).bounds)).collect();

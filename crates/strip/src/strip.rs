@@ -204,8 +204,11 @@ impl<'a> Stripper<'a> {
             let walls = both_sides.iter().chain(fronts).copied();
             Some(BallReach::new(walls, &bounds, options.gap, boxes.as_deref())?)
         };
-        let joined = boxes.as_deref().filter(|_| eyes.are_joined());
-        let space = joined.and_then(|boxes| Space::joined_to(scene, boxes));
+        let space = match boxes.as_deref() {
+            None => Space::joined_to(scene, &[]),
+            Some(boxes) if eyes.are_joined() => Space::joined_to(scene, boxes),
+            Some(_) => None,
+        };
         let exits = eyes.exits(&bounds, space.as_ref());
         let lines = Lines::new(&both_sides, &fronts, exits, options.effort.sides);
         let walls = Walls::new(scene);
@@ -217,33 +220,46 @@ impl<'a> Stripper<'a> {
         let n = self.scene.objects().len();
         let effort = self.options.effort;
         let counter = Counter::new(observer, "parts", n);
-        let decide = |search: &mut FaceSearch, object: u32| -> Result<ObjectFate, StripError> {
-            let mut fate = self.cheaply(object);
-            self.by_lines(object, &mut fate, effort.first_cells, search);
+        let decide = |object: u32| -> Result<ObjectFate, StripError> {
+            let fate = self.cheaply(object);
             counter.step()?;
             Ok(fate)
         };
-        let objects = (0..n as u32).into_par_iter().map_init(|| self.lines.search(), decide);
-        let mut objects = objects.collect::<Result<Vec<_>, _>>()?;
+        let mut objects = (0..n as u32).into_par_iter().map(decide).collect::<Result<Vec<_>, _>>()?;
+        // What is seen costs line space most, which never finds it hidden: so it is looked for first.
+        self.spread(&mut objects);
+        self.each_open(&mut objects, observer, |search, object, fate| {
+            self.by_lines(object, fate, effort.first_cells, search);
+        })?;
         self.spread(&mut objects);
         let n_open: usize = objects.iter().map(ObjectFate::n_undecided).sum();
         let each = effort.shared_cells / (n_open.max(1) as u64);
         let cells = u32::try_from(each).unwrap_or(u32::MAX).min(effort.most_cells);
+        self.each_open(&mut objects, observer, |search, object, fate| {
+            if cells > effort.first_cells {
+                self.by_lines(object, fate, cells, search);
+            }
+            self.by_more_rays(object, fate);
+        })?;
+        self.spread(&mut objects);
+        Ok(Stripped { objects, n_closed_surfaces: self.closed.len() })
+    }
+
+    /// Does something for each object of which a part is undecided.
+    fn each_open(
+        &self,
+        objects: &mut [ObjectFate],
+        observer: Option<&dyn Observer>,
+        work: impl Fn(&mut FaceSearch, u32, &mut ObjectFate) + Sync,
+    ) -> Result<(), StripError> {
         let is_open = |(_, fate): &(usize, &mut ObjectFate)| fate.n_undecided() > 0;
         let open: Vec<(usize, &mut ObjectFate)> = objects.iter_mut().enumerate().filter(is_open).collect();
         let counter = Counter::new(observer, "open parts", open.len());
-        let again = |search: &mut FaceSearch, (object, fate): (usize, &mut ObjectFate)| -> Result<(), StripError> {
-            if cells > effort.first_cells {
-                self.by_lines(object as u32, fate, cells, search);
-            }
-            self.by_more_rays(object as u32, fate);
+        let one = |search: &mut FaceSearch, (object, fate): (usize, &mut ObjectFate)| -> Result<(), StripError> {
+            work(search, object as u32, fate);
             Ok(counter.step()?)
         };
-        open.into_par_iter()
-            .map_init(|| self.lines.search(), |search, of| again(search, of))
-            .collect::<Result<(), _>>()?;
-        self.spread(&mut objects);
-        Ok(Stripped { objects, n_closed_surfaces: self.closed.len() })
+        open.into_par_iter().map_init(|| self.lines.search(), one).collect()
     }
 
     /// Whether triangles of an object count one by one.

@@ -76,6 +76,24 @@ fn a_room_behind_a_closed_door_is_hidden_and_one_behind_an_open_door_is_not() {
     assert_eq!(hidden(&closed.with_moving(moving).expect("the door"), &[IN_FIRST], 0.0), behind(&["Tree"]));
 }
 
+/// From outside, nothing is seen to which no way leads from there.
+#[test]
+fn boards_that_touch_enclose_from_outside() {
+    for (door, n) in [(0.0, 5), (1.0, 5)] {
+        let scene = flat(door, 0.0);
+        let found = strip(&scene, &Eyes::outside(), &StripOptions::default(), None).expect("no mirrors");
+        let n_enclosed = found.objects.iter().filter(|of| of.fate == Fate::Hidden(HiddenReason::Enclosed)).count();
+        assert_eq!(n_enclosed, n, "{door}");
+    }
+    // The twin: a wall that is too short by however little.
+    let mut objects = flat(1.0, 0.0).objects().to_vec();
+    objects[3].vertices.iter_mut().for_each(|p| p[1] = p[1].min(6.999_999_9));
+    objects[5].vertices.iter_mut().for_each(|p| p[0] = p[0].min(11.999_999_9));
+    let scene = Scene::new(objects).expect("a scene");
+    let found = strip(&scene, &Eyes::outside(), &StripOptions::default(), None).expect("no mirrors");
+    assert!(found.objects.iter().all(|of| of.fate != Fate::Hidden(HiddenReason::Enclosed)));
+}
+
 /// Where no wall stands along an axis, boards bar the way within a gap, and not without one.
 #[test]
 fn turned_rooms_are_closed_within_the_gap() {
