@@ -63,7 +63,7 @@ impl Eyes {
     }
 
     /// Eyes that walk, or fly: in closed boxes, and wherever a way leads from there that no surface bars which hides from both sides. Glass, what moves and what
-    /// hides from its front only bar no way; nor does a [gap](crate::StripOptions::gap) count as open through which no ball fits.
+    /// hides from its front only bar no way. With a [gap](crate::StripOptions::gap), openings through which no ball of that diameter fits bar it, too.
     ///
     /// # Errors
     /// [`EyesError::None`] for an empty list.
