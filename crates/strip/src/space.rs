@@ -4,7 +4,6 @@
 //! no way leads from a cell to another but by portals, where walls leave a part of their common side open. So the closed cells that portals join to those which the boxes meet hold all
 //! places of the eye, and whatever meets none of them is seen from none. Walls that the tree does not follow, as they stand along no axis, bar no way.
 
-use crate::eyes::around;
 use sightlines_cells::Scene;
 use sightlines_from_region::may_meet;
 use sightlines_geometry::{Aabb, BoxTree, Point3, Random};
@@ -28,12 +27,14 @@ pub(crate) struct Space {
 
 impl Space {
     /// Finds the cells for some boxes, or without any for all that is outside; or none if all of the scene is joined or there are too many cells. O(n log n) for n walls along axes, as a rule.
-    pub(crate) fn joined_to(scene: &Scene, boxes: &[Aabb<3>]) -> Option<Self> {
-        let region = Some(around(&scene.bounds()));
+    ///
+    /// * `around`: a box that is larger than the one around the scene
+    pub(crate) fn joined_to(scene: &Scene, boxes: &[Aabb<3>], around: Aabb<3>) -> Option<Self> {
         // First all walls, then without what is small.
         let exact = SceneOptions { tau: 0.0, detail_below: Some(0.0), ..SceneOptions::default() };
         let cut = [exact, SceneOptions::default()].into_iter().find_map(|options| {
-            let options = SceneOptions { view_region: region, keep_solid: true, only_both_sides: true, ..options };
+            let options =
+                SceneOptions { view_region: Some(around), keep_solid: true, only_both_sides: true, ..options };
             subdivide_scene(scene, &options).ok()
         })?;
         let (graph, all) = (&cut.graph, cut.tree.bounds());

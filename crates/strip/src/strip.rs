@@ -1,6 +1,6 @@
 //! The decision, part by part: rays first, then what encloses, then lines.
 
-use crate::eyes::Eyes;
+use crate::eyes::{Eyes, around};
 use crate::fate::{Fate, FateCounts, HiddenReason, ObjectFate};
 use crate::lines::{LineEffort, Lines};
 use crate::space::Space;
@@ -205,8 +205,8 @@ impl<'a> Stripper<'a> {
             Some(BallReach::new(walls, &bounds, options.gap, boxes.as_deref())?)
         };
         let space = match boxes.as_deref() {
-            None => Space::joined_to(scene, &[]),
-            Some(boxes) if eyes.are_joined() => Space::joined_to(scene, boxes),
+            None => Space::joined_to(scene, &[], around(&bounds)),
+            Some(boxes) if eyes.are_joined() => Space::joined_to(scene, boxes, around(&bounds)),
             Some(_) => None,
         };
         let exits = eyes.exits(&bounds, space.as_ref());
