@@ -54,7 +54,7 @@ impl EyeArgs {
     }
 }
 
-fn point(text: &str) -> Result<Point3> {
+pub(crate) fn point(text: &str) -> Result<Point3> {
     let numbers = coordinates(text)?;
     numbers.try_into().map_err(|_| anyhow!("a point in space is three comma-separated numbers, such as 9,1.7,-5"))
 }

@@ -11,7 +11,7 @@
 
 use crate::bits::Bits;
 use crate::grid::{Block, Grid};
-use crate::interior::{mark_all, regions};
+use crate::interior::{Region, mark_all, regions};
 use crate::overlap::may_meet;
 use sightlines_geometry::{Aabb, Point3};
 
@@ -77,22 +77,19 @@ impl BallReach {
         drop(met);
         let starts: Option<Vec<Start>> =
             eyes.map(|eyes| eyes.iter().map(|eye| Start::new(&grid, eye, radius)).collect());
-        let is_reached = |start: &Start, region: &crate::interior::Region| {
-            start.is_outside && region.is_outside || region.reaches(start.near.as_ref())
-        };
         let mut near = Bits::new(grid.n());
-        let mut n_reached = 0;
-        for region in &all {
-            let is_reached =
-                starts.as_ref().map_or(region.is_outside, |starts| starts.iter().any(|s| is_reached(s, region)));
-            for run in region.runs.iter().filter(|_| is_reached) {
-                n_reached += run.to - run.from;
-                let middle = Block { low: [run.x, run.y, run.from], high: [run.x + 1, run.y + 1, run.to] };
-                near.set_block(&wider(&grid, middle, radius));
-            }
-        }
         // What is beside the eyes is seen, however narrow it is there.
         starts.iter().flatten().filter_map(|start| start.near).for_each(|block| near.set_block(&block));
+        let is_outside = starts.as_ref().is_none_or(|starts| starts.iter().any(|start| start.is_outside));
+        let reaches = |region: &Region| region.runs.iter().any(|run| near.has_any(run.x, run.y, run.from, run.to));
+        let reached: Vec<&Region> =
+            all.iter().filter(|region| is_outside && region.is_outside || reaches(region)).collect();
+        let mut n_reached = 0;
+        for run in reached.into_iter().flat_map(|region| &region.runs) {
+            n_reached += run.to - run.from;
+            let middle = Block { low: [run.x, run.y, run.from], high: [run.x + 1, run.y + 1, run.to] };
+            near.set_block(&wider(&grid, middle, radius));
+        }
         Ok(Self { grid, near, n_reached })
     }
 

@@ -47,6 +47,12 @@ impl Bits {
         }
     }
 
+    /// Whether a voxel of a row from `from` to before `to` is in the set.
+    pub(crate) fn has_any(&self, x: usize, y: usize, from: usize, to: usize) -> bool {
+        let row = self.row(x, y);
+        from < to && (from / 64..=(to - 1) / 64).any(|word| self.words[row + word] & mask(word, from, to) != 0)
+    }
+
     /// Adds a block.
     pub(crate) fn set_block(&mut self, b: &Block) {
         for x in b.low[0]..b.high[0] {
@@ -107,6 +113,9 @@ mod tests {
             prop_assert_eq!(bits.len(), set.len());
             prop_assert_eq!(bits.has_block(&probe), voxels(&probe).iter().all(|p| set.contains(p)));
             prop_assert!(voxels(&probe).iter().all(|&p| bits.get(p) == set.contains(&p)));
+            let [x, y, from] = probe.low;
+            let has_any = (from..probe.high[2]).any(|z| set.contains(&[x, y, z]));
+            prop_assert_eq!(bits.has_any(x, y, from, probe.high[2]), has_any);
         }
     }
 }

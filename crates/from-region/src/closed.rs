@@ -76,6 +76,14 @@ impl ClosedSurfaces {
         EyeSides { odd: self.parity.odd_at(volume.min), unknown }
     }
 
+    /// Where eyes are that go from a closed box wherever surfaces that hide from both sides let them: on the same sides of those as in the box.
+    pub fn sides_of_joined(&self, volume: &Aabb<3>) -> EyeSides {
+        let mut sides = self.sides_of(volume);
+        sides.unknown.retain(|c| (*c as usize) < self.n_both);
+        sides.unknown.extend((self.n_both..self.len()).map(|c| c as u32));
+        sides
+    }
+
     /// Whether every segment from the eyes to the triangle is blocked before it ends. Never wrongly yes; no for what touches a surface
     /// around it. Costs a ray and what is near the triangle, and for each item of `eyes` the surfaces around both.
     pub fn hide(&self, eyes: &[EyeSides], triangle: &[Point3; 3]) -> bool {

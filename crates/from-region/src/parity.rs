@@ -47,7 +47,9 @@ impl Parity {
     /// The same of a triangle.
     pub(crate) fn meeting_triangle(&self, t: &[Point3; 3]) -> Vec<u32> {
         let b = Aabb::around(*t);
-        self.meeting_if(&b, |other| may_meet(other, &b) && may_meet(t, &Aabb::around(*other)))
+        self.meeting_if(&b, |other| {
+            may_meet(other, &b) && may_meet(t, &Aabb::around(*other)) && !is_beside(t, other) && !is_beside(other, t)
+        })
     }
 
     fn meeting_if(&self, b: &Aabb<3>, may_meet: impl Fn(&[Point3; 3]) -> bool) -> Vec<u32> {
@@ -63,6 +65,12 @@ impl Parity {
         met.dedup();
         met
     }
+}
+
+/// Whether a triangle is certainly on one side of the plane of another. Exact.
+fn is_beside(t: &[Point3; 3], &[a, b, c]: &[Point3; 3]) -> bool {
+    let sides = t.map(|p| orient3d(a, b, c, p));
+    sides.iter().all(|&side| side > 0.0) || sides.iter().all(|&side| side < 0.0)
 }
 
 /// Whether the ray from `p` along the first axis crosses a triangle that `p` does not lie on.

@@ -72,7 +72,8 @@ fn weld(scene: &Scene) -> (Vec<Point3>, Vec<Welded>) {
     let mut places: HashMap<[u64; 3], u32> = HashMap::new();
     let mut points = Vec::new();
     let mut place = |p: Point3| {
-        *places.entry(p.map(f64::to_bits)).or_insert_with(|| {
+        // Negative zero is zero.
+        *places.entry(p.map(|x| (x + 0.0).to_bits())).or_insert_with(|| {
             points.push(p);
             points.len() as u32 - 1
         })

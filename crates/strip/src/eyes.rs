@@ -1,5 +1,6 @@
-//! Where eyes are: everywhere outside of a scene, or in boxes.
+//! Where eyes are: everywhere outside of a scene, in boxes, or wherever a way leads from boxes.
 
+use crate::space::{Space, Stations};
 use sightlines_cells::{Scene, Unlike, unlike};
 use sightlines_geometry::{Aabb, Point3, Random, check_coordinate};
 use sightlines_line_space::FaceExit;
@@ -25,6 +26,8 @@ pub struct Eyes {
 enum Places {
     Outside,
     Boxes(Vec<Volume>),
+    /// All that is joined to boxes, and points of it, once a scene was searched for some.
+    Joined(Vec<Volume>, Stations),
 }
 
 /// Why eyes are invalid.
@@ -56,11 +59,16 @@ impl Eyes {
     /// # Errors
     /// [`EyesError::None`] for an empty list.
     pub fn in_boxes(boxes: impl IntoIterator<Item = Volume>) -> Result<Self, EyesError> {
-        let boxes: Vec<Volume> = boxes.into_iter().collect();
-        if boxes.is_empty() {
-            return Err(EyesError::None);
-        }
-        Ok(Self { places: Places::Boxes(boxes), hidden_by_table: Vec::new() })
+        Ok(Self { places: Places::Boxes(some(boxes)?), hidden_by_table: Vec::new() })
+    }
+
+    /// Eyes that walk, or fly: in closed boxes, and wherever a way leads from there that no surface bars which hides from both sides. Glass, what moves and what
+    /// hides from its front only bar no way. With a [gap](crate::StripOptions::gap), openings through which no ball of that diameter fits bar it, too.
+    ///
+    /// # Errors
+    /// [`EyesError::None`] for an empty list.
+    pub fn joined_to(boxes: impl IntoIterator<Item = Volume>) -> Result<Self, EyesError> {
+        Ok(Self { places: Places::Joined(some(boxes)?, Stations::default()), hidden_by_table: Vec::new() })
     }
 
     /// Eyes in all cells of a table of the scene. What the table hides from all of them is hidden; so the answer is no better than the table is.
@@ -89,11 +97,39 @@ impl Eyes {
         Ok(Self { hidden_by_table, ..eyes })
     }
 
-    /// The boxes; none if eyes are everywhere outside.
+    /// The boxes, which ways lead on from if [they do](Self::are_joined); none if eyes are everywhere outside.
     pub fn boxes(&self) -> Option<&[Volume]> {
         match &self.places {
             Places::Outside => None,
-            Places::Boxes(boxes) => Some(boxes),
+            Places::Boxes(boxes) | Places::Joined(boxes, _) => Some(boxes),
+        }
+    }
+
+    /// Whether one of the boxes meets another box.
+    pub(crate) fn meet(&self, b: &Aabb<3>) -> bool {
+        let is_met = |eyes: &Aabb<3>| (0..3).all(|k| eyes.min[k] <= b.max[k] && b.min[k] <= eyes.max[k]);
+        self.boxes().unwrap_or_default().iter().any(|eyes| is_met(eyes.bounds()))
+    }
+
+    /// Whether eyes are wherever a way leads from the boxes.
+    pub const fn are_joined(&self) -> bool {
+        matches!(self.places, Places::Joined(..))
+    }
+
+    /// The same eyes with points that ways were found to.
+    pub(crate) fn with_stations(&self, find: impl FnOnce(&[Volume]) -> Stations) -> Self {
+        let mut eyes = self.clone();
+        if let Places::Joined(boxes, stations) = &mut eyes.places {
+            *stations = find(boxes);
+        }
+        eyes
+    }
+
+    /// Points that ways were found to, the nearest to a point first.
+    pub(crate) fn stations_near(&self, point: Point3) -> Vec<Point3> {
+        match &self.places {
+            Places::Joined(_, stations) => stations.near(point),
+            _ => Vec::new(),
         }
     }
 
@@ -106,12 +142,14 @@ impl Eyes {
     /// Everything outside of a box around the scene sees the scene through the sides of that box, and nothing is outside of it that hides: so the eyes
     /// are those in a thin slab on each side, and their lines leave it inwards. For a box of eyes, all of its sides. One that is flat is made a little
     /// thicker: there are more eyes then, not fewer.
-    pub(crate) fn exits(&self, bounds: &Aabb<3>) -> Vec<FaceExit> {
+    ///
+    /// * `space`: what ways lead to, if that is known
+    pub(crate) fn exits(&self, bounds: &Aabb<3>, space: Option<&Space>) -> Vec<FaceExit> {
         let size = longest(bounds);
         let thin = size.max(f64::MIN_POSITIVE) * THIN;
         match &self.places {
             Places::Outside => {
-                let around = larger(bounds, size * AROUND);
+                let around = around(bounds);
                 let slab = |i: usize| {
                     let (axis, is_high) = (i / 2, i % 2 == 1);
                     let (mut volume, mut part) = (around, around);
@@ -123,6 +161,13 @@ impl Eyes {
                 (0..6).map(slab).collect()
             }
             Places::Boxes(boxes) => boxes.iter().flat_map(|eyes| sides(&thick(eyes.bounds(), thin))).collect(),
+            Places::Joined(..) => {
+                // Eyes that may be anywhere are in a box with all that is asked about.
+                let whole = [around(bounds)];
+                let from = space.map_or(&whole[..], Space::cells);
+                let outside = space.is_some_and(Space::is_outside).then(|| Self::outside().exits(bounds, None));
+                from.iter().flat_map(sides).chain(outside.into_iter().flatten()).collect()
+            }
         }
     }
 
@@ -132,7 +177,7 @@ impl Eyes {
     pub(crate) fn any(&self, bounds: &Aabb<3>, point: Point3, towards: Point3, random: &mut Random) -> Point3 {
         match &self.places {
             Places::Outside => {
-                let around = larger(bounds, longest(bounds) * AROUND);
+                let around = around(bounds);
                 // Where the ray leaves the box, and a little farther.
                 let leaves = |k: usize| {
                     let side = if towards[k] > 0.0 { around.max[k] } else { around.min[k] };
@@ -145,6 +190,7 @@ impl Eyes {
                 let any = random.below(boxes.len());
                 random.point(boxes[any].bounds())
             }
+            Places::Joined(_, stations) => stations.any(random),
         }
     }
 
@@ -153,8 +199,21 @@ impl Eyes {
         match &self.places {
             Places::Outside => point.iter().all(|&x| check_coordinate(x).is_ok()) && !bounds.contains(point),
             Places::Boxes(boxes) => boxes.iter().any(|eyes| eyes.bounds().contains(point)),
+            Places::Joined(boxes, stations) => {
+                stations.has(point) || boxes.iter().any(|eyes| eyes.bounds().contains(point))
+            }
         }
     }
+}
+
+fn some(boxes: impl IntoIterator<Item = Volume>) -> Result<Vec<Volume>, EyesError> {
+    let boxes: Vec<Volume> = boxes.into_iter().collect();
+    if boxes.is_empty() { Err(EyesError::None) } else { Ok(boxes) }
+}
+
+/// The box from which a scene is looked at from outside.
+pub(crate) fn around(bounds: &Aabb<3>) -> Aabb<3> {
+    larger(bounds, longest(bounds) * AROUND)
 }
 
 fn longest(b: &Aabb<3>) -> f64 {

@@ -6,7 +6,7 @@ use sightlines_geometry::Point3;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum HiddenReason {
-    /// A closed surface is between it and every eye, exactly.
+    /// A closed surface is between it and every eye, or walls along the axes leave no way to it, exactly.
     Enclosed,
     /// Chains of surfaces block all lines from the eyes, exactly.
     LineSpace,

@@ -18,6 +18,10 @@
 //! convex. So all of the line up to the eye is free, and what the eye sees is seen as well from where the line enters a larger box. There is a thin slab of eyes on each side
 //! of that.
 //!
+//! # Eyes that walk
+//! Sight is a way. So what eyes see that walk from some boxes is joined to these by free space: nothing is seen that a closed surface keeps from the boxes, and nothing
+//! that meets no cell of a k-d tree to which portals lead from there ([`Eyes::joined_to`]). From outside, too, what is seen is joined to all that is outside. That they see something is shown from points that free segments lead to, one after the other.
+//!
 //! # What a gap means
 //! Surfaces of real files do not close exactly: a lid lies on its housing, and no two corners are equal. Between them is a crack through which a line could
 //! pass, so nothing that is exact can call closed what is behind it. A flood of voxels does not settle it either: it finds openings closed that are narrower
@@ -33,6 +37,7 @@
 mod eyes;
 mod fate;
 mod lines;
+mod space;
 mod strip;
 mod witness;
 

@@ -76,8 +76,9 @@ impl Lines {
         search.forget();
         let target = FaceTarget::new(triangles).ok_or_else(Open::default)?;
         let facing: Vec<&FaceExit> = self.exits.iter().filter(|exit| exit.faces(target.bounds())).collect();
-        let meets = |exit: &&FaceExit| !are_apart(&exit.volume, target.bounds());
-        if facing.len() > self.sides || facing.iter().any(meets) {
+        let meets = |exit: &FaceExit| !are_apart(&exit.volume, target.bounds());
+        // Of a box with all of the target in it no side faces the target.
+        if facing.len() > self.sides || self.exits.iter().any(meets) {
             return Err(Open::default());
         }
         let more = u32::try_from(target.triangles().len() / 2).unwrap_or(u32::MAX);

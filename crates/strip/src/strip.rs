@@ -1,8 +1,9 @@
 //! The decision, part by part: rays first, then what encloses, then lines.
 
-use crate::eyes::Eyes;
+use crate::eyes::{Eyes, around};
 use crate::fate::{Fate, FateCounts, HiddenReason, ObjectFate};
 use crate::lines::{LineEffort, Lines};
+use crate::space::Space;
 use crate::witness::{Aim, Walls};
 use rayon::prelude::*;
 use sightlines_cells::{ANYWHERE, Scene, SceneError};
@@ -169,12 +170,13 @@ pub fn strip(
 /// All that is prepared.
 struct Stripper<'a> {
     scene: &'a Scene,
-    eyes: &'a Eyes,
+    eyes: Eyes,
     options: &'a StripOptions,
     walls: Walls<'a>,
     closed: ClosedSurfaces,
     sides: Vec<EyeSides>,
     ball: Option<BallReach>,
+    space: Option<Space>,
     lines: Lines,
 }
 
@@ -188,6 +190,7 @@ impl<'a> Stripper<'a> {
         let closed = ClosedSurfaces::new(scene);
         let mut sides = match &boxes {
             None => vec![EyeSides::OUTSIDE],
+            Some(boxes) if eyes.are_joined() => boxes.iter().map(|b| closed.sides_of_joined(b)).collect(),
             Some(boxes) => boxes.iter().map(|b| closed.sides_of(b)).collect(),
         };
         sides.sort_unstable();
@@ -196,50 +199,76 @@ impl<'a> Stripper<'a> {
             None
         } else {
             let all = boxes.as_deref().unwrap_or_default();
-            let walls = both_sides.iter().chain(closed.walls(all)).copied();
+            // Who walks may come behind what hides from its front only.
+            let fronts = closed.walls(all).filter(|_| !eyes.are_joined());
+            let walls = both_sides.iter().chain(fronts).copied();
             Some(BallReach::new(walls, &bounds, options.gap, boxes.as_deref())?)
         };
-        let lines = Lines::new(&both_sides, &fronts, eyes.exits(&bounds), options.effort.sides);
-        Ok(Self { scene, eyes, options, walls: Walls::new(scene), closed, sides, ball, lines })
+        let space = match boxes.as_deref() {
+            None => Space::joined_to(scene, &[], around(&bounds)),
+            Some(boxes) if eyes.are_joined() => Space::joined_to(scene, boxes, around(&bounds)),
+            Some(_) => None,
+        };
+        let exits = eyes.exits(&bounds, space.as_ref());
+        let lines = Lines::new(&both_sides, &fronts, exits, options.effort.sides);
+        let walls = Walls::new(scene);
+        let eyes = eyes.with_stations(|boxes| walls.stations(boxes, &mut Random::new(options.seed)));
+        Ok(Self { scene, eyes, options, walls, closed, sides, ball, space, lines })
     }
 
     fn run(&self, observer: Option<&dyn Observer>) -> Result<Stripped, StripError> {
         let n = self.scene.objects().len();
         let effort = self.options.effort;
         let counter = Counter::new(observer, "parts", n);
-        let decide = |search: &mut FaceSearch, object: u32| -> Result<ObjectFate, StripError> {
-            let mut fate = self.cheaply(object);
-            self.by_lines(object, &mut fate, effort.first_cells, search);
+        let decide = |object: u32| -> Result<ObjectFate, StripError> {
+            let fate = self.cheaply(object);
             counter.step()?;
             Ok(fate)
         };
-        let objects = (0..n as u32).into_par_iter().map_init(|| self.lines.search(), decide);
-        let mut objects = objects.collect::<Result<Vec<_>, _>>()?;
+        let mut objects = (0..n as u32).into_par_iter().map(decide).collect::<Result<Vec<_>, _>>()?;
+        // What is seen costs line space most, which never finds it hidden: so it is looked for first.
+        self.spread(&mut objects);
+        self.each_open(&mut objects, observer, |search, object, fate| {
+            self.by_lines(object, fate, effort.first_cells, search);
+        })?;
         self.spread(&mut objects);
         let n_open: usize = objects.iter().map(ObjectFate::n_undecided).sum();
         let each = effort.shared_cells / (n_open.max(1) as u64);
         let cells = u32::try_from(each).unwrap_or(u32::MAX).min(effort.most_cells);
-        let is_open = |(_, fate): &(usize, &mut ObjectFate)| fate.n_undecided() > 0;
-        let open: Vec<(usize, &mut ObjectFate)> = objects.iter_mut().enumerate().filter(is_open).collect();
-        let counter = Counter::new(observer, "open parts", open.len());
-        let again = |search: &mut FaceSearch, (object, fate): (usize, &mut ObjectFate)| -> Result<(), StripError> {
+        self.each_open(&mut objects, observer, |search, object, fate| {
             if cells > effort.first_cells {
-                self.by_lines(object as u32, fate, cells, search);
+                self.by_lines(object, fate, cells, search);
             }
-            self.by_more_rays(object as u32, fate);
-            Ok(counter.step()?)
-        };
-        open.into_par_iter()
-            .map_init(|| self.lines.search(), |search, of| again(search, of))
-            .collect::<Result<(), _>>()?;
+            self.by_more_rays(object, fate);
+        })?;
         self.spread(&mut objects);
         Ok(Stripped { objects, n_closed_surfaces: self.closed.len() })
     }
 
+    /// Does something for each object of which a part is undecided.
+    fn each_open(
+        &self,
+        objects: &mut [ObjectFate],
+        observer: Option<&dyn Observer>,
+        work: impl Fn(&mut FaceSearch, u32, &mut ObjectFate) + Sync,
+    ) -> Result<(), StripError> {
+        let is_open = |(_, fate): &(usize, &mut ObjectFate)| fate.n_undecided() > 0;
+        let open: Vec<(usize, &mut ObjectFate)> = objects.iter_mut().enumerate().filter(is_open).collect();
+        let counter = Counter::new(observer, "open parts", open.len());
+        let one = |search: &mut FaceSearch, (object, fate): (usize, &mut ObjectFate)| -> Result<(), StripError> {
+            work(search, object as u32, fate);
+            Ok(counter.step()?)
+        };
+        open.into_par_iter().map_init(|| self.lines.search(), one).collect()
+    }
+
     /// Whether triangles of an object count one by one.
     fn counts_triangles(&self, object: u32) -> bool {
-        let moves = self.scene.moving().binary_search_by_key(&object, |moving| moving.object).is_ok();
-        self.options.grain == Grain::Triangles && !moves
+        self.options.grain == Grain::Triangles && !self.moves(object)
+    }
+
+    fn moves(&self, object: u32) -> bool {
+        self.scene.moving().binary_search_by_key(&object, |moving| moving.object).is_ok()
     }
 
     fn random(&self, object: u32, stage: u64) -> Random {
@@ -261,13 +290,13 @@ impl<'a> Stripper<'a> {
         let mut random = self.random(object, 0);
         let (n, n_rays) = (triangles.len(), self.options.first_rays);
         if self.counts_triangles(object) {
-            let fate = |t: usize| match self.walls.find(self.eyes, &aim.one(t), t..t + 1, n_rays, &mut random) {
+            let fate = |t: usize| match self.walls.find(&self.eyes, &aim.one(t), t..t + 1, n_rays, &mut random) {
                 Some(free) => Fate::Seen(free),
                 None => self.enclosed(object, &triangles[t]).map_or(Fate::Undecided, Fate::Hidden),
             };
             return ObjectFate::of_triangles((0..n).map(fate).collect());
         }
-        if let Some(free) = self.walls.find(self.eyes, &aim, 0..n, n_rays, &mut random) {
+        if let Some(free) = self.walls.find(&self.eyes, &aim, 0..n, n_rays, &mut random) {
             return ObjectFate::whole(Fate::Seen(free));
         }
         // The weakest reason of them.
@@ -320,13 +349,13 @@ impl<'a> Stripper<'a> {
         let aim = Aim { object, only: None, triangles: &triangles };
         let (mut random, n_rays) = (self.random(object, 1), self.options.more_rays);
         if fate.triangles.is_empty() {
-            let found = self.walls.find(self.eyes, &aim, 0..triangles.len(), n_rays, &mut random);
+            let found = self.walls.find(&self.eyes, &aim, 0..triangles.len(), n_rays, &mut random);
             fate.fate = found.map_or(Fate::Undecided, Fate::Seen);
             return;
         }
         let mut fates = std::mem::take(&mut fate.triangles);
         for (t, fate) in fates.iter_mut().enumerate().filter(|(_, fate)| **fate == Fate::Undecided) {
-            let found = self.walls.find(self.eyes, &aim.one(t), t..t + 1, n_rays.div_ceil(16), &mut random);
+            let found = self.walls.find(&self.eyes, &aim.one(t), t..t + 1, n_rays.div_ceil(16), &mut random);
             *fate = found.map_or(Fate::Undecided, Fate::Seen);
         }
         *fate = ObjectFate::of_triangles(fates);
@@ -353,8 +382,9 @@ impl<'a> Stripper<'a> {
             let near = |k: usize| -> Vec<(u32, u32, [Point3; 2])> {
                 let mut random = self.random(k as u32, 2 + round);
                 let near = |_| {
-                    self.walls
-                        .near(self.eyes, known[k * step], &mut random, &is_open, |object| self.counts_triangles(object))
+                    self.walls.near(&self.eyes, known[k * step], &mut random, &is_open, |object| {
+                        self.counts_triangles(object)
+                    })
                 };
                 (0..SPREAD_RAYS).filter_map(near).collect()
             };
@@ -382,12 +412,17 @@ impl<'a> Stripper<'a> {
 
     fn along(&self, aim: &Aim<'_>, triangle: u32, line: [Point3; 2]) -> Option<[Point3; 2]> {
         let at = aim.triangles.get(triangle as usize)?;
-        self.walls.along(self.eyes, aim, at, line)
+        self.walls.along(&self.eyes, aim, at, line)
     }
 
     /// Why a triangle is hidden, if it is by what encloses it or by a table.
     fn enclosed(&self, object: u32, triangle: &[Point3; 3]) -> Option<HiddenReason> {
-        if self.closed.hide(&self.sides, triangle) {
+        if self.moves(object) && self.eyes.meet(&self.scene.extent(object)) {
+            // Within the box that it does not leave it may be before the eye, whatever hides the sides of the box.
+            return self.eyes.is_hidden_by_table(object).then_some(HiddenReason::Table);
+        }
+        let is_apart = || self.space.as_ref().is_some_and(|space| !space.touches(triangle));
+        if self.closed.hide(&self.sides, triangle) || is_apart() {
             return Some(HiddenReason::Enclosed);
         }
         if self.eyes.is_hidden_by_table(object) {

@@ -1,11 +1,12 @@
 //! Free segments from eyes to what they see: found by rays in doubles, decided exactly.
 
-use crate::eyes::Eyes;
+use crate::eyes::{Eyes, around};
+use crate::space::Stations;
 use sightlines_cells::Scene;
 use sightlines_from_region::may_meet;
 use sightlines_geometry::vector::{length, sub};
 use sightlines_geometry::{Aabb, BoxTree, Point3, Random, check_coordinate, orient3d, ray_triangle};
-use sightlines_multifocal::RaySampler;
+use sightlines_multifocal::{RaySampler, Volume};
 use std::cell::Cell;
 use std::ops::Range;
 
@@ -95,7 +96,8 @@ impl<'s> Walls<'s> {
         at: &[Point3; 3],
         [eye, point]: [Point3; 2],
     ) -> Option<[Point3; 2]> {
-        if !eyes.holds(&self.bounds, eye) {
+        let is_joined = || eyes.stations_near(eye).into_iter().any(|from| self.is_way([from, eye]));
+        if !eyes.holds(&self.bounds, eye) && !is_joined() {
             return None;
         }
         let way = sub(point, eye);
@@ -140,7 +142,8 @@ impl<'s> Walls<'s> {
     ) -> Option<(u32, u32, [Point3; 2])> {
         let reach = length(sub(end, eye)) * NEAR[random.below(NEAR.len())];
         let mut moved = |p: Point3| -> Point3 { [0, 1, 2].map(|k| p[k] + reach * (2.0 * random.unit() - 1.0)) };
-        let (eye, end) = (moved(eye), moved(end));
+        // Who walks looks from where a way was found to.
+        let (eye, end) = (if eyes.are_joined() { eye } else { moved(eye) }, moved(end));
         if !eyes.holds(&self.bounds, eye) {
             return None;
         }
@@ -153,6 +156,25 @@ impl<'s> Walls<'s> {
         let aim = Aim { object, only: counts(object).then_some(t), triangles: &[] };
         let free = self.along(eyes, &aim, &self.rays.triangles()[hit as usize], [eye, end])?;
         Some((object, t, free))
+    }
+
+    /// Points that ways lead to from some boxes.
+    pub(crate) fn stations(&self, boxes: &[Volume], random: &mut Random) -> Stations {
+        let outside = around(&self.bounds);
+        let far = (0..3).map(|k| outside.max[k] - outside.min[k]).fold(0.0, f64::max);
+        Stations::find(boxes, random, |from, towards, share| {
+            // As far as something is, or the other end of the scene.
+            let way = towards.map(|x| x * far);
+            let hit = self.rays.first_triangle(from, way);
+            let end = hit.map_or(1.0, |t| ray_triangle(&self.rays.triangles()[t as usize], from, way)[2].min(1.0));
+            let to: Point3 = std::array::from_fn(|k| from[k] + way[k] * end * share);
+            (outside.contains(to) && self.is_way([from, to])).then_some(to)
+        })
+    }
+
+    /// Whether a segment leads from one place of the eye to another.
+    fn is_way(&self, [from, to]: [Point3; 2]) -> bool {
+        to.iter().all(|&x| check_coordinate(x).is_ok()) && self.is_free([from, to], |_| false)
     }
 
     /// Whether no triangle that hides touches a segment, but for those that are passed from behind, and `but`. Exact, but that it may be

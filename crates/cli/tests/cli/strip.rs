@@ -97,6 +97,8 @@ fn eyes_are_where_they_are_said_to_be() {
     folder.write("cells.json", r#"{"cells":[{"id":"a","min":[-0.5,-0.5,4],"max":[0.5,0.5,5]}]}"#);
     assert_eq!(hidden(&["wall.obj", "-o", "o.obj", "--from", "cells=cells.json"]), 1);
     assert_eq!(hidden(&["wall.obj", "-o", "o.obj"]), 0);
+    // A way leads around the wall.
+    assert_eq!(hidden(&["wall.obj", "-o", "o.obj", "--from", "walk=0,0,4"]), 0);
     // A table, and the same scene through its cells.
     hidden(&["tower.glb", "-o", "o.glb", "--from", "tower.pvs", "--effort", "0"]);
     folder.write("cupboard.glb", write_glb(&cupboard(0).expect("none").scene).expect("small"));
@@ -115,6 +117,8 @@ fn what_cannot_be_done_is_refused() {
         (&["in.glb", "-o", "out.glb", "--from", "inside"], "neither outside nor box="),
         (&["in.glb", "-o", "out.glb", "--from", "outside", "--from", "box=0,0,0,1,1,1"], "only place of eyes"),
         (&["in.glb", "-o", "out.glb", "--from", "none.pvs"], "none.pvs"),
+        (&["in.glb", "-o", "out.glb", "--from", "walk"], "the file has no view volumes"),
+        (&["in.glb", "-o", "out.glb", "--from", "walk=1,2"], "three comma-separated numbers"),
         (&["in.glb", "-o", "out.glb", "--gap", "0.00001"], "is too narrow for a scene"),
         (&["in.glb", "-o", "out.glb", "--gap", "-1"], "a number from 0 on"),
         (&["in.glb"], "--output"),

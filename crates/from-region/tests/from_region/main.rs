@@ -1,5 +1,7 @@
-//! View shafts and voxels against rays.
+//! View shafts and voxels against rays, closed surfaces against floods of cells, balls against balls on whole numbers.
 
+mod ball;
+mod closed;
 mod common;
 mod conformance;
 mod real;

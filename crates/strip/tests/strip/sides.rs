@@ -83,6 +83,45 @@ fn eyes_in_a_void_see_what_is_in_it_and_nothing_else() {
     assert_eq!(names(&one_sided(&of.scene), &outer), ["Inner ball"]);
 }
 
+/// Nothing in a box of eyes is hidden by lines that leave the box: not what is in a pot, nor what lies free.
+#[test]
+fn what_is_among_the_eyes_is_not_hidden_by_lines() {
+    let mut pot = hull().objects()[..5].to_vec();
+    pot.extend([block("Thing", [1.0; 3], [2.0; 3]), block("Other", [5.0; 3], [5.5; 3])]);
+    let open = Scene::new(pot).expect("a scene");
+    let options = StripOptions { first_rays: 0, more_rays: 0, ..StripOptions::default() };
+    let eyes = Eyes::in_boxes([Volume::new(Aabb { min: [-1.0; 3], max: [6.0; 3] }).expect("a box")]).expect("one");
+    let found = strip(&open, &eyes, &options, None).expect("no mirrors");
+    assert_eq!(hidden(&found), [0u32; 0]);
+    // The twin: beside the eyes, and with a wall between.
+    let wall = block("Wall", [-20.0, -20.0, 7.0], [20.0, 20.0, 7.5]);
+    let behind = block("Behind", [1.0, 1.0, 8.0], [2.0, 2.0, 9.0]);
+    let scene = Scene::new([open.objects(), &[wall, behind]].concat()).expect("a scene");
+    assert_eq!(hidden(&strip(&scene, &eyes, &options, None).expect("no mirrors")), [8]);
+}
+
+/// What moves may come to where the eyes are, though the sides of the box that it does not leave are behind a hull around them.
+#[test]
+fn what_moves_around_eyes_is_not_hidden_by_the_hull_around_them() {
+    let eyes = |min: f64| {
+        let b = Aabb { min: [min; 3], max: [min + 0.5; 3] };
+        Eyes::in_boxes([Volume::new(b).expect("a box")]).expect("one")
+    };
+    let moving = |min: f64, max: f64| {
+        let within = Some(Aabb { min: [min; 3], max: [max; 3] });
+        hull().with_moving(vec![MovingObject { object: 6, within }]).expect("the thing")
+    };
+    for gap in [0.0, 0.25] {
+        let options = StripOptions { gap, ..StripOptions::default() };
+        let is_hidden = |scene: &Scene, eyes: &Eyes| {
+            strip(scene, eyes, &options, None).expect("no mirrors").objects[6].fate.is_hidden()
+        };
+        assert!(!is_hidden(&moving(-1.0, 5.0), &eyes(3.0)), "{gap}");
+        // The twin: it stays in the hull, and the eyes outside.
+        assert!(is_hidden(&moving(0.5, 3.0), &eyes(5.0)), "{gap}");
+    }
+}
+
 #[test]
 fn mirrors_are_refused_unless_they_are_ignored() {
     let scene = hull().with_mirrors(vec![2]).expect("a side");

@@ -1,11 +1,14 @@
 //! Where eyes are, as arguments.
 
 use crate::error::{ErrorAbout, Result, bail};
+use crate::eye;
 use crate::input;
 use crate::region::Region;
 use crate::simplification;
 use sightlines::cells::Scene;
+use sightlines::formats::SceneFile;
 use sightlines::formats::view_cells::read_view_cells;
+use sightlines::geometry::{Aabb, Point3};
 use sightlines::multifocal::Volume;
 use sightlines::pvs::Table;
 use sightlines::strip::Eyes;
@@ -24,6 +27,8 @@ pub(super) enum From {
     Cells(PathBuf),
     /// The cells of a table.
     Table(PathBuf),
+    /// Wherever a way leads from a point, or from the view volumes of the file.
+    Walk(Option<Point3>),
 }
 
 impl FromStr for From {
@@ -36,13 +41,21 @@ impl FromStr for From {
         if let Some(region) = text.strip_prefix("box=") {
             return Ok(Self::Box(region.parse()?));
         }
+        if text == "walk" {
+            return Ok(Self::Walk(None));
+        }
+        if let Some(point) = text.strip_prefix("walk=") {
+            return Ok(Self::Walk(Some(eye::point(point)?)));
+        }
         if let Some(path) = text.strip_prefix("cells=") {
             return Ok(Self::Cells(path.into()));
         }
         if Path::new(text).extension().is_some_and(|end| end.eq_ignore_ascii_case("pvs")) {
             return Ok(Self::Table(text.into()));
         }
-        bail!("neither outside nor box=X0,Y0,Z0,X1,Y1,Z1 nor cells=FILE.json nor a table FILE.pvs")
+        bail!(
+            "neither outside nor box=X0,Y0,Z0,X1,Y1,Z1 nor cells=FILE.json nor walk nor walk=X,Y,Z nor a table FILE.pvs"
+        )
     }
 }
 
@@ -56,6 +69,8 @@ impl fmt::Display for From {
             }
             Self::Cells(path) => write!(f, "cells={}", path.display()),
             Self::Table(path) => write!(f, "{}", path.display()),
+            Self::Walk(None) => f.write_str("walk"),
+            Self::Walk(Some([x, y, z])) => write!(f, "walk={x},{y},{z}"),
         }
     }
 }
@@ -68,6 +83,12 @@ pub(super) fn table(from: &[From]) -> Result<Option<(&Path, Table)>> {
     {
         bail!("--from {alone}: has to be the only place of eyes; boxes and files of cells can be several");
     }
+    let walks = |from: &&From| matches!(from, From::Walk(_));
+    if let Some(walk) = from.iter().find(walks)
+        && !from.iter().all(|from| walks(&from))
+    {
+        bail!("--from {walk}: eyes either walk from all places or stay in them; give boxes without walk");
+    }
     match from {
         [From::Table(path)] => Ok(Some((path, input::table(path)?))),
         _ => Ok(None),
@@ -79,8 +100,9 @@ pub(super) fn eyes(
     from: &[From],
     table: Option<&(&Path, Table)>,
     path: &Path,
-    scene: &Scene,
+    file: &SceneFile,
 ) -> Result<(Eyes, Option<Scene>)> {
+    let scene = &file.scene;
     if let Some((table_path, table)) = table {
         return Ok(match simplification::along([path, table_path], table, scene)? {
             Some((table, along)) => (Eyes::in_cells_of(&table, &along).in_file(table_path)?, Some(along)),
@@ -105,10 +127,20 @@ pub(super) fn eyes(
                 let boxes = cells.cells.iter().map(|cell| Volume::new(cell.bounds));
                 volumes.extend(boxes.collect::<Result<Vec<_>, _>>().in_file(path)?);
             }
+            From::Walk(Some(point)) => volumes.push(Volume::new(Aabb { min: *point, max: *point }).about("--from")?),
+            From::Walk(None) => {
+                if file.info.view_volumes.is_empty() {
+                    bail!("{}: --from walk: the file has no view volumes; give points as walk=X,Y,Z", path.display());
+                }
+                let boxes = file.info.view_volumes.iter().map(|b| Volume::new(*b));
+                volumes.extend(boxes.collect::<Result<Vec<_>, _>>().in_file(path)?);
+            }
             From::Outside | From::Table(_) => {}
         }
     }
-    Ok((Eyes::in_boxes(volumes).about("--from")?, None))
+    let is_walk = matches!(from, [From::Walk(_), ..]);
+    let eyes = if is_walk { Eyes::joined_to(volumes) } else { Eyes::in_boxes(volumes) };
+    Ok((eyes.about("--from")?, None))
 }
 
 #[cfg(test)]
@@ -117,7 +149,7 @@ mod tests {
 
     #[test]
     fn places_are_parsed_and_displayed() {
-        for text in ["outside", "box=0,1,2,3,4,5.5", "cells=a.json", "level.pvs"] {
+        for text in ["outside", "box=0,1,2,3,4,5.5", "cells=a.json", "level.pvs", "walk", "walk=1,-2.5,3"] {
             assert_eq!(text.parse::<From>().unwrap().to_string(), text);
         }
         let error = |text: &str| text.parse::<From>().unwrap_err().to_string();
@@ -125,5 +157,7 @@ mod tests {
         assert!(error("box=1,2").starts_with("a box is six"));
         let both = ["outside", "box=0,0,0,1,1,1"].map(|text| text.parse().unwrap());
         assert!(table(&both).unwrap_err().to_string().contains("only place of eyes"));
+        let both = ["walk=1,2,3", "box=0,0,0,1,1,1"].map(|text| text.parse().unwrap());
+        assert!(table(&both).unwrap_err().to_string().contains("stay in them"));
     }
 }

@@ -35,7 +35,8 @@ pub(crate) struct StripArgs {
     #[command(flatten)]
     surfaces: SurfaceArgs,
     /// Where eyes are: outside (everywhere outside of the box around the scene), box=X0,Y0,Z0,X1,Y1,Z1 and cells=FILE.json (boxes, as `build --cells` takes
-    /// them; several of both may be given), or the cells of a table, which also hides what it hides
+    /// them; several of both may be given), walk=X,Y,Z (wherever a way leads from a point that no surface bars; several may be given) or walk (the same from the
+    /// view volumes of the file), or the cells of a table, which also hides what it hides
     #[arg(long, help_heading = "Viewer", value_name = "PLACE", default_value = "outside", allow_hyphen_values = true)]
     from: Vec<From>,
     /// Decide for whole objects, which are primitives of nodes: the default
@@ -95,7 +96,7 @@ pub(crate) fn run(args: &StripArgs, Verbosity { show_progress, .. }: Verbosity) 
     if let Some(path) = &args.output {
         check_format(args, path, source.as_ref())?;
     }
-    let (eyes, along) = from::eyes(&args.from, table.as_ref(), &args.scene, &file.scene)?;
+    let (eyes, along) = from::eyes(&args.from, table.as_ref(), &args.scene, &file)?;
     let scene = along.as_ref().unwrap_or(&file.scene);
     let is_kept = |name: &str| args.keep.iter().any(|pattern| pattern.matches(name));
     let keep = (0u32..).zip(scene.objects()).filter(|(_, of)| is_kept(&of.name)).map(|(k, _)| k).collect();
