@@ -55,7 +55,7 @@ struct Checked {
     threads: usize,
 }
 
-fn aabb(b: [f64; 6], what: &str) -> PyResult<Aabb<3>> {
+pub(crate) fn aabb(b: [f64; 6], what: &str) -> PyResult<Aabb<3>> {
     let [x0, y0, z0, x1, y1, z1] = b;
     for x in b {
         check_coordinate(x).map_err(|failure| value_error(format!("{what}: {failure}")))?;
@@ -214,7 +214,7 @@ pub(crate) fn bake_bytes(
 }
 
 /// A mesh: name, corners (n, 3), triangles (m, 3), whether it is seen through.
-type Mesh<'py> = (String, PyReadonlyArray2<'py, f64>, PyReadonlyArray2<'py, i64>, bool);
+pub(crate) type Mesh<'py> = (String, PyReadonlyArray2<'py, f64>, PyReadonlyArray2<'py, i64>, bool);
 
 fn object((name, corners, triangles, _): &Mesh<'_>) -> PyResult<SceneObject> {
     let vertices = rows::<3>(corners, &format!("{name}: corners"))?;
@@ -231,6 +231,13 @@ fn object((name, corners, triangles, _): &Mesh<'_>) -> PyResult<SceneObject> {
     Ok(SceneObject { name: name.clone(), vertices, triangles: flat.as_chunks::<3>().0.to_vec() })
 }
 
+/// Meshes as a scene.
+pub(crate) fn scene_of(meshes: &[Mesh<'_>]) -> PyResult<Scene> {
+    let objects: Vec<SceneObject> = meshes.iter().map(object).collect::<PyResult<_>>()?;
+    let seen_through: Vec<u32> = (0..).zip(meshes).filter(|(_, mesh)| mesh.3).map(|(object, _)| object).collect();
+    Scene::new(objects).and_then(|scene| scene.with_see_through(seen_through)).map_err(value_error)
+}
+
 /// Bakes meshes.
 #[pyfunction]
 #[pyo3(signature = (meshes, options, progress=None))]
@@ -241,9 +248,7 @@ pub(crate) fn bake_meshes(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(Table, Said)> {
     let options = options.check()?;
-    let objects: Vec<SceneObject> = meshes.iter().map(object).collect::<PyResult<_>>()?;
-    let seen_through: Vec<u32> = (0..).zip(&meshes).filter(|(_, mesh)| mesh.3).map(|(object, _)| object).collect();
-    let scene = Scene::new(objects).and_then(|scene| scene.with_see_through(seen_through)).map_err(value_error)?;
+    let scene = scene_of(&meshes)?;
     let result = long::run(py, progress.as_ref(), |observer| {
         let done = options.bake(BakeInput::Scene(&scene, None), observer)?;
         Ok::<_, BakeError>((said_of(&done), done))
