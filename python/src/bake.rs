@@ -10,6 +10,7 @@ use sightlines_bake::{BakeError, BakeInput, BakeRequest, Bakeable, BakeableError
 use sightlines_cells::{Scene, SceneObject};
 use sightlines_formats::Source;
 use sightlines_progress::Observer;
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -76,8 +77,13 @@ pub(crate) fn said_of(baked: &Baked) -> Said {
 pub(crate) fn baked(result: Result<(Said, Baked), BakeError>) -> PyResult<(Table, Said)> {
     match result {
         Ok((said, baked)) => Ok((Table::with_graph(baked.table, baked.graph), said)),
-        Err(failure) => Err(error(failure)),
+        Err(failure) => Err(bake_failed(&failure, &failure)),
     }
+}
+
+/// An argument that means nothing for what is baked, or an error of the scene.
+fn bake_failed(failure: &BakeError, what: impl Display) -> PyErr {
+    if matches!(failure, BakeError::Meaningless(_)) { value_error(what) } else { error(what) }
 }
 
 /// Why a file was not baked.
@@ -105,7 +111,7 @@ fn read_and_bake(
     match result {
         Ok(done) => baked(Ok(done)),
         Err(Failed::Read(failure)) => Err(bakeable_failed(name, &failure)),
-        Err(Failed::Bake(failure)) => Err(error(format!("{}: {failure}", name.display()))),
+        Err(Failed::Bake(failure)) => Err(bake_failed(&failure, format_args!("{}: {failure}", name.display()))),
     }
 }
 
@@ -137,7 +143,7 @@ pub(crate) fn bake_bytes(
 }
 
 /// A mesh: name, corners (n, 3), triangles (m, 3), whether it is seen through.
-type Mesh<'py> = (String, PyReadonlyArray2<'py, f64>, PyReadonlyArray2<'py, i64>, bool);
+pub(crate) type Mesh<'py> = (String, PyReadonlyArray2<'py, f64>, PyReadonlyArray2<'py, i64>, bool);
 
 fn object((name, corners, triangles, _): &Mesh<'_>) -> PyResult<SceneObject> {
     let vertices = rows::<3>(corners, &format!("{name}: corners"))?;
@@ -154,6 +160,13 @@ fn object((name, corners, triangles, _): &Mesh<'_>) -> PyResult<SceneObject> {
     Ok(SceneObject { name: name.clone(), vertices, triangles: flat.as_chunks::<3>().0.to_vec() })
 }
 
+/// Meshes as a scene.
+pub(crate) fn scene_of(meshes: &[Mesh<'_>]) -> PyResult<Scene> {
+    let objects: Vec<SceneObject> = meshes.iter().map(object).collect::<PyResult<_>>()?;
+    let seen_through: Vec<u32> = (0..).zip(meshes).filter(|(_, mesh)| mesh.3).map(|(object, _)| object).collect();
+    Scene::new(objects).and_then(|scene| scene.with_see_through(seen_through)).map_err(value_error)
+}
+
 /// Bakes meshes.
 #[pyfunction]
 #[pyo3(signature = (meshes, options, progress=None))]
@@ -164,9 +177,7 @@ pub(crate) fn bake_meshes(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(Table, Said)> {
     let options = options.check()?;
-    let objects: Vec<SceneObject> = meshes.iter().map(object).collect::<PyResult<_>>()?;
-    let seen_through: Vec<u32> = (0..).zip(&meshes).filter(|(_, mesh)| mesh.3).map(|(object, _)| object).collect();
-    let scene = Scene::new(objects).and_then(|scene| scene.with_see_through(seen_through)).map_err(value_error)?;
+    let scene = scene_of(&meshes)?;
     let result = long::run(py, progress.as_ref(), |observer| {
         let done = options.bake(BakeInput::Scene(&scene, None), observer)?;
         Ok::<_, BakeError>((said_of(&done), done))

@@ -17,6 +17,7 @@ mod long;
 mod plan;
 mod relevance;
 mod scenes;
+mod strip;
 mod table;
 mod vga;
 
@@ -41,6 +42,9 @@ fn _native(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(bake::bake_file, m)?)?;
     m.add_function(wrap_pyfunction!(bake::bake_bytes, m)?)?;
     m.add_function(wrap_pyfunction!(bake::bake_meshes, m)?)?;
+    m.add_function(wrap_pyfunction!(strip::strip_file, m)?)?;
+    m.add_function(wrap_pyfunction!(strip::strip_bytes, m)?)?;
+    m.add_function(wrap_pyfunction!(strip::strip_meshes, m)?)?;
     m.add_function(wrap_pyfunction!(scenes::tower, m)?)?;
     m.add_function(wrap_pyfunction!(scenes::office, m)?)?;
     m.add_function(wrap_pyfunction!(scenes::city, m)?)?;

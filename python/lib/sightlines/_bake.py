@@ -104,7 +104,7 @@ def bake(
         elif isinstance(source, (bytes, bytearray, memoryview)):
             made = _native.bake_bytes(bytes(source), name, map, how, report)
         else:
-            meshes, is_single = _meshes(source, frozenset(see_through))
+            meshes, is_single = meshes_of(source, frozenset(see_through))
             made = _native.bake_meshes(meshes, {**how, "is_single": is_single}, report)
     return Table._of(*made)
 
@@ -156,7 +156,7 @@ def _cells(cells: Any) -> dict[str, Any]:
     return {"cells": {"cells": [{"id": str(i), "min": low, "max": high} for i, (low, high) in enumerate(boxes.tolist())]}}
 
 
-def _meshes(source: Any, see_through: frozenset[str]) -> tuple[list[_Mesh], bool]:
+def meshes_of(source: Any, see_through: frozenset[str]) -> tuple[list[_Mesh], bool]:
     """The meshes, and whether their coordinates are as precise as single precision is."""
     if isinstance(source, Mapping):
         found = [_mesh(str(name), *_pair(name, mesh)) for name, mesh in source.items()]
@@ -166,7 +166,7 @@ def _meshes(source: Any, see_through: frozenset[str]) -> tuple[list[_Mesh], bool
         name = (getattr(source, "metadata", None) or {}).get("name") or "mesh"
         found = [_mesh(str(name), source.vertices, source.faces)]
     else:
-        raise TypeError(f"bake takes a path, bytes, trimesh or meshes by name, not {type(source).__name__}")
+        raise TypeError(f"the source is a path, bytes, trimesh or meshes by name, not {type(source).__name__}")
     unknown = see_through - {name for name, _, _ in found}
     if unknown:
         raise ValueError(f"see_through: there is no mesh named {sorted(unknown)[0]!r}")

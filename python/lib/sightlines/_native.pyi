@@ -24,6 +24,9 @@ __all__ = [
     "office",
     "sees",
     "sees_each",
+    "strip_bytes",
+    "strip_file",
+    "strip_meshes",
     "tower",
     "vga",
     "vga_measures",
@@ -196,6 +199,20 @@ def bake_meshes(
     options: Mapping[str, Any],
     progress: _Progress | None = None,
 ) -> tuple[Table, _Said]: ...
+
+_Part = tuple[str, str, str | None, list[float] | None, NDArray[np.bool_]]
+
+def strip_file(
+    path: _Path, options: Mapping[str, Any], progress: _Progress | None = None
+) -> tuple[list[_Part], int]: ...
+def strip_bytes(
+    bytes: bytes, name: str, options: Mapping[str, Any], progress: _Progress | None = None
+) -> tuple[list[_Part], int]: ...
+def strip_meshes(
+    meshes: Sequence[tuple[str, NDArray[np.float64], NDArray[np.int64], bool]],
+    options: Mapping[str, Any],
+    progress: _Progress | None = None,
+) -> tuple[list[_Part], int]: ...
 def tower(floors: int, rooms_x: int, rooms_y: int, furniture: int, seed: int) -> bytes: ...
 def office(rooms_x: int, rooms_y: int, wall_thickness: float, furniture: bool, seed: int) -> Plan: ...
 def city(blocks_x: int, blocks_z: int, seed: int) -> bytes: ...
