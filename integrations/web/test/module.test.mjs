@@ -8,6 +8,7 @@ import path from "node:path";
 import test from "node:test";
 import { fileURLToPath } from "node:url";
 import { Instance } from "../src/bake.js";
+import { joined } from "../minify.mjs";
 import { inChromium } from "./chromium.mjs";
 
 const here = path.dirname(fileURLToPath(import.meta.url));
@@ -66,6 +67,38 @@ test("what cannot be answered is refused, and the module goes on", () => {
   }
   assert.ok(refused > 50, `${refused}`);
   assert.ok(bake(json.file, plan).json.cells > 10);
+});
+
+test("tables made in a page have the bytes of the crates", { skip: !browser }, async () => {
+  const base64 = (name) => fs.readFileSync(name).toString("base64");
+  const carried = cases.map((name) => {
+    const { file, map, request } = JSON.parse(fs.readFileSync(path.join(folder, name)));
+    return { file, request: { ...request, map }, bytes: base64(path.join(folder, file)), table: base64(path.join(folder, `${name.slice(0, -5)}.pvs`)) };
+  });
+  const page = path.join(folder, "all.html");
+  const script = joined([fs.readFileSync(path.join(here, "../src/bake.js"), "utf8")]);
+  const data = JSON.stringify({ module: base64(file), carried });
+  fs.writeFileSync(page, `<!DOCTYPE html><script>const data = ${data};</script><script type="module">${script}\nglobalThis.Baker = Baker;</script>`);
+  const run = async () => {
+    const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+    const baker = await Baker.load(bytes(data.module));
+    const wrong = [];
+    let told = 0;
+    for (const { file, request, bytes: given, table: expected } of data.carried) {
+      const { table } = await baker.bake({ name: file, bytes: bytes(given) }, request, { tell: () => told++ });
+      const right = bytes(expected);
+      if (table.length !== right.length || table.some((byte, k) => byte !== right[k])) wrong.push(file);
+    }
+    const refused = await baker.bake({ name: "x", bytes: bytes("") }).then(() => "", (error) => error.message);
+    const both = await Promise.allSettled([0, 1].map(() => baker.ask({ ask: "about" })));
+    baker.stop();
+    return { wrong, told, refused, both: both.map(({ status }) => status), again: (await baker.ask({ ask: "about" })).json.version };
+  };
+  const { value, asked, thrown } = await inChromium(browser, page, run);
+  assert.deepEqual([value.wrong, asked, thrown], [[], [], []]);
+  assert.ok(value.told > 10 && value.again, JSON.stringify(value));
+  assert.match(value.refused, /nothing from which a table can be baked/);
+  assert.deepEqual(value.both, ["fulfilled", "rejected"]);
 });
 
 test("the playground makes tables in a page, and asks nobody for anything", { skip: !browser }, async () => {
