@@ -151,12 +151,12 @@ fn read_and_strip<'py>(
 /// Decides about the scene of a file.
 #[pyfunction]
 #[pyo3(signature = (path, options, progress=None))]
-pub(crate) fn strip_file(
-    py: Python<'_>,
+pub(crate) fn strip_file<'py>(
+    py: Python<'py>,
     path: PathBuf,
     options: Options<'_>,
     progress: Option<Py<PyAny>>,
-) -> PyResult<Parts<'_>> {
+) -> PyResult<Parts<'py>> {
     read_and_strip(py, &path, None, &options, progress.as_ref())
 }
 

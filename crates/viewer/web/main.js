@@ -49,6 +49,7 @@ class App {
       try {
         this.space = new Space(this.spaceCanvas, this.model);
         this.frameAll();
+        this.enter();
       } catch (error) {
         this.notice(String(error.message));
         return;
@@ -84,6 +85,20 @@ class App {
     camera.pivot = null;
     const forward = camera.direction();
     camera.eye = middle.map((x, k) => x - 0.9 * model.size * forward[k]);
+  }
+
+  /** Puts the camera where the eye is, looking ahead, to where there is most to see. */
+  enter() {
+    const { model, space } = this;
+    if (!model.eye || model.isOutside || model.lock) return;
+    const { camera } = space;
+    camera.eye = [...model.eye];
+    const at = model.table.toTable(model.eye);
+    const level = (p) => p.map((x, k) => (k === model.up ? at[k] : x));
+    const middle = ({ min, max }) => level(min.map((x, k) => (x + max[k]) / 2));
+    const far = (p) => Math.hypot(...p.map((x, k) => x - at[k]));
+    const farthest = [...model.visible].map((cell) => middle(model.table.cells[cell])).reduce((a, b) => (far(b) > far(a) ? b : a), at);
+    if (far(farthest) > 0) camera.lookAt(model.table.toScene(farthest));
   }
 
   notice(text) {
@@ -419,12 +434,37 @@ class App {
   }
 }
 
-/** The middle of the largest cell, where the page opens. */
-function largestCell(table) {
-  const sizes = table.cells.map(({ min, max }) =>
-    [0, 1, 2].slice(0, table.dimension).reduce((size, k) => size * (max[k] - min[k]), 1),
-  );
-  return sizes.indexOf(sizes.reduce((most, size) => Math.max(most, size), 0));
+/** The extent of a cell: its area in a plane, or its volume. */
+function extentOf(table, cell) {
+  const { min, max } = table.cells[cell];
+  return [0, 1, 2].slice(0, table.dimension).reduce((size, k) => size * (max[k] - min[k]), 1);
+}
+
+/** The height at which most cells are: that of a storey. */
+function storeyHeight({ table, up }) {
+  const ends = table.cells.flatMap(({ min, max }) => [[min[up], 1], [max[up], -1]]);
+  ends.sort((a, b) => a[0] - b[0] || b[1] - a[1]);
+  let [n, most, height] = [0, 0, 0];
+  ends.forEach(([at, step], k) => {
+    n += step;
+    if (step > 0 && n > most) [most, height] = [n, (at + ends[k + 1][0]) / 2];
+  });
+  return height;
+}
+
+/** The cell where the page opens: the largest in a plane; in space, at the height of most cells, the largest of those that see no more than most do. */
+function home(model) {
+  const { table, up } = model;
+  const largest = (cells) => cells.reduce((best, cell) => (extentOf(table, cell) > extentOf(table, best) ? cell : best), cells[0]);
+  const all = table.cells.map((_, cell) => cell);
+  if (table.dimension === 2) return largest(all);
+  const height = storeyHeight(model);
+  const storey = all.filter((cell) => table.cells[cell].min[up] <= height && height <= table.cells[cell].max[up]);
+  // Of very many cells, some.
+  const there = storey.filter((_, k) => k % Math.ceil(storey.length / 2000) === 0);
+  const seen = new Map(there.map((cell) => [cell, table.visibleCells([cell]).length]));
+  const median = [...seen.values()].sort((a, b) => a - b)[there.length >> 1];
+  return largest(there.filter((cell) => seen.get(cell) <= median));
 }
 
 async function start() {
@@ -449,14 +489,12 @@ async function start() {
     model.look(frame.eye);
   });
   app.notice(head.figure?.notice ?? (table.hasPlaces ? null : "This table does not store where its cells are."));
-  if (table.dimension === 3 && table.cells.length > 0) {
-    const { min, max } = table.cells[largestCell(table)];
-    model.height = (min[model.up] + max[model.up]) / 2;
-  }
-  if (table.dimension === 3) app.setView("space");
-  else app.setView("map");
-  if (location.hash.length > 1) app.openLink(location.hash);
-  else if (table.cells.length > 0 && table.dimension === 2) app.goToCell(largestCell(table));
+  // A link says where the eye is; without one it is in a room, on the map.
+  const isAtHome = location.hash.length <= 1 && table.hasPlaces && table.cells.length > 0;
+  if (table.dimension === 3) model.height = storeyHeight(model);
+  app.setView(table.dimension === 3 && !isAtHome ? "space" : "map");
+  if (isAtHome) app.goToCell(home(model));
+  else if (location.hash.length > 1) app.openLink(location.hash);
   model.changed();
   window.sightlines = app;
   return app;
