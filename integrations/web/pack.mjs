@@ -43,9 +43,15 @@ const scripts = {
 for (const [name, text] of Object.entries(scripts)) write(name, text);
 fs.copyFileSync(path.join(here, "src/bake.js"), path.join(out, "bake.js"));
 const wasm = process.env.SIGHTLINES_WASM ?? path.join(root, "target/wasm/wasm32-unknown-unknown/release/sightlines_wasm.wasm");
-if (fs.existsSync(wasm)) fs.copyFileSync(wasm, path.join(out, "sightlines.wasm"));
-else console.log("sightlines.wasm is left out: `cargo xtask wasm` builds it");
-for (const name of ["package.json", "README.md", "index.d.ts", "three.d.ts", "bake.d.ts"]) fs.copyFileSync(path.join(here, name), path.join(out, name));
+const manifest = JSON.parse(read(here, "package.json"));
+if (fs.existsSync(wasm)) {
+  fs.copyFileSync(wasm, path.join(out, "sightlines.wasm"));
+} else {
+  delete manifest.exports["./sightlines.wasm"];
+  console.log("sightlines.wasm is left out: `cargo xtask wasm` builds it");
+}
+write("package.json", `${JSON.stringify(manifest, null, 2)}\n`);
+for (const name of ["README.md", "index.d.ts", "three.d.ts", "bake.d.ts"]) fs.copyFileSync(path.join(here, name), path.join(out, name));
 for (const name of ["bench.mjs", "examples"]) fs.cpSync(path.join(here, name), path.join(out, name), { recursive: true });
 for (const name of ["LICENSE-APACHE", "LICENSE-MIT"]) fs.copyFileSync(path.join(root, name), path.join(out, name));
 

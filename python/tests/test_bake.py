@@ -185,7 +185,7 @@ def program() -> str:
         ({"method": "sightlines", "detail_below": 0.5}, ["--method", "sightlines", "--detail-below", "0.5"]),
         ({"method": "sightlines", "keep_solid": True}, ["--method", "sightlines", "--keep-solid"]),
         ({"cells": 12, "max_cells": 40}, ["--n-cells", "12", "--max-cells", "40"]),
-        ({"cells": 12, "method": "shafts", "split": 1}, ["--n-cells", "12", "--method", "shafts", "--split", "1"]),
+        ({"cells": 12, "method": "shafts", "split": np.int64(1)}, ["--n-cells", "12", "--method", "shafts", "--split", "1"]),
         (
             {"cells": 12, "method": "both", "planes": 1, "texels": 16, "sheets": 0, "carry": False, "occluders": 20},
             ["--n-cells", "12", "--method", "both", "--planes", "1", "--texels", "16"]
@@ -238,6 +238,9 @@ def test_the_table_does_not_depend_on_threads(tower_bytes, tower):
         {"texel": 16},
         {"split": 13},
         {"cells": "kd-tree", "up": "y"},
+        {"cells": 5, "n_cells": 9},
+        {"tau": float("nan")},
+        {"texels": 16},
     ],
 )
 def test_wrong_options_are_refused(options):

@@ -57,9 +57,15 @@ def test_what_cannot_be_done_is_refused(tmp_path):
         ({"gap": 1e-9}, "too narrow"),
         ({"keep": ["door"]}, "no object named 'door'"),
         ({"see_through": ["door"]}, "no mesh named 'door'"),
+        ({"gap": float("nan")}, "gap is nan"),
     ]:
         with pytest.raises(ValueError, match=why):
             stripped(BOXES, **how)
+    for how in [{"keep": "hull"}, {"gap": "0.1"}, {"effort": 1.5}]:
+        with pytest.raises(TypeError):
+            stripped(BOXES, **how)
+    with pytest.raises(ValueError, match="a file says itself"):
+        stripped(b"", name="a.glb", see_through=["hull"])
     with pytest.raises(FileNotFoundError):
         stripped(tmp_path / "none.glb")
     with pytest.raises(sl.Error):

@@ -62,16 +62,17 @@ fn libraries(toolchain: &Path) -> OsString {
 }
 
 /// Builds the module; where it is.
-pub(crate) fn build() -> Result<PathBuf, Failure> {
-    let toolchain = toolchain()?;
+fn build(toolchain: &Path) -> Result<PathBuf, Failure> {
     let mut command = Command::new(toolchain.join("usr/bin/cargo"));
     command.current_dir(root()).args(["build", "--locked", "--release", "-p", "sightlines-wasm", "--target", TARGET]);
     command.arg("-Zbuild-std=std,panic_abort").env("RUSTC", toolchain.join("usr/bin/rustc"));
     // What is unstable is to build the standard library, which this compiler has no other way to have.
     command.env("RUSTC_BOOTSTRAP", "1").env("CARGO_TARGET_DIR", outputs());
     command.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", toolchain.join(LINKER));
+    // As much stack as a program has, mostly.
+    command.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS", "-C link-arg=-zstack-size=8388608");
     if toolchain != Path::new("/") {
-        command.env("LD_LIBRARY_PATH", libraries(&toolchain));
+        command.env("LD_LIBRARY_PATH", libraries(toolchain));
     }
     // Those of the cargo that runs this program.
     for variable in ["CARGO", "RUSTUP_TOOLCHAIN", "RUSTDOC", "RUSTFLAGS", "RUSTC_WRAPPER"] {
@@ -83,7 +84,7 @@ pub(crate) fn build() -> Result<PathBuf, Failure> {
 
 /// Builds the module, and writes the playground beside it.
 pub(crate) fn playground() -> Result<(), Failure> {
-    let module = build()?;
+    let module = build(&toolchain()?)?;
     let page = outputs().join("playground.html");
     let script = root().join("integrations/web/playground/make.mjs");
     step::run(Command::new("node").arg(script).arg(&module).arg(&page))?;
@@ -93,15 +94,13 @@ pub(crate) fn playground() -> Result<(), Failure> {
 
 /// Builds the module, and runs its tests in Node and in a browser. Where there is no compiler to be had, that is said and nothing runs.
 pub(crate) fn check() -> Result<(), Failure> {
-    match build() {
-        Ok(module) => {
-            let test = ["test", "-p", "sightlines-tests", "--test", "workspace", "web_module::"];
-            step::run(cargo().args(test).env("SIGHTLINES_WASM", module))
-        }
-        Err(failure @ (Failure::NoDebian | Failure::Found { .. })) => {
+    let toolchain = match toolchain() {
+        Ok(toolchain) => toolchain,
+        Err(failure) => {
             eprintln!("!! {failure}: the module of WebAssembly WILL NOT be built or tested");
-            Ok(())
+            return Ok(());
         }
-        Err(failure) => Err(failure),
-    }
+    };
+    let test = ["test", "-p", "sightlines-tests", "--test", "workspace", "web_module::"];
+    step::run(cargo().args(test).env("SIGHTLINES_WASM", build(&toolchain)?))
 }

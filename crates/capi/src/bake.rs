@@ -202,8 +202,8 @@ unsafe fn given<'a>(options: *const SlBakeOptions) -> Result<Given<'a>, Failure>
     }
 }
 
-/// All defaults. It holds no pointer but null, so it may be shared between threads.
-static DEFAULT: Shareable = Shareable(SlBakeOptions {
+/// All defaults.
+pub(crate) const DEFAULT_OPTIONS: SlBakeOptions = SlBakeOptions {
     struct_size: size_of::<SlBakeOptions>(),
     method: std::ptr::null(),
     cells: SL_CELLS_CHOSEN,
@@ -225,7 +225,10 @@ static DEFAULT: Shareable = Shareable(SlBakeOptions {
     up: 0,
     parts: 0,
     request: std::ptr::null(),
-});
+};
+
+/// The same. It holds no pointer but null, so it may be shared between threads.
+static DEFAULT: Shareable = Shareable(DEFAULT_OPTIONS);
 
 struct Shareable(SlBakeOptions);
 

@@ -1,6 +1,6 @@
 //! Where eyes are: everywhere outside of a scene, in boxes, or wherever a way leads from boxes.
 
-use crate::space::{Space, Stations};
+use crate::space::Stations;
 use sightlines_cells::{Scene, Unlike, unlike};
 use sightlines_geometry::{Aabb, Point3, Random, check_coordinate};
 use sightlines_line_space::FaceExit;
@@ -142,9 +142,7 @@ impl Eyes {
     /// Everything outside of a box around the scene sees the scene through the sides of that box, and nothing is outside of it that hides: so the eyes
     /// are those in a thin slab on each side, and their lines leave it inwards. For a box of eyes, all of its sides. One that is flat is made a little
     /// thicker: there are more eyes then, not fewer.
-    ///
-    /// * `space`: what ways lead to, if that is known
-    pub(crate) fn exits(&self, bounds: &Aabb<3>, space: Option<&Space>) -> Vec<FaceExit> {
+    pub(crate) fn exits(&self, bounds: &Aabb<3>) -> Vec<FaceExit> {
         let size = longest(bounds);
         let thin = size.max(f64::MIN_POSITIVE) * THIN;
         match &self.places {
@@ -161,13 +159,8 @@ impl Eyes {
                 (0..6).map(slab).collect()
             }
             Places::Boxes(boxes) => boxes.iter().flat_map(|eyes| sides(&thick(eyes.bounds(), thin))).collect(),
-            Places::Joined(..) => {
-                // Eyes that may be anywhere are in a box with all that is asked about.
-                let whole = [around(bounds)];
-                let from = space.map_or(&whole[..], Space::cells);
-                let outside = space.is_some_and(Space::is_outside).then(|| Self::outside().exits(bounds, None));
-                from.iter().flat_map(sides).chain(outside.into_iter().flatten()).collect()
-            }
+            // They may be anywhere: in a box with all that is asked about.
+            Places::Joined(..) => sides(&around(bounds)).collect(),
         }
     }
 

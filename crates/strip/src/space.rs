@@ -22,7 +22,6 @@ const NEAREST: usize = 8;
 pub(crate) struct Space {
     cells: Vec<Aabb<3>>,
     tree: BoxTree<3>,
-    is_outside: bool,
 }
 
 impl Space {
@@ -66,17 +65,7 @@ impl Space {
             .filter(|(_, reached)| **reached)
             .map(|(cell, _)| cell.bounds)
             .collect();
-        Some(Self { tree: BoxTree::build(&cells, 4), cells, is_outside })
-    }
-
-    /// The cells.
-    pub(crate) fn cells(&self) -> &[Aabb<3>] {
-        &self.cells
-    }
-
-    /// Whether all that is outside of the scene is joined, too.
-    pub(crate) const fn is_outside(&self) -> bool {
-        self.is_outside
+        Some(Self { tree: BoxTree::build(&cells, 4), cells })
     }
 
     /// Whether a triangle may meet what is joined. Never wrongly no.

@@ -6,7 +6,7 @@ use crate::lines::{LineEffort, Lines};
 use crate::space::Space;
 use crate::witness::{Aim, Walls};
 use rayon::prelude::*;
-use sightlines_cells::{ANYWHERE, Scene, SceneError};
+use sightlines_cells::{ANYWHERE, Scene, SceneError, SceneObject};
 use sightlines_from_region::{BallReach, ClosedSurfaces, EyeSides, GapError};
 use sightlines_geometry::{Aabb, Point3, Random};
 use sightlines_line_space::FaceSearch;
@@ -180,6 +180,13 @@ struct Stripper<'a> {
     lines: Lines,
 }
 
+/// A scene of these triangles alone, if there are any.
+fn barring(walls: &[[Point3; 3]]) -> Option<Scene> {
+    let triangles = (0..walls.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+    let vertices = walls.as_flattened().to_vec();
+    Scene::new(vec![SceneObject { name: String::new(), vertices, triangles }]).ok()
+}
+
 impl<'a> Stripper<'a> {
     fn new(scene: &'a Scene, eyes: &'a Eyes, options: &'a StripOptions) -> Result<Self, StripError> {
         let bounds = scene.bounds();
@@ -206,10 +213,13 @@ impl<'a> Stripper<'a> {
         };
         let space = match boxes.as_deref() {
             None => Space::joined_to(scene, &[], around(&bounds)),
-            Some(boxes) if eyes.are_joined() => Space::joined_to(scene, boxes, around(&bounds)),
+            Some(boxes) if eyes.are_joined() => {
+                // Two walls back to back that hide from their fronts let nobody outside in, but they bar no way.
+                barring(&both_sides).and_then(|walls| Space::joined_to(&walls, boxes, around(&bounds)))
+            }
             Some(_) => None,
         };
-        let exits = eyes.exits(&bounds, space.as_ref());
+        let exits = eyes.exits(&bounds);
         let lines = Lines::new(&both_sides, &fronts, exits, options.effort.sides);
         let walls = Walls::new(scene);
         let eyes = eyes.with_stations(|boxes| walls.stations(boxes, &mut Random::new(options.seed)));
@@ -307,7 +317,8 @@ impl<'a> Stripper<'a> {
 
     /// Tries line space on what is undecided.
     fn by_lines(&self, object: u32, fate: &mut ObjectFate, cells: u32, search: &mut FaceSearch) {
-        if fate.n_undecided() == 0 {
+        // Eyes that walk get next to whatever a way leads to: no box of theirs is apart from what is open.
+        if fate.n_undecided() == 0 || self.eyes.are_joined() {
             return;
         }
         let triangles = self.scene.covering_triangles(object);

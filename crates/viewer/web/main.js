@@ -443,7 +443,7 @@ function extentOf(table, cell) {
 /** The height at which most cells are: that of a storey. */
 function storeyHeight({ table, up }) {
   const ends = table.cells.flatMap(({ min, max }) => [[min[up], 1], [max[up], -1]]);
-  ends.sort((a, b) => a[0] - b[0] || b[1] - a[1]);
+  ends.sort((a, b) => a[0] - b[0] || a[1] - b[1]);
   let [n, most, height] = [0, 0, 0];
   ends.forEach(([at, step], k) => {
     n += step;

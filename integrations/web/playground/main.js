@@ -94,6 +94,7 @@ async function openBlob(blob) {
 }
 
 async function sample(name) {
+  stopper?.abort();
   try {
     const { json, bytes } = await (await baker).ask({ ask: "sample", name });
     open({ name: json.file, bytes, sample: name });
@@ -151,8 +152,8 @@ at("link").onclick = async () => {
   const link = await linkOf(shown);
   if (link.length > MOST_LINK) return say("The file is too large for a link", true);
   history.replaceState(null, "", `#${link}`);
-  await navigator.clipboard?.writeText(location.href).catch(() => {});
-  say("The link is in the address, and on the clipboard");
+  const isCopied = await navigator.clipboard?.writeText(location.href).then(() => true, () => false);
+  say(isCopied ? "The link is in the address, and on the clipboard" : "The link is in the address");
 };
 document.ondragover = (event) => {
   event.preventDefault();

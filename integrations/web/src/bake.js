@@ -18,7 +18,10 @@ export class Instance {
     return this.view(this.exports.answer_place(which), this.exports.answer_length(which));
   }
 
-  /** Answers a question; throws an Error for what cannot be answered. */
+  /**
+   * Answers a question. Throws an Error with `isRefused` for what cannot be answered; after any other one, such as for want of memory, the instance is of
+   * no more use.
+   */
   ask(question, bytes = new Uint8Array()) {
     const text = this.encoder.encode(JSON.stringify(question));
     const room = this.view(this.exports.reserve(text.length + bytes.length), text.length + bytes.length);
@@ -26,13 +29,13 @@ export class Instance {
     room.set(bytes, text.length);
     this.exports.answer(text.length);
     const json = JSON.parse(this.decoder.decode(this.part(0)));
-    if (json.error !== undefined) throw new Error(json.error);
+    if (json.error !== undefined) throw Object.assign(new Error(json.error), { isRefused: true });
     return { json, bytes: this.part(1).slice() };
   }
 }
 
-/** What the worker does. It is given as text, so it names nothing from outside but `Instance`. */
-function serve() {
+/** What the worker does. It is given as text, so it names nothing from outside. */
+function serve(Instance) {
   let instance = null;
   self.onmessage = ({ data: { module, question, bytes } }) => {
     try {
@@ -40,9 +43,8 @@ function serve() {
       const { json, bytes: found } = instance.ask(question, bytes);
       self.postMessage({ json, bytes: found }, [found.buffer]);
     } catch (error) {
-      // After a trap the memory of an instance means nothing any more.
-      if (error instanceof WebAssembly.RuntimeError) instance = null;
-      self.postMessage({ error: String(error.message ?? error) });
+      if (!error.isRefused) instance = null;
+      self.postMessage({ error: error.isRefused ? error.message : `the module stopped: ${error.message ?? error}` });
     }
   };
 }
@@ -60,11 +62,12 @@ export class Baker {
   static async load(source) {
     if (source instanceof WebAssembly.Module) return new Baker(source);
     const body = typeof source === "string" || source instanceof URL ? await fetch(source) : source;
+    if (body.ok === false) throw new Error(`${body.url || source} was answered by ${body.status} ${body.statusText}`);
     return new Baker(await WebAssembly.compile(body.arrayBuffer ? await body.arrayBuffer() : body));
   }
 
   start() {
-    const address = URL.createObjectURL(new Blob([`const Instance = ${Instance};\n(${serve})();`], { type: "text/javascript" }));
+    const address = URL.createObjectURL(new Blob([`(${serve})(${Instance});`], { type: "text/javascript" }));
     this.worker = new Worker(address);
     URL.revokeObjectURL(address);
     this.worker.onmessage = ({ data }) => {
@@ -90,11 +93,13 @@ export class Baker {
   ask(question, bytes, { tell = () => {}, signal } = {}) {
     if (this.pending) return Promise.reject(new Error("a question is being answered"));
     if (signal?.aborted) return Promise.reject(signal.reason);
-    if (!this.worker) this.start();
     const stop = () => this.stop(signal.reason);
-    signal?.addEventListener("abort", stop, { once: true });
-    const answer = new Promise((resolve, reject) => (this.pending = { resolve, reject, tell }));
-    this.worker.postMessage({ module: this.module, question, bytes });
+    const answer = new Promise((resolve, reject) => {
+      if (!this.worker) this.start();
+      this.worker.postMessage({ module: this.module, question, bytes });
+      this.pending = { resolve, reject, tell };
+      signal?.addEventListener("abort", stop, { once: true });
+    });
     return answer.finally(() => signal?.removeEventListener("abort", stop));
   }
 

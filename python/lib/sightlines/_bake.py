@@ -77,27 +77,31 @@ def bake(
     :raises OSError: for a file that cannot be read
     :raises Error: for a damaged file, or a scene that cannot be baked
     """
-    request = {**options, **_cells(cells)}
+    where = _cells(cells)
+    for option in where.keys() & options.keys():
+        raise ValueError(f"{option} is given twice, as cells too")
+    request = {**options, **where}
     for option, value in {
-        "cell_size": _number(cell_size, "cell_size"),
+        "cell_size": number(cell_size, "cell_size"),
         "eye_height": None if eye_height is None else _numbers(eye_height, "eye_height", 2),
         "up": _name(up, "up"),
         "method": _name(method, "method"),
         "view_region": None if view_region is None else _numbers(view_region, "view_region", 6),
-        "gap": _number(gap, "gap"),
-        "detail_below": _number(detail_below, "detail_below"),
+        "gap": number(gap, "gap"),
+        "detail_below": number(detail_below, "detail_below"),
         "keep_solid": bool(keep_solid),
         "parts": count(parts, "parts"),
         "max_cells": count(max_cells, "max_cells"),
     }.items():
         if value is not None:
             request[option] = value
-    limit = _number(time_limit, "time_limit")
+    limit = number(time_limit, "time_limit")
     if limit is not None and limit < 0:
         raise ValueError(f"time_limit is {limit}, where a number from 0 on is expected")
-    how = {"request": json.dumps(request), "is_single": False, "time_limit": limit, "threads": threads_of(threads)}
+    how = {"request": json.dumps(request, allow_nan=False, default=_plain), "is_single": False, "time_limit": limit, "threads": threads_of(threads)}
     if map is not None and not isinstance(map, str):
         raise TypeError("map is the name of a map")
+    refuse_see_through(source, see_through)
     with Reporter(progress) as report:
         if isinstance(source, (str, os.PathLike)):
             made = _native.bake_file(os.fspath(source), map, how, report)
@@ -109,7 +113,13 @@ def bake(
     return Table._of(*made)
 
 
-def _number(x: float | None, what: str) -> float | None:
+def refuse_see_through(source: Any, see_through: Sequence[str]) -> None:
+    """Refuses names for what says itself what is seen through."""
+    if see_through and isinstance(source, (str, os.PathLike, bytes, bytearray, memoryview)):
+        raise ValueError("see_through is for meshes: a file says itself what is seen through")
+
+
+def number(x: float | None, what: str) -> float | None:
     """A finite number, or none."""
     if x is None:
         return None
@@ -134,6 +144,13 @@ def _name(x: str | None, what: str) -> str | None:
     if x is not None and not isinstance(x, str):
         raise TypeError(f"{what}: a name is expected, not {type(x).__name__}")
     return x
+
+
+def _plain(x: Any) -> Any:
+    """A number of numpy as JSON takes it."""
+    if isinstance(x, np.generic):
+        return x.item()
+    raise TypeError(f"an option is a number, a name or a list, not {type(x).__name__}")
 
 
 def _cells(cells: Any) -> dict[str, Any]:

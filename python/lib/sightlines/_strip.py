@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _native
-from ._arrays import count, floats, index, points, threads as threads_of
-from ._bake import meshes_of
+from ._arrays import floats, index, points, threads as threads_of
+from ._bake import meshes_of, number, refuse_see_through
 from ._progress import Progress, Reporter
 
 
@@ -74,7 +74,7 @@ def strip(
     :param triangles: whether triangles count one by one
     :param gap: openings through which no ball of this diameter fits count as closed, in scene units
     :param keep: names of objects that stay
-    :param effort: cells of line space that all parts share that are not decided quickly; more decide more
+    :param effort: cells of line space that all parts share that are not decided quickly; more decide more, but for eyes that walk
     :param ignore_mirrors: scenes with mirrors are refused otherwise, because mirrors show hidden things
     :param see_through: names of meshes that are seen and hide nothing; only for trimesh and meshes by name
     :param seed: of the rays that look for what is seen
@@ -103,13 +103,16 @@ def strip(
         "boxes": boxes,
         "walk": walk is not None,
         "triangles": bool(triangles),
-        "gap": float(gap),
+        "gap": number(gap, "gap"),
         "keep": list(keep),
-        "effort": count(effort, "effort"),
+        "effort": None if effort is None else index(effort, "effort"),
         "ignore_mirrors": bool(ignore_mirrors),
         "seed": index(seed, "seed"),
         "threads": threads_of(threads),
     }
+    if isinstance(keep, str):
+        raise TypeError("keep: names are expected, not one name")
+    refuse_see_through(source, see_through)
     with Reporter(progress) as report:
         if isinstance(source, (str, os.PathLike)):
             found, n_closed = _native.strip_file(os.fspath(source), options, report)

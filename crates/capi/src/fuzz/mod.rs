@@ -258,6 +258,8 @@ impl Driver<'_> {
     fn bake(&mut self) {
         const METHODS: [&std::ffi::CStr; 7] =
             [c"sightlines", c"auto", c"both", c"multifocal", c"shafts", c"magic", c"\xff"];
+        const REQUESTS: [&std::ffi::CStr; 4] =
+            [c"{\"n_cells\": 4}", c"{\"method\": \"shafts\", \"grid\": [1, 2, 1]}", c"{\"planes\": 0}", c"{"];
         let scene = self.scene();
         let boxes: Vec<SlBox> =
             (0..self.bytes.below(3)).map(|_| SlBox { min: self.bytes.reals(), max: self.bytes.reals() }).collect();
@@ -296,8 +298,18 @@ impl Driver<'_> {
                     [0.0; 2]
                 },
                 up: if cells == SL_CELLS_EYE_LEVEL || is_odd { self.bytes.below(5) as u64 } else { 0 },
-                request: if self.bytes.below(8) == 0 { c"{\"n_cells\": 4}".as_ptr() } else { ptr::null() },
+                request: ptr::null(),
             };
+        // A request says it all, but mostly for threads and progress.
+        let options = match self.bytes.below(16) {
+            0 => SlBakeOptions { request: REQUESTS[0].as_ptr(), ..options },
+            k @ 1..5 => {
+                let SlBakeOptions { struct_size, threads, progress, user, .. } = options;
+                let request = REQUESTS[k - 1].as_ptr();
+                SlBakeOptions { struct_size, threads, progress, user, request, ..crate::bake::DEFAULT_OPTIONS }
+            }
+            _ => options,
+        };
         let mut report = SlBakeReport {
             struct_size: size_of::<SlBakeReport>() + self.bytes.below(16) / 15,
             cell_count: 0,

@@ -146,7 +146,7 @@ fn the_guide_for_blender_works() {
 fn the_guide_to_stripping_works() {
     let folder = Folder::new();
     let outputs = outputs_of(&folder, "strip.md");
-    assert_eq!(outputs.len(), 11);
+    assert_eq!(outputs.len(), 12);
     for line in ["objects        38: 14 seen, 24 hidden (63.2 %)", "hidden         24 enclosed of the objects"] {
         assert!(outputs[1].1.contains(line) && guide("strip.md").contains(line), "{}", outputs[1].1);
     }

@@ -76,6 +76,26 @@ fn a_room_behind_a_closed_door_is_hidden_and_one_behind_an_open_door_is_not() {
     assert_eq!(hidden(&closed.with_moving(moving).expect("the door"), &[IN_FIRST], 0.0), behind(&["Tree"]));
 }
 
+/// Two walls back to back that hide from their fronts bar no way, though nothing passes them that is drawn from its front only.
+#[test]
+fn walls_that_hide_from_their_fronts_bar_no_way() {
+    let closed = flat(0.0, 0.0);
+    let sheet = |x: f64, is_up: bool| {
+        let corners = [[x, 1.0, 1.0], [x, 6.0, 1.0], [x, 6.0, 5.0], [x, 1.0, 5.0]];
+        let triangles = if is_up { vec![[0, 1, 2], [0, 2, 3]] } else { vec![[2, 1, 0], [3, 2, 0]] };
+        SceneObject { name: "Sheet".to_owned(), vertices: corners.to_vec(), triangles }
+    };
+    let with = |sheets: Vec<SceneObject>| {
+        let others = closed.objects().iter().filter(|of| !["Wall", "Lintel", "Door"].contains(&of.name.as_str()));
+        Scene::new(others.cloned().chain(sheets).collect()).expect("a scene")
+    };
+    let pair = with(vec![sheet(6.5, true), sheet(6.5, false)]);
+    let fronts = pair.clone().with_front_occluders(vec![9, 10]).expect("the sheets");
+    assert_eq!(hidden(&fronts, &[IN_FIRST], 0.0), ["Tree"]);
+    // The twin: the same sheets hide from both sides.
+    assert_eq!(hidden(&pair, &[IN_FIRST], 0.0), ["East", "Chest", "Tree"]);
+}
+
 /// From outside, nothing is seen to which no way leads from there.
 #[test]
 fn boards_that_touch_enclose_from_outside() {
