@@ -6,6 +6,7 @@
 //! - **Out of scope**: reading tables and answering for eyes, which the package does in JavaScript; threads; files.
 //! - **Invariants**: tables have the bytes that the program makes of the same file and request.
 
+#[cfg(target_family = "wasm")]
 mod memory;
 mod samples;
 mod session;

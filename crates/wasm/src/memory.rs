@@ -17,15 +17,11 @@ thread_local! {
     static MEMORY: RefCell<Memory> = RefCell::default();
 }
 
-#[cfg(target_family = "wasm")]
 #[link(wasm_import_module = "page")]
 unsafe extern "C" {
     /// Told how far a bake is: the place and length of the name of the phase, and its share from 0 to 1.
     safe fn progress(phase: *const u8, length: usize, share: f64);
 }
-
-#[cfg(not(target_family = "wasm"))]
-fn progress(_: *const u8, _: usize, _: f64) {}
 
 /// Tells the page. A page cancels by ending the worker.
 struct Told;

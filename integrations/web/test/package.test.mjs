@@ -22,9 +22,11 @@ test("the package is whole and small", () => {
   const manifest = JSON.parse(read("package.json"));
   const { dependencies, peerDependencies, devDependencies } = manifest;
   assert.deepEqual([dependencies, peerDependencies, devDependencies], [undefined, undefined, undefined]);
-  for (const { types, default: script } of Object.values(manifest.exports)) assert.ok(read(types).length > 0 && read(script).length > 0);
+  for (const entry of Object.values(manifest.exports)) {
+    for (const name of typeof entry === "string" ? [entry] : [entry.types, entry.default]) assert.ok(read(name).length > 0, name);
+  }
   for (const name of ["README.md", "LICENSE-MIT", "LICENSE-APACHE"]) assert.ok(read(name).length > 0);
-  const most = { "index.js": 15 * 1024, "three.js": 2 * 1024 };
+  const most = { "bake.js": 3 * 1024, "index.js": 15 * 1024, "three.js": 2 * 1024 };
   const scripts = fs.readdirSync(folder).filter((name) => name.endsWith(".js"));
   assert.deepEqual(scripts, Object.keys(most));
   for (const name of scripts) {
@@ -49,6 +51,10 @@ function declared(text) {
 test("exports and members are those that are declared", async () => {
   const text = read("index.d.ts");
   assert.deepEqual(declared(text).sort(), Object.keys(main).sort());
+  const { Baker, ...others } = await import(pathToFileURL(path.join(folder, "bake.js")));
+  const ofBake = read("bake.d.ts");
+  assert.deepEqual(declared(ofBake).sort(), ["Baker", ...Object.keys(others)].sort());
+  for (const name of membersOf(ofBake, "Baker")) assert.ok(name in Baker || name in Baker.prototype, name);
   const table = await load(smallTable());
   const place = table.at([0.5, 0.5]);
   const watch = table.watch();
