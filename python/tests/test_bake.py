@@ -86,9 +86,10 @@ def test_cells_may_be_chosen():
     eyes = sl.bake(HALLS, cells="eye-level", cell_size=4.0, eye_height=(0.5, 2.0), up="z", progress=False)
     sizes = eyes.cells[:, 1] - eyes.cells[:, 0]
     assert (sizes[:, :2] <= 4.0).all() and (sizes[:, 2] <= 2.25).all()
+    assert sl.bake(HALLS, cell_size=4.0, eye_height=(0.5, 2.0), up="z", progress=False) == eyes
     for wrong in (
         {"cells": (3, 2, 1), "cell_size": 2.0},
-        {"eye_height": (0, 2)},
+        {"cells": 8, "eye_height": (0, 2)},
         {"cells": "eye-level", "up": "w"},
         {"cells": "eye-level", "eye_height": (0, 1, 2)},
     ):

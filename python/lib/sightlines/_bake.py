@@ -52,8 +52,8 @@ def bake(
         the walls, with portals. ``"eye-level"``: above floors at the height of eyes; viewers elsewhere see everything. ``"places"`` or a
         number: so many boxes, cut where views differ. Three numbers: a grid. An array (n, 2, 3): these boxes
     :param cell_size: width of cells above floors, or of boxes that are cut where views differ, at most, in scene units
-    :param eye_height: of ``"eye-level"``: from how far to how far above floors eyes are, in scene units. None: 0 to 2.5 m
-    :param up: of ``"eye-level"``: the axis that points upwards, ``"x"``, ``"y"`` or ``"z"``. None: as the file says, else z
+    :param eye_height: of ``"eye-level"``, which it implies: from how far to how far above floors eyes are, in scene units. None: 0 to 2.5 m
+    :param up: of ``"eye-level"``, which it implies: the axis that points upwards, ``"x"``, ``"y"`` or ``"z"``. None: as the file says, else z
     :param method: what decides. None: chosen by the scene, as ``"auto"`` does. Otherwise ``"sightlines"``, ``"auto"``,
         ``"both"``, ``"multifocal"``, ``"line-space"``, ``"shafts"``
     :param view_region: a box (2, 3) in which viewers are; rooms that cannot be reached from it are no cells. None: the box around the view

@@ -31,7 +31,7 @@ fn a_change_in_a_crate_brings_the_groups_that_depend_on_it() {
         ),
         ("crates/isovist/src/lib.rs", &["python", "benches", "program"], &["bevy", "sanitizers", "slurm"]),
         ("crates/walkthrough/src/walk.rs", &["bevy", "benches", "python"], &["browser", "slurm"]),
-        ("crates/viewer/web/page.js", &["browser", "program"], &["bevy", "python", "sanitizers"]),
+        ("crates/viewer/web/page.js", &["browser", "program", "wasm"], &["bevy", "slurm"]),
         ("crates/checkpoint/src/journal.rs", &["slurm", "stops", "python"], &["bevy", "browser"]),
         ("crates/capi/src/lib.rs", &["sanitizers", "alone", "package"], &["bevy", "python"]),
         ("shaders/wgsl/splat.wgsl", &["benches", "program"], &["bevy", "browser"]),

@@ -21,5 +21,5 @@ fn no_sequence_of_calls_breaks_the_border() {
         n_calls += n;
         n_fruitful += usize::from(n > 50);
     }
-    assert!(n_calls > 3000 && n_fruitful > 30, "{n_calls} calls succeeded, in {n_fruitful} sequences many");
+    assert!(n_calls > 3000 && n_fruitful >= 30, "{n_calls} calls succeeded, in {n_fruitful} sequences many");
 }
