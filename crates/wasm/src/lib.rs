@@ -12,4 +12,4 @@ mod samples;
 mod session;
 
 pub use samples::{SAMPLES, Sample};
-pub use session::{Answer, Session};
+pub use session::{PageAnswer, Session};

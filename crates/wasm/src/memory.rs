@@ -1,6 +1,6 @@
 //! What a page calls. It reserves room for a question and the bytes that belong to it, writes them there, asks, and reads the answer from where it is told.
 
-use crate::session::{Answer, Session};
+use crate::session::{PageAnswer, Session};
 use sightlines_progress::{Observer, Progress};
 use std::cell::RefCell;
 use std::ops::ControlFlow;
@@ -52,7 +52,7 @@ extern "C" fn answer(question: usize) {
     MEMORY.with_borrow_mut(|memory| {
         let asked = std::mem::take(&mut memory.asked);
         let (question, bytes) = asked.split_at(question.min(asked.len()));
-        let Answer { json, bytes } = memory.session.answer(question, bytes, &Told);
+        let PageAnswer { json, bytes } = memory.session.answer(question, bytes, &Told);
         (memory.json, memory.bytes) = (json.to_string().into_bytes(), bytes);
     });
 }

@@ -45,7 +45,7 @@ enum Question {
 
 /// An answer: JSON, and bytes.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Answer {
+pub struct PageAnswer {
     /// Facts; `{"error": "…"}` if the question cannot be answered.
     pub json: Value,
     /// A table, a page or a file.
@@ -65,14 +65,14 @@ impl Session {
     ///   [`BakeRequest::from_json`] reads a request; `{"ask": "page", "title": "…"}` for the last table as one HTML file, `{"ask": "sample",
     ///   "name": "…"}` for the file of a [`Sample`](crate::Sample), `{"ask": "about"}`
     /// * `observer`: receives reports, and may cancel
-    pub fn answer(&mut self, question: &[u8], bytes: &[u8], observer: &dyn Observer) -> Answer {
+    pub fn answer(&mut self, question: &[u8], bytes: &[u8], observer: &dyn Observer) -> PageAnswer {
         let answer = serde_json::from_slice(question)
             .map_err(|error| error.to_string())
             .and_then(|question| self.try_answer(question, bytes, observer));
-        answer.unwrap_or_else(|error| Answer { json: json!({ "error": error }), bytes: Vec::new() })
+        answer.unwrap_or_else(|error| PageAnswer { json: json!({ "error": error }), bytes: Vec::new() })
     }
 
-    fn try_answer(&mut self, question: Question, bytes: &[u8], observer: &dyn Observer) -> Result<Answer, String> {
+    fn try_answer(&mut self, question: Question, bytes: &[u8], observer: &dyn Observer) -> Result<PageAnswer, String> {
         match question {
             Question::Bake { name, map, request } => {
                 self.last = None;
@@ -88,7 +88,7 @@ impl Session {
                 });
                 let bytes = table.to_bytes();
                 self.last = Some((input, table));
-                Ok(Answer { json, bytes })
+                Ok(PageAnswer { json, bytes })
             }
             Question::Page { title } => {
                 let (input, table) = self.last.as_ref().ok_or("nothing was baked")?;
@@ -98,11 +98,11 @@ impl Session {
                 let sample = SAMPLES.iter().find(|sample| sample.name == name);
                 let sample = sample.ok_or_else(|| format!("there is no sample '{name}'"))?;
                 let bytes = (sample.make)()?;
-                Ok(Answer { json: json!({ "file": sample.file }), bytes })
+                Ok(PageAnswer { json: json!({ "file": sample.file }), bytes })
             }
             Question::About => {
                 let samples: Vec<_> = SAMPLES.iter().map(|s| json!({ "name": s.name, "about": s.about })).collect();
-                Ok(Answer {
+                Ok(PageAnswer {
                     json: json!({ "version": env!("CARGO_PKG_VERSION"), "samples": samples }),
                     bytes: Vec::new(),
                 })
@@ -112,7 +112,7 @@ impl Session {
 }
 
 /// The page of a table, as `sightlines view` writes it.
-fn page(title: &str, input: &Bakeable, table: &Table, observer: &dyn Observer) -> Result<Answer, String> {
+fn page(title: &str, input: &Bakeable, table: &Table, observer: &dyn Observer) -> Result<PageAnswer, String> {
     let text = |error: &dyn std::fmt::Display| error.to_string();
     let figure = match input {
         Bakeable::Plan { plan, .. } => {
@@ -134,5 +134,5 @@ fn page(title: &str, input: &Bakeable, table: &Table, observer: &dyn Observer) -
     let page = Page { figure: figure.as_ref(), reasons: reasons.as_ref(), ..Page::new(title, title, table) };
     let written = page.html().map_err(|error| text(&error))?;
     let json = json!({ "left_out": written.n_left_out, "lines": written.n_lines });
-    Ok(Answer { json, bytes: written.html.into_bytes() })
+    Ok(PageAnswer { json, bytes: written.html.into_bytes() })
 }
