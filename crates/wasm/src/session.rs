@@ -27,7 +27,7 @@ enum Question {
         map: Option<String>,
         /// What to bake.
         #[serde(default)]
-        request: BakeRequest,
+        request: Box<BakeRequest>,
     },
     /// The page of the last table.
     Page {
