@@ -61,13 +61,13 @@ fn libraries(toolchain: &Path) -> OsString {
     path
 }
 
-/// Builds the module; where it is.
-fn build(toolchain: &Path) -> Result<PathBuf, Failure> {
+/// The cargo of the toolchain, told to build the standard library too.
+fn toolchain_cargo(toolchain: &Path, verb: &str) -> Command {
     let mut command = Command::new(toolchain.join("usr/bin/cargo"));
-    command.current_dir(root()).args(["build", "--locked", "--release", "-p", "sightlines-wasm", "--target", TARGET]);
-    command.arg("-Zbuild-std=std,panic_abort").env("RUSTC", toolchain.join("usr/bin/rustc"));
+    command.current_dir(root()).args([verb, "--locked", "--target", TARGET, "-Zbuild-std=std,panic_abort"]);
     // What is unstable is to build the standard library, which this compiler has no other way to have.
-    command.env("RUSTC_BOOTSTRAP", "1").env("CARGO_TARGET_DIR", outputs());
+    command.env("RUSTC", toolchain.join("usr/bin/rustc")).env("RUSTC_BOOTSTRAP", "1");
+    command.env("CARGO_TARGET_DIR", outputs());
     command.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", toolchain.join(LINKER));
     // As much stack as a program has, mostly.
     command.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS", "-C link-arg=-zstack-size=8388608");
@@ -78,13 +78,25 @@ fn build(toolchain: &Path) -> Result<PathBuf, Failure> {
     for variable in ["CARGO", "RUSTUP_TOOLCHAIN", "RUSTDOC", "RUSTFLAGS", "RUSTC_WRAPPER"] {
         command.env_remove(variable);
     }
-    step::run(&mut command)?;
+    command
+}
+
+/// A toolchain, with the packages that the standard library is made of.
+fn fetched() -> Result<PathBuf, Failure> {
+    let toolchain = toolchain()?;
+    step::run(&mut toolchain_cargo(&toolchain, "fetch"))?;
+    Ok(toolchain)
+}
+
+/// Builds the module; where it is.
+fn build(toolchain: &Path) -> Result<PathBuf, Failure> {
+    step::run(toolchain_cargo(toolchain, "build").args(["--release", "-p", "sightlines-wasm"]))?;
     Ok(outputs().join(TARGET).join("release/sightlines_wasm.wasm"))
 }
 
 /// Builds the module, and writes the playground beside it.
 pub(crate) fn playground() -> Result<(), Failure> {
-    let module = build(&toolchain()?)?;
+    let module = build(&fetched()?)?;
     let page = outputs().join("playground.html");
     let script = root().join("integrations/web/playground/make.mjs");
     step::run(Command::new("node").arg(script).arg(&module).arg(&page))?;
@@ -94,7 +106,7 @@ pub(crate) fn playground() -> Result<(), Failure> {
 
 /// Builds the module, and runs its tests in Node and in a browser. Where there is no compiler to be had, that is said and nothing runs.
 pub(crate) fn check() -> Result<(), Failure> {
-    let toolchain = match toolchain() {
+    let toolchain = match fetched() {
         Ok(toolchain) => toolchain,
         Err(failure) => {
             eprintln!("!! {failure}: the module of WebAssembly WILL NOT be built or tested");

@@ -298,7 +298,7 @@ pub(crate) const GROUPS: [Group; 14] = [
             "xtask/src/wasm.rs",
         ],
         turn: 0,
-        seconds: 270,
+        seconds: 400,
         packages: &["nodejs"],
         work: Work::Step(Step::Wasm),
     },
